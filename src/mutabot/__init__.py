@@ -1,0 +1,3 @@
+"""Mutation testing for robot programs."""
+
+__version__ = "0.1.0"

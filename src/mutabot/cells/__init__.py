@@ -1,0 +1,1 @@
+"""MuJoCo work cells: robot, gripper, sensors, scene."""
