@@ -1,0 +1,193 @@
+"""The errors mutabot raises on purpose.
+
+    MutabotError
+    ├── UsageError                  wrong command line, nothing to do with the user's files    (exit 2)
+    │   └── SelectionError          an id or a pattern that selects nothing
+    ├── ConfigurationError          a configuration or vocabulary file that cannot be used     (exit 2)
+    │   ├── VocabularyError         a mistake in a vocabulary
+    │   └── UnknownNameError        a name that does not exist, with the nearest that does
+    ├── BaselineError               the tests do not pass on the unmutated program             (exit 3)
+    ├── NothingToDoError            no tests, no mutants, or every mutant refused              (exit 3)
+    ├── ControlError                a control mutant ended wrongly                             (exit 4)
+    ├── JournalError                the journal is missing, foreign or cannot be written       (exit 2)
+    ├── PathError                   a path into an argument or result that does not fit
+    └── OperatorError               an operator plug-in that breaks the contract               (exit 2)
+
+Every message names the thing, the value, where it stands and what would have been right; the same
+facts are attributes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class MutabotError(Exception):
+    """Base of all errors that mutabot raises on purpose.
+
+    ``exit_code`` is what the command line ends with when the error reaches it.
+    """
+
+    exit_code = 70
+
+
+class UsageError(MutabotError):
+    """The command line asks for something that cannot be done."""
+
+    exit_code = 2
+
+
+class SelectionError(UsageError):
+    """A selection names mutants that do not exist.
+
+    Attributes:
+        unknown: the ids or patterns that match nothing.
+    """
+
+    def __init__(self, message: str, *, unknown: Iterable[str] = ()) -> None:
+        super().__init__(message)
+        self.unknown = tuple(unknown)
+
+
+class ConfigurationError(MutabotError):
+    """A configuration or vocabulary file cannot be used.
+
+    Attributes:
+        file: the file as the user named it, or None where no file is to blame.
+        key: the dotted key inside the file, or None.
+        line: 1-based line, or None where it is not known.
+    """
+
+    exit_code = 2
+
+    def __init__(
+        self, problem: str, *, file: str | None = None, key: str | None = None, line: int | None = None
+    ) -> None:
+        self.problem, self.file, self.key, self.line = problem, file, key, line
+        where = ":".join(str(part) for part in (file, line) if part is not None)
+        parts = [part for part in (where, key) if part]
+        super().__init__(f"{' · '.join(parts)}: {problem}" if parts else problem)
+
+
+class VocabularyError(ConfigurationError):
+    """A vocabulary says something that cannot be."""
+
+
+class UnknownNameError(VocabularyError):
+    """A vocabulary or configuration uses a name that does not exist.
+
+    Attributes:
+        name: the name as written.
+        nearest: the existing name most like it, or None.
+    """
+
+    def __init__(
+        self,
+        kind: str,
+        name: str,
+        known: Iterable[str],
+        *,
+        file: str | None = None,
+        key: str | None = None,
+        line: int | None = None,
+    ) -> None:
+        self.name = name
+        known = sorted(set(known))
+        self.nearest = nearest_name(name, known)
+        super().__init__(unknown_name_text(kind, name, known), file=file, key=key, line=line)
+
+
+class BaselineError(MutabotError):
+    """The tests fail on the unmutated program, so no verdict would mean anything.
+
+    Attributes:
+        tests: node ids of the tests that failed.
+    """
+
+    exit_code = 3
+
+    def __init__(self, message: str, *, tests: Iterable[str] = ()) -> None:
+        super().__init__(message)
+        self.tests = tuple(tests)
+
+
+class NothingToDoError(MutabotError):
+    """There are no tests, no mutants, or none that the robot accepted. Never to be read as 100 %."""
+
+    exit_code = 3
+
+
+class ControlError(MutabotError):
+    """A control mutant ended wrongly: verdicts of this campaign could not be believed.
+
+    Attributes:
+        control: ``identity`` or ``fatal``.
+        test_file: the test file whose control failed.
+    """
+
+    exit_code = 4
+
+    def __init__(self, message: str, *, control: str, test_file: str) -> None:
+        super().__init__(message)
+        self.control, self.test_file = control, test_file
+
+
+class JournalError(MutabotError):
+    """The journal is missing, is not one of ours, or cannot be written.
+
+    Attributes:
+        path: the journal's path.
+    """
+
+    exit_code = 2
+
+    def __init__(self, message: str, *, path: str) -> None:
+        super().__init__(message)
+        self.path = path
+
+
+class PathError(MutabotError):
+    """A path into an argument or result does not fit the object it is used on.
+
+    Attributes:
+        path: the path as text.
+        step: the step that failed, as text.
+        found: type name of the object the step was tried on.
+        known: names or keys that exist there.
+    """
+
+    def __init__(self, message: str, *, path: str, step: str, found: str, known: Iterable[str] = ()) -> None:
+        super().__init__(message)
+        self.path, self.step, self.found, self.known = path, step, found, tuple(known)
+
+
+class OperatorError(MutabotError):
+    """An operator plug-in does not keep the operator contract.
+
+    Attributes:
+        operator: the operator's name.
+    """
+
+    exit_code = 2
+
+    def __init__(self, message: str, *, operator: str) -> None:
+        super().__init__(message)
+        self.operator = operator
+
+
+def nearest_name(name: str, known: Iterable[str]) -> str | None:
+    """The known name most like ``name``, or None if none is near."""
+    by_folded = {candidate.casefold(): candidate for candidate in known}
+    matches = get_close_matches(name.casefold(), list(by_folded), n=1, cutoff=0.5)
+    return by_folded[matches[0]] if matches else None
+
+
+def unknown_name_text(kind: str, name: str, known: Iterable[str]) -> str:
+    """One sentence for a name that does not exist: the nearest one, or all there are."""
+    known = sorted(set(known))
+    nearest = nearest_name(name, known)
+    if nearest is not None:
+        return f"unknown {kind} {name!r}; did you mean {nearest!r}?"
+    listed = ", ".join(known[:12]) + (" …" if len(known) > 12 else "")
+    return f"unknown {kind} {name!r}; known: {listed or 'none'}"

@@ -1,0 +1,185 @@
+"""What crosses the process border: a job description in, report lines out.
+
+The controller writes one ``Job`` as JSON; the process that runs the robot program answers with lines of
+JSON, each one of the report classes below.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from .codec import from_data, to_data
+from .mutant import Mutant
+from .operation import Vocabulary
+from .site import Span
+from .verdict import By
+
+#: environment variable that names the job file; the plugin sleeps without it
+JOB_VARIABLE = "MUTABOT_JOB"
+#: environment variable with the number of the pipe's writing end
+PIPE_VARIABLE = "MUTABOT_PIPE"
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """What one test may use before it counts as timed out.
+
+    Attributes:
+        operations: intercepted calls; None for no limit.
+        simulated: simulated seconds; None for no limit.
+    """
+
+    operations: int | None = None
+    simulated: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """One session inside: which tests to run, as which mutant.
+
+    Attributes:
+        root: absolute path of the project; files in spans are relative to it.
+        program, oracle: files and folders, relative to the root.
+        vocabulary: the robot API.
+        seed: the campaign's seed.
+        round: 0-based round.
+        tests: node ids to run, in this order; None for all that the project's own arguments select.
+        mutant: the fault to plant; None for the original.
+        record: whether to report traces and values.
+        stop_at_kill: whether to stop after the first test that fails for another reason than a refusal.
+        budgets: limits by node id.
+        memory: address space limit in bytes; None for no limit.
+        inspect: whether to check every callable of the vocabulary at the end, also those that no test
+            imported.
+    """
+
+    root: str
+    program: tuple[str, ...]
+    oracle: tuple[str, ...]
+    vocabulary: Vocabulary
+    seed: int
+    round: int
+    tests: tuple[str, ...] | None = None
+    mutant: Mutant | None = None
+    record: bool = False
+    stop_at_kill: bool = False
+    budgets: Mapping[str, Budget] = field(default_factory=dict)
+    memory: int | None = None
+    inspect: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SiteSeen:
+    """A site was reached for the first time in this session; traces refer to it by ``index``."""
+
+    index: int
+    span: Span
+    operation: str
+    pattern: str | None
+    oracle: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TestEnd:
+    """A test has ended.
+
+    Attributes:
+        test: node id.
+        outcome: ``passed``, ``failed`` or ``skipped``.
+        by: what noticed, for a failure.
+        phase: ``setup``, ``call`` or ``teardown``: where it failed.
+        exception: type of the exception as ``module:Name``.
+        message: first lines of the exception's text.
+        place: ``file:line`` where the failure was noticed.
+        timeout: which limit was exceeded, or None.
+        failure: the simulator's failure, or None.
+        invalid: whether the mutated call rejected its arguments' types.
+        refused: text of the refusal of a mutated call, or None.
+        caught: whether the program handled that refusal, so that the test ended for another reason.
+        hits: calls at the mutant's site (with its operation and pattern).
+        acted: hits at which the mutant changed something.
+        example: value before and after at the first hit at which it acted.
+        operations: intercepted calls at any site.
+        wall, cpu: seconds of the test, fixtures included.
+        simulated: simulated seconds, or None if there is no clock.
+        trace: per hit: site index, values written, values read.
+        truncated: whether the trace was cut off.
+        probes: values of each probe by ``target.part``.
+    """
+
+    __test__ = False  # not a test class, whatever pytest may think of the name
+
+    test: str
+    outcome: str
+    by: By | None = None
+    phase: str = "call"
+    exception: str | None = None
+    message: str | None = None
+    place: str | None = None
+    timeout: str | None = None
+    failure: str | None = None
+    invalid: bool = False
+    refused: str | None = None
+    caught: bool = False
+    hits: int = 0
+    acted: int = 0
+    example: tuple[Any, ...] | None = None
+    operations: int = 0
+    wall: float = 0.0
+    cpu: float = 0.0
+    simulated: float | None = None
+    trace: tuple[Any, ...] = ()
+    truncated: bool = False
+    probes: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Something in the vocabulary does not fit the program.
+
+    Attributes:
+        source: where the vocabulary says so.
+        key: the key below the source.
+        text: what is wrong.
+        name, known: the name that does not exist and those that do, where it is about a name.
+    """
+
+    source: str
+    key: str
+    text: str
+    name: str | None = None
+    known: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SessionEnd:
+    """The session has ended in an orderly way.
+
+    Attributes:
+        exit_status: pytest's exit status.
+        collected: node ids of the tests collected, in order.
+        errors: texts of collection errors.
+    """
+
+    exit_status: int
+    collected: tuple[str, ...] = ()
+    errors: tuple[str, ...] = ()
+
+
+Line = SiteSeen | TestEnd | Problem | SessionEnd
+_LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in (SiteSeen, TestEnd, Problem, SessionEnd)}
+
+
+def line_to_data(line: Line) -> dict[str, Any]:
+    """JSON-like data of a report line, with its type."""
+    data: dict[str, Any] = to_data(line)
+    return {"type": type(line).__name__, **data}
+
+
+def line_from_data(data: dict[str, Any]) -> Line:
+    """The report line in such data. Raises KeyError for a type that is not known."""
+    kind = _LINES[data["type"]]
+    line: Line = from_data(kind, {key: value for key, value in data.items() if key != "type"})
+    return line

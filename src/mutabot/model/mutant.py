@@ -1,0 +1,49 @@
+"""Mutants: one operator applied at one site, to one quantity or to the whole call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .site import Site
+
+
+@dataclass(frozen=True, slots=True)
+class Mutant:
+    """One planted fault.
+
+    Attributes:
+        number: 1, 2, 3 … in the order of the plan.
+        family: ``robot``, ``classical``, ``text`` or ``physical``.
+        operator: name of the operator.
+        site: where it acts.
+        operation: target of the operation it acts on.
+        pattern: notation of the text command it acts on; None where that does not apply.
+        quantity: name of the quantity it changes; None if it concerns the call as a whole.
+        variant: which of several mutants of the same operator here; empty if there is only one.
+        description: one line that an engineer recognises.
+    """
+
+    number: int
+    family: str
+    operator: str
+    site: Site
+    operation: str
+    pattern: str | None
+    quantity: str | None
+    variant: str
+    description: str
+
+    @property
+    def id(self) -> str:
+        """Stable under edits elsewhere: file, function, call text, occurrence, quantity, operator."""
+        from_pattern = f"{self.pattern_name}" if self.pattern is not None else ""
+        subject = "/".join(part for part in (from_pattern, self.quantity) if part) or "call"
+        variant = f"={self.variant}" if self.variant else ""
+        return f"{self.site.id}:{subject}:{self.operator}{variant}"
+
+    @property
+    def pattern_name(self) -> str:
+        """The pattern without format specifications; empty if there is none."""
+        from .notation import Notation
+
+        return Notation.compile(self.pattern).short if self.pattern is not None else ""

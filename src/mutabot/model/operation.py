@@ -1,0 +1,138 @@
+"""Operations: the high-level things a robot program does through its API."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .notation import Notation
+from .quantity import Quantity
+
+
+@dataclass(frozen=True, slots=True)
+class Pattern:
+    """One command of an operation whose commands are text.
+
+    Attributes:
+        text: the notation, such as ``lift/{height:g}``.
+        arguments: the meaning of the fields.
+        result: the meaning of what the call returns for this command.
+        opposite: notation of the opposite command, or None if it has none.
+        source: where the vocabulary says so (``robot.toml · operation[3].patterns[0]``).
+    """
+
+    text: str
+    arguments: tuple[Quantity, ...] = ()
+    result: tuple[Quantity, ...] = ()
+    opposite: str | None = None
+    source: str = ""
+
+    @property
+    def name(self) -> str:
+        """The notation without format specifications, as ids and reports print it."""
+        return Notation.compile(self.text).short
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """One callable of a robot API, and what its arguments and result mean.
+
+    Attributes:
+        target: the callable as ``module:qualified.name``.
+        arguments: quantities it writes.
+        result: quantities it reads.
+        command: whether calling it makes the robot do something, so that leaving the call out matters.
+        current: operation that tells where the robot is now; None if by-to cannot be computed.
+        opposite: callable that does the opposite, with the same arguments; None if there is none.
+        refusals: exceptions (``module:Name``) by which the robot refuses a command.
+        message: argument that holds a text command; None for operations that are not text.
+        patterns: the text commands, if ``message`` is given.
+        source: where the vocabulary says so (``robot.toml · operation[3]``).
+    """
+
+    target: str
+    arguments: tuple[Quantity, ...] = ()
+    result: tuple[Quantity, ...] = ()
+    command: bool = True
+    current: str | None = None
+    opposite: str | None = None
+    refusals: tuple[str, ...] = ()
+    message: str | None = None
+    patterns: tuple[Pattern, ...] = ()
+    source: str = ""
+
+    @property
+    def module(self) -> str:
+        """The module part of the target."""
+        return self.target.partition(":")[0]
+
+    @property
+    def qualname(self) -> str:
+        """The part of the target that is looked up in the module."""
+        return self.target.partition(":")[2]
+
+    @property
+    def name(self) -> str:
+        """The short name for reports."""
+        return self.qualname
+
+    def pattern(self, text: str | None) -> Pattern | None:
+        """The pattern with this notation, or None."""
+        return next((pattern for pattern in self.patterns if pattern.text == text), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """How to read simulated time while a test runs.
+
+    Attributes:
+        tick: callable that advances the simulation, as ``module:qualified.name``.
+        time: path to the time, in the unit below: into the result (``""`` is the result itself) or,
+            starting with an argument's name or ``self``, into an argument after the call.
+        rooted: whether ``time`` starts at an argument.
+        unit: unit of that time.
+    """
+
+    tick: str
+    time: str = ""
+    rooted: bool = False
+    unit: str = "s"
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Probe:
+    """A reading that mutabot takes at the end of a test, to compare worlds.
+
+    Attributes:
+        target: callable without arguments, as ``module:qualified.name``.
+        tolerance: greatest difference between two equal worlds, in the reading's own units.
+    """
+
+    target: str
+    tolerance: float = 1e-6
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Vocabulary:
+    """Everything the vocabulary files say, put together.
+
+    Attributes:
+        operations: the robot API.
+        refusals: exceptions by which any operation refuses a command.
+        checks: exceptions that are verdicts of a check (monitors), beside AssertionError.
+        failures: exceptions that mean the simulator itself failed.
+        clock: simulated time, or None if the vocabulary does not say.
+        probes: end-of-test readings.
+    """
+
+    operations: tuple[Operation, ...] = ()
+    refusals: tuple[str, ...] = ()
+    checks: tuple[str, ...] = ()
+    failures: tuple[str, ...] = ()
+    clock: Clock | None = None
+    probes: tuple[Probe, ...] = ()
+
+    def operation(self, target: str) -> Operation | None:
+        """The operation with this target, or None."""
+        return next((operation for operation in self.operations if operation.target == target), None)

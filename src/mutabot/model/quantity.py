@@ -1,0 +1,120 @@
+"""Quantities: what one argument, or one part of a result, means."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from .path import Path
+from .units import Dimension, convert
+
+#: A value a quantity can have, in the quantity's own unit.
+Value = Any
+
+
+class Kind(StrEnum):
+    """The physical meaning of a quantity."""
+
+    TRANSLATION = "translation"
+    ROTATION = "rotation"
+    OPENING = "opening"
+    OUTPUT = "output"
+    DURATION = "duration"
+    POSITION = "position"
+    ORIENTATION = "orientation"
+    ANGLE = "angle"
+    DISTANCE = "distance"
+    LABEL = "label"
+    FLAG = "flag"
+
+
+class Mode(StrEnum):
+    """Whether a commanded amount is relative or an absolute target."""
+
+    BY = "by"
+    TO = "to"
+
+
+#: kinds that are written to the robot
+WRITTEN = frozenset({Kind.TRANSLATION, Kind.ROTATION, Kind.OPENING, Kind.OUTPUT, Kind.DURATION})
+#: kinds that are read from the robot
+READ = frozenset({Kind.POSITION, Kind.ORIENTATION, Kind.ANGLE, Kind.DISTANCE, Kind.LABEL, Kind.FLAG})
+#: kinds whose values are numbers on a scale, with a unit
+MEASURED = frozenset(
+    {
+        Kind.TRANSLATION,
+        Kind.ROTATION,
+        Kind.DURATION,
+        Kind.POSITION,
+        Kind.ORIENTATION,
+        Kind.ANGLE,
+        Kind.DISTANCE,
+    }
+)
+#: what each kind measures; kinds that are missing carry no unit
+DIMENSIONS: dict[Kind, frozenset[Dimension]] = {
+    Kind.TRANSLATION: frozenset({Dimension.LENGTH}),
+    Kind.ROTATION: frozenset({Dimension.ANGLE}),
+    Kind.OPENING: frozenset({Dimension.RATIO, Dimension.LENGTH}),
+    Kind.DURATION: frozenset({Dimension.TIME}),
+    Kind.POSITION: frozenset({Dimension.LENGTH}),
+    Kind.ORIENTATION: frozenset({Dimension.ANGLE}),
+    Kind.ANGLE: frozenset({Dimension.ANGLE}),
+    Kind.DISTANCE: frozenset({Dimension.LENGTH}),
+}
+#: the reading that tells where a written kind is now
+READING_OF: dict[Kind, Kind] = {Kind.TRANSLATION: Kind.POSITION, Kind.ROTATION: Kind.ORIENTATION}
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """The meaning of one argument, or of one part of a result.
+
+    Attributes:
+        name: how ids and reports call it (``dx``, ``.pose.x``, ``height``, ``result``).
+        path: where it lies, starting at the argument's name, the result, or the field of a text command.
+        kind: its physical meaning.
+        axis: ``x``, ``y``, ``z``, or ``j1`` … for a joint; None where it has none.
+        unit: a key of ``units.UNITS``; None for kinds without one. All values below are in this unit.
+        frame: name of the frame it is given in, or None if the vocabulary does not say.
+        mode: relative or absolute; None for quantities that are not commanded motions.
+        values: the allowed values of a discrete quantity, or None for a continuous one.
+        range: least and greatest allowed value, or None for no limit.
+        noise: standard deviation of the sensor noise to plant, or None for the operator's default.
+    """
+
+    name: str
+    path: Path
+    kind: Kind
+    axis: str | None = None
+    unit: str | None = None
+    frame: str | None = None
+    mode: Mode | None = None
+    values: tuple[Value, ...] | None = None
+    range: tuple[float, float] | None = None
+    noise: float | None = None
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether its values are numbers on a scale."""
+        return self.kind in MEASURED
+
+    def allows(self, value: Value) -> bool:
+        """Whether the robot API would take this value, as far as the vocabulary says."""
+        if self.values is not None and value not in self.values:
+            return False
+        if self.range is not None:
+            return bool(self.range[0] <= value <= self.range[1])
+        return True
+
+    def from_unit(self, value: float, unit: str) -> float:
+        """``value`` in ``unit``, expressed in this quantity's own unit."""
+        return convert(value, unit, self.unit) if self.unit is not None else value
+
+    def text(self, value: Value) -> str:
+        """A value as reports print it, with its unit."""
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return str(value)
+        number = f"{value:.6g}"
+        return f"{number} {self.unit}" if self.unit not in (None, "fraction") else number
