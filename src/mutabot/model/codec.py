@@ -49,10 +49,10 @@ def _decode(kind: Any, data: Any) -> Any:
         return None if data is None else _decode(options[0] if len(options) == 1 else Any, data)
     if origin in (tuple, list):
         return _decode_sequence(origin, get_args(kind), data)
-    if origin in (dict, Mapping) or origin is not None and issubclass(origin, Mapping):
+    if origin in (dict, Mapping) or (origin is not None and issubclass(origin, Mapping)):
         item = get_args(kind)[1]
         return {key: _decode(item, value) for key, value in data.items()}
-    if is_dataclass(kind):
+    if isinstance(kind, type) and is_dataclass(kind):
         hints = _hints(kind)
         return kind(**{name: _decode(hints[name], value) for name, value in data.items()})
     if isinstance(kind, type) and issubclass(kind, Enum):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .notation import Notation
 from .site import Site
 
 
@@ -44,6 +45,4 @@ class Mutant:
     @property
     def pattern_name(self) -> str:
         """The pattern without format specifications; empty if there is none."""
-        from .notation import Notation
-
         return Notation.compile(self.pattern).short if self.pattern is not None else ""

@@ -18,7 +18,7 @@ from dataclasses import dataclass, is_dataclass
 from dataclasses import fields as dataclass_fields
 from typing import Any
 
-from ..errors import PathError, nearest_name
+from mutabot.errors import PathError, nearest_name
 
 _STEP = re.compile(r"\.(?P<attribute>[^\W\d]\w*)|\[(?P<item>[^\[\]]*)\]")
 _NAME = re.compile(r"[^\W\d]\w*")
