@@ -17,6 +17,8 @@ from .operation import Operation as Operation
 from .operation import Pattern as Pattern
 from .operation import Probe as Probe
 from .operation import Vocabulary as Vocabulary
+from .outcome import LeftOut as LeftOut
+from .outcome import Outcome as Outcome
 from .path import Path as Path
 from .quantity import Kind as Kind
 from .quantity import Mode as Mode

@@ -1,0 +1,1 @@
+"""The controller: baseline, plan, engines, journal. It never imports the robot program."""

@@ -1,0 +1,72 @@
+"""Outcomes: how a mutant ended in one round, and with what evidence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from .verdict import By, Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """The end of one mutant in one round.
+
+    Attributes:
+        mutant: the mutant's id.
+        round: 0-based round.
+        verdict: the one named end.
+        by: what noticed it, for a kill.
+        test: node id of the test that killed, timed out, was refused or failed the tool; else None.
+        exception: type of the exception that ended that test, as ``module:Name``.
+        message: first lines of that exception's text, or why the verdict is what it is.
+        place: ``file:line`` where it was noticed.
+        hits: calls at the mutant's site, over all tests run.
+        acted: hits at which the mutant changed something.
+        example: value before and after at the first hit at which it acted.
+        tests: number of tests run.
+        wall: seconds from the start of the process to its end.
+        cpu: processor seconds of the tests.
+        simulated: simulated seconds of the tests, or None without a clock.
+        indistinguishable: whether trace and probes equal the original's; None if that was not compared
+            (only survivors are).
+        distance: greatest difference of a probe from the original's, in multiples of its tolerance;
+            None without probes.
+        divergence: what ended otherwise than in the original, one line each, worst first.
+        engine: ``replay`` or ``branch``.
+    """
+
+    mutant: str
+    round: int
+    verdict: Verdict
+    by: By | None = None
+    test: str | None = None
+    exception: str | None = None
+    message: str | None = None
+    place: str | None = None
+    hits: int = 0
+    acted: int = 0
+    example: tuple[Any, ...] | None = None
+    tests: int = 0
+    wall: float = 0.0
+    cpu: float = 0.0
+    simulated: float | None = None
+    indistinguishable: bool | None = None
+    distance: float | None = None
+    divergence: tuple[str, ...] = ()
+    engine: str = "replay"
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A mutant that the plan leaves out because it cannot matter.
+
+    Attributes:
+        id: the id it would have had.
+        description: what it would have done.
+        reason: why it cannot matter.
+    """
+
+    id: str
+    description: str
+    reason: str
