@@ -1,16 +1,19 @@
 """Plain data: what mutabot talks about, without any input or output."""
 
 from .call import Call as Call
+from .call import Middleware as Middleware
 from .call import Proceed as Proceed
 from .call import Reply as Reply
 from .codec import from_data as from_data
 from .codec import to_data as to_data
+from .job import Acted as Acted
 from .job import Budget as Budget
 from .job import Job as Job
 from .job import Problem as Problem
 from .job import SessionEnd as SessionEnd
 from .job import SiteSeen as SiteSeen
 from .job import TestEnd as TestEnd
+from .job import TestStart as TestStart
 from .mutant import Mutant as Mutant
 from .operation import Clock as Clock
 from .operation import Operation as Operation

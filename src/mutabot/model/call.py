@@ -15,38 +15,6 @@ async def _unknown(quantity: Quantity) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
-    """One invocation of an operation, with the values it writes.
-
-    Attributes:
-        operation: what is invoked.
-        pattern: which text command it is; None for operations that are not text, or for a command the
-            vocabulary does not know.
-        values: value of each written quantity by name, in the quantity's unit. A quantity that is absent
-            in this call (an omitted part, None) is missing here.
-        reversed: whether the opposite of the operation or pattern is to be done.
-        current: tells where a written quantity is now, in that quantity's unit; raises LookupError when
-            the vocabulary names no such reading.
-        payload: what the door needs to perform the call; operators never look inside.
-    """
-
-    operation: Operation
-    pattern: Pattern | None = None
-    values: Mapping[str, Value] = field(default_factory=dict)
-    reversed: bool = False
-    current: Callable[[Quantity], Awaitable[float]] = _unknown
-    payload: Any = None
-
-    def with_value(self, quantity: Quantity, value: Value) -> Call:
-        """The same call with another value for one quantity."""
-        return replace(self, values={**self.values, quantity.name: value})
-
-    def opposite(self) -> Call:
-        """The call of the opposite operation or text command, with the same values."""
-        return replace(self, reversed=not self.reversed)
-
-
-@dataclass(frozen=True, slots=True)
 class Reply:
     """What an operation answered, with the values it reads.
 
@@ -61,6 +29,40 @@ class Reply:
     def with_value(self, quantity: Quantity, value: Value) -> Reply:
         """The same reply with another value for one quantity."""
         return replace(self, values={**self.values, quantity.name: value})
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """One invocation of an operation, with the values it writes.
+
+    Attributes:
+        operation: what is invoked.
+        pattern: which text command it is; None for operations that are not text, or for a command the
+            vocabulary does not know.
+        values: value of each written quantity by name, in the quantity's unit. A quantity that is absent
+            in this call (an omitted part, None) is missing here.
+        reversed: whether the opposite of the operation or pattern is to be done.
+        current: tells where a written quantity is now, in that quantity's unit; raises LookupError when
+            the vocabulary names no such reading.
+        idle: what the operation would answer if the robot did nothing; None if nobody can know.
+        payload: what the door needs to perform the call; operators never look inside.
+    """
+
+    operation: Operation
+    pattern: Pattern | None = None
+    values: Mapping[str, Value] = field(default_factory=dict)
+    reversed: bool = False
+    current: Callable[[Quantity], Awaitable[float]] = _unknown
+    idle: Reply | None = None
+    payload: Any = None
+
+    def with_value(self, quantity: Quantity, value: Value) -> Call:
+        """The same call with another value for one quantity."""
+        return replace(self, values={**self.values, quantity.name: value})
+
+    def opposite(self) -> Call:
+        """The call of the opposite operation or text command, with the same values."""
+        return replace(self, reversed=not self.reversed)
 
 
 #: Performs the original operation.

@@ -82,6 +82,22 @@ class SiteSeen:
 
 
 @dataclass(frozen=True, slots=True)
+class TestStart:
+    """A test begins: its fixtures are next."""
+
+    __test__ = False
+
+    test: str
+
+
+@dataclass(frozen=True, slots=True)
+class Acted:
+    """The mutant changed something for the first time in this test: proof that mutated code ran."""
+
+    test: str
+
+
+@dataclass(frozen=True, slots=True)
 class TestEnd:
     """A test has ended.
 
@@ -104,7 +120,7 @@ class TestEnd:
         operations: intercepted calls at any site.
         wall, cpu: seconds of the test, fixtures included.
         simulated: simulated seconds, or None if there is no clock.
-        trace: per hit: site index, values written, values read.
+        trace: per hit: site index, values written, values read, and what a command returned.
         truncated: whether the trace was cut off.
         probes: values of each probe by ``target.part``.
     """
@@ -168,8 +184,10 @@ class SessionEnd:
     errors: tuple[str, ...] = ()
 
 
-Line = SiteSeen | TestEnd | Problem | SessionEnd
-_LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in (SiteSeen, TestEnd, Problem, SessionEnd)}
+Line = SiteSeen | TestStart | Acted | TestEnd | Problem | SessionEnd
+_LINES: dict[str, type[Any]] = {
+    kind.__name__: kind for kind in (SiteSeen, TestStart, Acted, TestEnd, Problem, SessionEnd)
+}
 
 
 def line_to_data(line: Line) -> dict[str, Any]:

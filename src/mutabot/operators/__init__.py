@@ -1,0 +1,7 @@
+"""Mutation operators: one file each, ``operator.py`` is the contract."""
+
+from .operator import Example as Example
+from .operator import Operator as Operator
+from .operator import Subject as Subject
+from .registry import names as names
+from .registry import operator as operator

@@ -1,0 +1,142 @@
+"""The contract of a mutation operator.
+
+An operator answers four questions: where could it act, what does it do there, what does that look like
+to an engineer, and which examples show it. It sees quantities and their values, never Python syntax or
+a vendor's API, so that whatever can be turned into a ``Call`` can be mutated.
+
+A third party adds an operator by naming its class under the entry point ``mutabot.operators``.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from random import Random
+from typing import Any, ClassVar
+
+from mutabot.model import Middleware, Operation, Pattern, Quantity
+from mutabot.model.quantity import Value
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """What an operator acts on: an operation, one of its text commands, one quantity of it, or the call.
+
+    Attributes:
+        operation: the operation.
+        pattern: the text command; None for operations that are not text.
+        quantity: the quantity; None where the call as a whole is meant.
+        variant: which of several mutants here; empty if there is only one.
+    """
+
+    operation: Operation
+    pattern: Pattern | None = None
+    quantity: Quantity | None = None
+    variant: str = ""
+
+    @property
+    def written(self) -> tuple[Quantity, ...]:
+        """Quantities the call writes."""
+        return self.pattern.arguments if self.pattern is not None else self.operation.arguments
+
+    @property
+    def read(self) -> tuple[Quantity, ...]:
+        """Quantities the call reads."""
+        return self.pattern.result if self.pattern is not None else self.operation.result
+
+    @property
+    def is_command(self) -> bool:
+        """Whether the robot does something when the call is made."""
+        if self.pattern is not None and self.pattern.result and not self.pattern.arguments:
+            return False
+        return self.operation.command
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """One worked example: a call before, and what the robot and the program see after.
+
+    Attributes:
+        subject: what the operator is applied to.
+        values: values of the original call.
+        replied: values the robot would answer.
+        current: where the robot is, by quantity name, for operators that ask.
+        performed: values of each call that reaches the robot, in order; ``reversed`` marks the opposite.
+        received: values the program receives; None if it receives the robot's own.
+        away: why the operator changes nothing here; empty if it does act.
+        note: one line for the documentation.
+    """
+
+    subject: Subject
+    values: Mapping[str, Value] = field(default_factory=dict)
+    replied: Mapping[str, Value] = field(default_factory=dict)
+    current: Mapping[str, float] = field(default_factory=dict)
+    performed: tuple[Mapping[str, Any], ...] = ()
+    received: Mapping[str, Value] | None = None
+    away: str = ""
+    note: str = ""
+
+
+class Operator(ABC):
+    """A rule that makes mutants.
+
+    Class attributes:
+        name: how ids, reports and selections call it.
+        family: ``robot``, ``classical``, ``text`` or ``physical``; ``control`` is mutabot's own.
+        summary: one sentence for the documentation.
+        examples: worked examples; they are tests and documentation at once.
+    """
+
+    name: ClassVar[str]
+    family: ClassVar[str] = "robot"
+    summary: ClassVar[str]
+    examples: ClassVar[tuple[Example, ...]] = ()
+
+    @abstractmethod
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
+        """Where it could act in a call of this operation (and text command)."""
+
+    @abstractmethod
+    def middleware(self, subject: Subject, random: Random) -> Middleware:
+        """The mutant at work: ``mutated(call, proceed) -> reply``.
+
+        Must pass the call on unchanged where the changed value would not be one the robot API takes.
+        ``random`` is the mutant's own generator for this round and test; use no other randomness.
+        """
+
+    @abstractmethod
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        """One line that an engineer recognises.
+
+        ``before`` and ``after`` are values seen in the baseline and what they would become; None where
+        that cannot be known beforehand.
+        """
+
+    def foresees(self, subject: Subject) -> bool:
+        """Whether its effect follows from the recorded values alone."""
+        return True
+
+
+def is_number(value: Value) -> bool:
+    """Whether a value is a plain number (numpy scalars included, truth values not)."""
+    if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
+        return False
+    return isinstance(value, int | float) or (hasattr(value, "__float__") and not hasattr(value, "__len__"))
+
+
+def map_numbers(value: Value, change: Any) -> Value | None:
+    """``change`` applied to a number, or to each number of a vector; None where there is none.
+
+    The container's type is kept: lists stay lists, tuples tuples, arrays arrays.
+    """
+    if is_number(value):
+        return change(value)
+    if isinstance(value, list | tuple) and value and all(is_number(item) for item in value):
+        return type(value)(change(item) for item in value)
+    if hasattr(value, "dtype") and getattr(value, "ndim", 0) == 1:
+        changed = value.copy() if value.dtype.kind == "f" else value.astype(float)
+        for index in range(len(changed)):
+            changed[index] = change(changed[index])
+        return changed
+    return None
