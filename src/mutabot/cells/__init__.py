@@ -1,1 +1,63 @@
-"""MuJoCo work cells: robot, gripper, sensors, scene."""
+"""MuJoCo work cells: robot, gripper, sensors, scene.
+
+Importing this package is cheap; MuJoCo is loaded when a name that needs it is first used. `SimulatorMissing` says what
+to install when it is not there.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from .errors import (
+    BadArgument as BadArgument,
+    CellError as CellError,
+    ConditionBroken as ConditionBroken,
+    MotionRefused as MotionRefused,
+    ProtectiveStop as ProtectiveStop,
+    SensorError as SensorError,
+    SimulationDiverged as SimulationDiverged,
+    SimulatorMissing as SimulatorMissing,
+)
+from .scene import (
+    Box as Box,
+    Fixture as Fixture,
+    Mark as Mark,
+    Scene as Scene,
+)
+
+if TYPE_CHECKING:
+    from .cell import Cell as Cell, current as current, world as world
+    from .clock import simulated_time as simulated_time
+    from .geometry import Pose as Pose, Position as Position
+    from .rendering import render as render
+
+if "numpy" not in sys.modules:
+    # A cell has no use for a pool of linear-algebra threads, and a process with threads is not safe to fork.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+_LAZY = {
+    "Cell": "cell",
+    "current": "cell",
+    "world": "cell",
+    "simulated_time": "clock",
+    "Pose": "geometry",
+    "Position": "geometry",
+    "render": "rendering",
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _LAZY:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    try:
+        module = importlib.import_module(f".{_LAZY[name]}", __name__)
+    except ModuleNotFoundError as error:
+        if error.name in ("mujoco", "numpy"):
+            raise SimulatorMissing(error.name) from error
+        raise
+    value = getattr(module, name)
+    globals()[name] = value
+    return value

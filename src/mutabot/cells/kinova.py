@@ -1,0 +1,133 @@
+"""The Kinova Gen3 arm with 7 joints: published kinematics, masses and limits, and its shape.
+
+Source: the maker's public robot description (joint origins, masses, joint, torque and speed limits) and user guide
+(acceleration limits). Link shapes are our own capsules; each mass is spread over its capsule.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+CONTINUOUS = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """One revolute joint about its own z axis.
+
+    Attributes:
+        origin: place in the parent frame, m.
+        turn: rotation of the frame about the parent's x axis, rad.
+        limit: allowed angle on both sides of zero, rad; infinite for a continuous joint.
+        mass: of the link that the joint carries, kg.
+        torque: limit, Nm.
+        speed: limit, rad/s.
+        acceleration: limit, rad/s².
+    """
+
+    origin: tuple[float, float, float]
+    turn: float
+    limit: float
+    mass: float
+    torque: float
+    speed: float
+    acceleration: float
+
+
+_QUARTER = math.pi / 2
+JOINTS: tuple[Joint, ...] = (
+    Joint((0.0, 0.0, 0.15643), math.pi, CONTINUOUS, 1.3773, 39.0, 1.39, 5.2),
+    Joint((0.0, 0.005375, -0.12838), _QUARTER, 2.41, 1.1636, 39.0, 1.39, 5.2),
+    Joint((0.0, -0.21038, -0.006375), -_QUARTER, CONTINUOUS, 1.1636, 39.0, 1.39, 5.2),
+    Joint((0.0, 0.006375, -0.21038), _QUARTER, 2.66, 0.9302, 39.0, 1.39, 5.2),
+    Joint((0.0, -0.20843, -0.006375), -_QUARTER, CONTINUOUS, 0.6781, 9.0, 1.22, 10.0),
+    Joint((0.0, 0.00017505, -0.10593), _QUARTER, 2.23, 0.6781, 9.0, 1.22, 10.0),
+    Joint((0.0, -0.10593, -0.00017505), -_QUARTER, CONTINUOUS, 0.5006, 9.0, 1.22, 10.0),
+)
+JOINT_COUNT = len(JOINTS)
+INTERFACE_OFFSET = (0.0, 0.0, -0.0615250)
+TOOL_LENGTH = 0.12
+BASE_MASS = 1.697
+JERK_RATIO = 10.0
+"""Jerk limit of a joint divided by its acceleration limit, 1/s (our choice: full acceleration within 0.1 s)."""
+
+HOME_DEGREES = (0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0)
+HOME = tuple(math.radians(angle) for angle in HOME_DEGREES)
+
+TOOL_SPEED = 0.55
+TOOL_TURN_SPEED = math.radians(60.0)
+TOOL_ACCELERATION = 2.0
+TOOL_TURN_ACCELERATION = math.radians(240.0)
+TOOL_JERK = 20.0
+TOOL_TURN_JERK = math.radians(2400.0)
+
+# Servo of each joint: stiffness (Nm/rad) and rotor inertia seen at the output (kg m²), our choice.
+_STIFFNESS = (6000.0, 6000.0, 4000.0, 4000.0, 1500.0, 1500.0, 1000.0)
+_ROTOR_INERTIA = (0.5, 0.5, 0.3, 0.3, 0.1, 0.1, 0.1)
+_DAMPING = (180.0, 180.0, 110.0, 110.0, 30.0, 30.0, 20.0)
+SERVO_LAG = tuple(damping / stiffness for damping, stiffness in zip(_DAMPING, _STIFFNESS, strict=True))
+"""Damping over stiffness, s: adding this times the wanted speed to a setpoint removes the servo's lag."""
+
+_LINK_RADIUS = (0.045, 0.045, 0.042, 0.042, 0.037, 0.037, 0.037)
+_LIGHT = "0.92 0.92 0.93 1"
+_DARK = "0.24 0.25 0.27 1"
+
+
+def _turn(angle: float) -> str:
+    return f"{math.cos(angle / 2):.17g} {math.sin(angle / 2):.17g} 0 0"
+
+
+def _numbers(values: tuple[float, ...]) -> str:
+    return " ".join(f"{value:.17g}" for value in values)
+
+
+def _link_shape(number: int, end: tuple[float, float, float], mass: float) -> str:
+    radius = _LINK_RADIUS[number - 1]
+    length = math.sqrt(sum(part * part for part in end))
+    reach = tuple(part * max(0.0, 1 - 0.25 * radius / length) for part in end)
+    return (
+        f'<geom name="link {number}" class="arm" type="capsule" size="{radius}" '
+        f'fromto="0 0 0 {_numbers(reach)}" mass="{mass}" rgba="{_LIGHT}"/>'
+        f'<geom class="looks" type="cylinder" size="{radius + 0.0015} 0.012" rgba="{_DARK}"/>'
+    )
+
+
+def arm_xml(tool: str = "") -> str:
+    """MJCF of the arm with its base at the parent's origin; `tool` is MJCF put into the interface frame.
+
+    The interface frame holds a site "tool", `TOOL_LENGTH` beyond the interface.
+    """
+    opening: list[str] = [
+        f'<body name="base"><geom name="base" class="arm" type="cylinder" size="0.05 0.06" pos="0 0 0.06" '
+        f'mass="{BASE_MASS}" rgba="{_LIGHT}"/><geom class="looks" type="cylinder" size="0.0515 0.012" '
+        f'pos="0 0 0.12" rgba="{_DARK}"/>'
+    ]
+    for index, joint in enumerate(JOINTS):
+        number = index + 1
+        limited = "" if math.isinf(joint.limit) else f' range="{-joint.limit} {joint.limit}" limited="true"'
+        end = JOINTS[index + 1].origin if number < JOINT_COUNT else INTERFACE_OFFSET
+        opening.append(
+            f'<body name="link {number}" pos="{_numbers(joint.origin)}" quat="{_turn(joint.turn)}" gravcomp="1">'
+            f'<joint name="joint {number}" armature="{_ROTOR_INERTIA[index]}" actuatorgravcomp="true" '
+            f'actuatorfrclimited="true" actuatorfrcrange="{-joint.torque} {joint.torque}"{limited}/>'
+            + _link_shape(number, end, joint.mass)
+        )
+    camera = (
+        '<geom class="looks" type="box" size="0.035 0.012 0.03" pos="0 -0.042 -0.03" '
+        f'rgba="{_DARK}"/>'  # the vision module on the bracelet
+    )
+    interface = (
+        f'<body name="interface" pos="{_numbers(INTERFACE_OFFSET)}" quat="{_turn(math.pi)}" gravcomp="1">'
+        f'<site name="tool" pos="0 0 {TOOL_LENGTH}" size="0.002" rgba="0 0 0 0"/>{tool}</body>'
+    )
+    return "".join(opening) + camera + interface + "</body>" * (JOINT_COUNT + 1)
+
+
+def actuators_xml() -> str:
+    """MJCF of the joints' position servos, in the joints' order."""
+    return "".join(
+        f'<position name="servo {index + 1}" joint="joint {index + 1}" kp="{_STIFFNESS[index]}" '
+        f'kv="{_DAMPING[index]}"/>'
+        for index in range(JOINT_COUNT)
+    )

@@ -1,0 +1,58 @@
+"""Conditions that must hold at every control tick."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from .errors import ConditionBroken
+from .simulation import Simulation
+
+Values = Callable[[], Mapping[str, object]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Condition:
+    """One condition under watch."""
+
+    name: str
+    holds: Callable[[], object]
+    values: Values
+
+
+class Monitors:
+    """Watches conditions; remembers what broke, so that a swallowed exception still fails the test at its end."""
+
+    def __init__(self, simulation: Simulation, values: Values) -> None:
+        self._simulation = simulation
+        self._values = values
+        self._watched: list[Condition] = []
+        self.broken: list[ConditionBroken] = []
+        simulation.after_tick.append(self._check)
+
+    def always(self, condition: Callable[[], object], name: str, values: Values | None = None) -> Condition:
+        """Watch `condition` from now on, at every tick. See `Cell.always`."""
+        watched = Condition(name, condition, values or self._values)
+        self._watched.append(watched)
+        self._check()
+        return watched
+
+    def forget(self, condition: Condition) -> None:
+        """Stop watching."""
+        if condition in self._watched:
+            self._watched.remove(condition)
+
+    def verify(self) -> None:
+        """Raise the first condition that broke at any time, if one did."""
+        if self.broken:
+            raise self.broken[0]
+
+    def _check(self) -> None:
+        for condition in self._watched:
+            if not condition.holds():
+                error = ConditionBroken(
+                    name=condition.name, time=self._simulation.time, values=condition.values()
+                )
+                self._watched.remove(condition)
+                self.broken.append(error)
+                raise error

@@ -1,0 +1,49 @@
+"""Sensor noise: a generator per reading, so that one more reading of one sensor does not shift the others."""
+
+from __future__ import annotations
+
+import math
+import random
+
+STANDARD_DEVIATIONS = {
+    "tool position": 0.0001,  # m
+    "tool orientation": 0.02,  # deg
+    "joint angle": 0.01,  # deg
+    "box position": 0.0005,  # m
+    "distance": 0.001,  # m
+    "opening": 0.0001,  # m
+}
+"""Standard deviation of each sensor's normal noise (our choice, typical of such devices)."""
+
+
+class Noise:
+    """Normal noise derived from a seed; every name has its own stream.
+
+    Args:
+        seed: of the round.
+        enabled: False makes every reading exact.
+    """
+
+    def __init__(self, seed: int, *, enabled: bool = True) -> None:
+        self._seed = seed
+        self._enabled = enabled
+        self._streams: dict[str, random.Random] = {}
+
+    def stream(self, name: str) -> random.Random:
+        """The generator of `name`; also used for what is drawn once per round."""
+        if name not in self._streams:
+            self._streams[name] = random.Random(f"{self._seed}/{name}")
+        return self._streams[name]
+
+    def add(self, name: str, value: float) -> float:
+        """`value` plus noise of the sensor `name`, in the sensor's unit."""
+        if not self._enabled:
+            return value
+        return value + self.stream(name).gauss(0.0, STANDARD_DEVIATIONS[name])
+
+    def bounded(self, name: str, deviation: float) -> float:
+        """A normal draw with mean 0, cut at two standard deviations; not switched off with the sensors' noise."""
+        while True:
+            draw = self.stream(name).gauss(0.0, deviation)
+            if math.fabs(draw) <= 2 * deviation:
+                return draw

@@ -1,0 +1,79 @@
+"""The clock and the physics. Every advance of simulated time goes through `Simulation.tick`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import mujoco
+import numpy as np
+
+from . import kinova, model
+from .errors import SimulationDiverged
+from .geometry import Array
+from .scene import Scene
+
+STEPS_PER_TICK = 5
+TICK = STEPS_PER_TICK * model.PHYSICS_STEP
+"""Length of one control tick, s."""
+
+_ABSURD_SPEED = 1e4
+
+
+def _ignore_warning(message: str) -> None:
+    """MuJoCo would write its warnings into a file in the working directory; `tick` finds what matters itself."""
+
+
+class Simulation:
+    """Model and state of the cell, and its time.
+
+    Attributes:
+        setpoints: wanted inputs of all servos for the coming tick, shape (STEPS_PER_TICK, servos): joints in rad, then
+            the fingers' closed path in m. Drivers fill it before each tick.
+        before_tick: called before each tick, in order; they write `setpoints`.
+        after_tick: called after each tick, in order; they may raise.
+    """
+
+    def __init__(self, scene: Scene, grip_force: float) -> None:
+        mujoco.set_mju_user_warning(_ignore_warning)
+        self.model = model.build_cell(scene, grip_force)
+        self.data = mujoco.MjData(self.model)
+        self.data.qpos[: kinova.JOINT_COUNT] = kinova.HOME
+        self.data.ctrl[: kinova.JOINT_COUNT] = kinova.HOME
+        mujoco.mj_forward(self.model, self.data)
+        self.setpoints: Array = np.tile(self.data.ctrl, (STEPS_PER_TICK, 1))
+        self.before_tick: list[Callable[[], None]] = []
+        self.after_tick: list[Callable[[], None]] = []
+        self._ticks = 0
+
+    @property
+    def time(self) -> float:
+        """Simulated time since the cell was made, s."""
+        return self._ticks * TICK
+
+    def tick(self) -> float:
+        """Advance by one control tick (`TICK` s) and return the simulated time, s.
+
+        Raises:
+            SimulationDiverged: the physics gave NaN or absurd speeds.
+            ProtectiveStop, ConditionBroken: from the safety check and the monitors.
+        """
+        for drive in self.before_tick:
+            drive()
+        data, cell_model, step = self.data, self.model, mujoco.mj_step
+        ctrl = data.ctrl
+        for row in self.setpoints:
+            ctrl[:] = row
+            step(cell_model, data)
+        self._ticks += 1
+        fastest = float(np.abs(data.qvel).max())
+        if not math.isfinite(fastest) or fastest > _ABSURD_SPEED or not math.isfinite(float(data.qpos.sum())):
+            raise SimulationDiverged(time=self.time, reason=f"largest speed {fastest:.3g}")
+        for check in self.after_tick:
+            check()
+        return self.time
+
+    def advance(self, seconds: float) -> None:
+        """Run whole ticks until at least `seconds` have passed (rounded to the nearest tick)."""
+        for _ in range(round(seconds / TICK)):
+            self.tick()
