@@ -26,7 +26,7 @@ _DEFAULTS = """
 # The dense Jacobian is right for this size; it also avoids a fault of MuJoCo 4.0.0's sparse factorisation (its
 # issue 3767: wrong accelerations).
 _OPTIONS = f"""
-<option timestep="{PHYSICS_STEP}" integrator="implicitfast" cone="elliptic" impratio="10" jacobian="dense"
+<option timestep="{PHYSICS_STEP}" integrator="implicitfast" cone="elliptic" impratio="100" jacobian="dense"
         solver="Newton" iterations="20" tolerance="1e-8">
   <flag autoreset="disable"/>
 </option>
@@ -80,7 +80,7 @@ def _box_xml(box: Box) -> str:
     return (
         f'<body name="{box.name}" pos="{_numbers((x, y, z + half))}" quat="{math.cos(yaw)} 0 0 {math.sin(yaw)}">'
         f'<freejoint name="{box.name}"/>'
-        f'<geom name="{box.name}" class="box" type="box" size="{half} {half} {half}" mass="{box.mass}" priority="1" '
+        f'<geom name="{box.name}" class="box" type="box" size="{half} {half} {half}" mass="{box.mass}" priority="1" solref="0.004 1" solimp="0.95 0.99 0.001" '
         f'friction="{box.friction} 0.005 0.0001" rgba="{_numbers(rgba)}"/></body>'
     )
 
