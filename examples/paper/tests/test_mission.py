@@ -1,0 +1,92 @@
+"""The steps of the published scenario.
+
+They say "cm" but compare metres, and they round before they compare: both as published (see the README).
+"""
+
+from __future__ import annotations
+
+import mission
+import pytest
+from pytest_bdd import given, parsers, scenarios, then, when
+from sensors import box_end_position, box_start_position, robot_home_position
+
+from mutabot.cells import Cell, Position
+
+HOME = Position(0.5761017, 0.0021496, 0.4340113)
+ON_CONVEYOR = Position(0.55, 0.2, 1.0)
+TARGETS = {
+    "red": Position(-0.3252520, 0.2205990, 0.7675002),
+    "blue": Position(-0.3189651, 0.4354883, 0.7683375),
+}
+
+scenarios("features/mission.feature")
+
+
+@pytest.fixture
+def target(cell: Cell) -> Position:
+    """Where the box of this round belongs; world frame, m."""
+    return TARGETS[cell.sensors.colour()]
+
+
+def is_within(expected: float, reading: float, threshold: float) -> bool:
+    return round(abs(expected - reading), 2) <= threshold
+
+
+@given("the system is initialised")
+def system_is_initialised(cell: Cell) -> None:
+    assert cell.time >= 0.0
+
+
+@given("the conveyor is initialised")
+def conveyor_is_initialised(cell: Cell) -> None:
+    assert cell.sensors.colour_number() in range(1, 11)
+
+
+@given(parsers.parse("the robot is at home within {threshold:f} cm in x"))
+def robot_is_at_home_in_x(threshold: float) -> None:
+    assert is_within(HOME.x, robot_home_position().x, threshold)
+
+
+@given(parsers.parse("the robot is at home within {threshold:f} cm in y"))
+def robot_is_at_home_in_y(threshold: float) -> None:
+    assert is_within(HOME.y, robot_home_position().y, threshold)
+
+
+@given(parsers.parse("the robot is at home within {threshold:f} cm in z"))
+def robot_is_at_home_in_z(threshold: float) -> None:
+    assert is_within(HOME.z, robot_home_position().z, threshold)
+
+
+@given(parsers.parse("the box is on the conveyor within {threshold:f} cm in x"))
+def box_is_on_conveyor_in_x(threshold: float) -> None:
+    assert is_within(ON_CONVEYOR.x, box_start_position().x, threshold)
+
+
+@given(parsers.parse("the box is on the conveyor within {threshold:f} cm in y"))
+def box_is_on_conveyor_in_y(threshold: float) -> None:
+    assert is_within(ON_CONVEYOR.y, box_start_position().y, threshold)
+
+
+@given(parsers.parse("the box is on the conveyor within {threshold:f} cm in z"))
+def box_is_on_conveyor_in_z(threshold: float) -> None:
+    assert is_within(ON_CONVEYOR.z, box_start_position().z, threshold)
+
+
+@when("the program has finished")
+def program_has_finished(cell: Cell) -> None:
+    mission.run()
+
+
+@then(parsers.parse("the box is at its target within {threshold:f} cm in x"))
+def box_is_at_target_in_x(threshold: float, target: Position) -> None:
+    assert is_within(target.x, box_end_position().x, threshold)
+
+
+@then(parsers.parse("the box is at its target within {threshold:f} cm in y"))
+def box_is_at_target_in_y(threshold: float, target: Position) -> None:
+    assert is_within(target.y, box_end_position().y, threshold)
+
+
+@then(parsers.parse("the box is at its target within {threshold:f} cm in z"))
+def box_is_at_target_in_z(threshold: float, target: Position) -> None:
+    assert is_within(target.z, box_end_position().z, threshold)
