@@ -1,0 +1,170 @@
+"""Comparing how a test ended as a mutant with how it ended as the original."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from mutabot.model import Probe
+
+#: greatest difference of two equal numbers where the vocabulary names no probe
+DEFAULT_TOLERANCE = 1e-6
+#: multiples of its tolerance that a difference counts which is not one of numbers
+OTHER_WORLD = 1e9
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One call in a trace, comparable between processes.
+
+    Attributes:
+        key: where and what, such as ``mission.py:12 Arm.move_by``.
+        written: values it wrote, by quantity or in a fixed order.
+        read: values it read, likewise.
+    """
+
+    key: str
+    written: Any = None
+    read: Any = None
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """What was seen of one test: its calls in order, and the probes at its end.
+
+    Attributes:
+        events: the calls.
+        probes: values by ``target.part``.
+        truncated: whether the list of calls was cut off.
+    """
+
+    events: Sequence[Event] = ()
+    probes: Mapping[str, Any] = field(default_factory=dict)
+    truncated: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """How far a mutant's test is from the original's.
+
+    Attributes:
+        indistinguishable: whether calls and probes are equal within the tolerance.
+        distance: greatest difference of a probe, in multiples of its tolerance (``OTHER_WORLD`` for one
+            that is not of numbers); None without probes.
+        divergence: one line per difference, worst probe first, then the first call that differs.
+    """
+
+    indistinguishable: bool
+    distance: float | None
+    divergence: tuple[str, ...]
+
+
+def compare(original: Observation, mutant: Observation, probes: Sequence[Probe] = ()) -> Comparison:
+    """Compare a mutant's test with the original's.
+
+    Numbers are equal when they differ by no more than their probe's tolerance; values in the trace, when
+    they differ by no more than the greatest tolerance of any probe. All else is compared by equality.
+    Two cut-off traces are compared as far as they go.
+    """
+    probe_lines = _probe_differences(original.probes, mutant.probes, probes)
+    tolerance = max((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
+    trace_line = _first_difference(original, mutant, tolerance)
+    distances = [distance for distance, _ in probe_lines]
+    different = [line for distance, line in probe_lines if distance > 1.0]
+    lines = [*different, *([trace_line] if trace_line else [])]
+    return Comparison(not lines, max(distances) if distances else None, tuple(lines))
+
+
+def farthest(comparisons: Sequence[Comparison]) -> Comparison:
+    """One comparison for several tests of the same mutant: the worst of them, all of them equal or not."""
+    if not comparisons:
+        return Comparison(True, None, ())
+    ranked = sorted(
+        comparisons, key=lambda one: (one.distance or 0.0, not one.indistinguishable), reverse=True
+    )
+    distances = [one.distance for one in comparisons if one.distance is not None]
+    lines = dict.fromkeys(line for one in ranked for line in one.divergence)
+    together = all(one.indistinguishable for one in comparisons)
+    return Comparison(together, max(distances) if distances else None, tuple(lines))
+
+
+def _probe_differences(
+    original: Mapping[str, Any], mutant: Mapping[str, Any], probes: Sequence[Probe]
+) -> list[tuple[float, str]]:
+    found = []
+    for key in dict.fromkeys([*original, *mutant]):
+        before, after = original.get(key), mutant.get(key)
+        distance = _distance(before, after) / _tolerance(key, probes)
+        found.append((min(distance, OTHER_WORLD), f"{_short(key)}: {_change(before, after)}"))
+    return sorted(found, key=lambda item: -item[0])
+
+
+def _tolerance(key: str, probes: Sequence[Probe]) -> float:
+    fitting = [probe for probe in probes if key == probe.target or _lies_below(key, probe.target)]
+    if not fitting:
+        return DEFAULT_TOLERANCE
+    # A tolerance of nothing is meant as "exactly equal".
+    return max(max(fitting, key=lambda probe: len(probe.target)).tolerance, 1e-300)
+
+
+def _lies_below(key: str, target: str) -> bool:
+    return key.startswith(target) and key[len(target)] in ".["
+
+
+def _distance(before: Any, after: Any) -> float:
+    """Absolute difference of two numbers or of the worst pair in two lists; infinite if not comparable."""
+    if _is_number(before) and _is_number(after):
+        if before == after or (math.isnan(before) and math.isnan(after)):
+            return 0.0
+        difference = abs(float(before) - float(after))
+        return math.inf if math.isnan(difference) else difference
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        keys = {*before, *after}
+        return max((_distance(before.get(key), after.get(key)) for key in keys), default=0.0)
+    if isinstance(before, list | tuple) and isinstance(after, list | tuple) and len(before) == len(after):
+        return max((_distance(*pair) for pair in zip(before, after, strict=True)), default=0.0)
+    return 0.0 if before == after else math.inf
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _first_difference(original: Observation, mutant: Observation, tolerance: float) -> str | None:
+    for index, (before, after) in enumerate(zip(original.events, mutant.events, strict=False), start=1):
+        if before.key != after.key:
+            return f"call {index}: {after.key} instead of {before.key}"
+        if _distance(before.written, after.written) > tolerance:
+            return f"call {index}, {after.key}: wrote {_change(before.written, after.written)}"
+        if _distance(before.read, after.read) > tolerance:
+            return f"call {index}, {after.key}: read {_change(before.read, after.read)}"
+    more = len(mutant.events) - len(original.events)
+    if more == 0 or original.truncated or mutant.truncated:
+        return None
+    return f"{abs(more)} {'calls' if abs(more) > 1 else 'call'} {'more' if more > 0 else 'fewer'}"
+
+
+def _short(key: str) -> str:
+    return key.rpartition(":")[2]
+
+
+def _change(before: Any, after: Any) -> str:
+    text = f"{value_text(after)} instead of {value_text(before)}"
+    if _is_number(before) and _is_number(after):
+        return f"{text} (off by {abs(float(after) - float(before)):.3g})"
+    return text
+
+
+def value_text(value: Any) -> str:
+    """A value as divergence lines print it: short numbers with a true minus sign."""
+    if value is None:
+        return "nothing"
+    if _is_number(value):
+        return f"{value:.4g}".replace("-", "−")
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key}: {value_text(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "(" + ", ".join(value_text(item) for item in value) + ")"
+    return str(value)

@@ -1,0 +1,344 @@
+"""The journal: one SQLite file with the plan, the baseline and every outcome of a campaign.
+
+One process writes, any number read, also while it writes and after it was killed. Each record is on its
+own and committed when it is added, so that a killed campaign loses nothing that was reported. All else
+(reports, resuming, comparing) reads from here.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import TracebackType
+from typing import Any, Self
+
+from mutabot.errors import JournalError
+from mutabot.model import LeftOut, Mutant, Outcome, TestEnd, Vocabulary, from_data, to_data
+
+from .database import connect, connect_to_read, guarded
+from .lock import WriterLock
+
+SCHEMA_VERSION = 1
+#: where the journal of the last campaign but one is kept, beside the journal
+PREVIOUS = "journal.previous.sqlite"
+
+_SCHEMA = """
+CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE test (
+    round INTEGER NOT NULL, repetition INTEGER NOT NULL, test TEXT NOT NULL, outcome TEXT NOT NULL,
+    data TEXT NOT NULL, PRIMARY KEY (round, repetition, test));
+CREATE TABLE mutant (number INTEGER NOT NULL, id TEXT PRIMARY KEY, data TEXT NOT NULL);
+CREATE TABLE left_out (id TEXT NOT NULL, reason TEXT NOT NULL, data TEXT NOT NULL);
+CREATE TABLE source (file TEXT PRIMARY KEY, text TEXT NOT NULL);
+CREATE TABLE outcome (
+    mutant TEXT NOT NULL, round INTEGER NOT NULL, verdict TEXT NOT NULL, "by" TEXT, data TEXT NOT NULL);
+CREATE INDEX outcome_of ON outcome (mutant, round);
+CREATE TABLE control (
+    test_file TEXT NOT NULL, control TEXT NOT NULL, ok INTEGER NOT NULL, detail TEXT NOT NULL);
+"""
+# Keys of meta that are the journal's own; the others are the campaign's.
+_VERSION_KEY, _FINISHED_KEY = "journal:version", "journal:finished"
+
+
+@dataclass(frozen=True, slots=True)
+class BaselineTest:
+    """One test of the baseline.
+
+    Attributes:
+        round: 0-based round.
+        repetition: 0-based repetition of that round.
+        test: what the process reported.
+    """
+
+    round: int
+    repetition: int
+    test: TestEnd
+
+
+@dataclass(frozen=True, slots=True)
+class ControlEnd:
+    """How a control mutant ended.
+
+    Attributes:
+        test_file: the test file it was run for.
+        control: ``identity`` or ``fatal``.
+        ok: whether it ended as it must.
+        detail: one line about how it ended.
+    """
+
+    test_file: str
+    control: str
+    ok: bool
+    detail: str
+
+
+class Journal:
+    """The record of one campaign; use as a context manager.
+
+    Every method raises JournalError when the file cannot be read or written.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        connection: sqlite3.Connection,
+        *,
+        lock: WriterLock | None = None,
+        copy: TemporaryDirectory[str] | None = None,
+    ) -> None:
+        self.path = path
+        self._connection, self._lock, self._copy = connection, lock, copy
+
+    @classmethod
+    def create(cls, path: Path, *, meta: Mapping[str, Any]) -> Journal:
+        """Begin the journal of a new campaign; an older one is kept as ``journal.previous.sqlite``.
+
+        Reports understand these keys of ``meta``, all optional: ``mutabot``, ``python``, ``versions`` (name
+        to version), ``root``, ``seed``, ``rounds``, ``engine``, ``jobs``, ``started``, ``vocabulary`` (what
+        ``to_data`` makes of one).
+        """
+        with guarded(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            lock = WriterLock.take(path)
+            try:
+                _keep_previous(path)
+                journal = cls(path, connect(path), lock=lock)
+            except BaseException:
+                lock.release()
+                raise
+            with journal._closed_on_error():
+                journal._begin(meta)
+        return journal
+
+    @classmethod
+    def open(cls, path: Path, *, writable: bool = False) -> Journal:
+        """Open an existing journal, to read it or (``writable``) to go on with it."""
+        if not path.is_file():
+            raise JournalError(f"{path}: there is no journal yet; `mutabot run` writes it", path=str(path))
+        with guarded(path):
+            journal = cls._open_to_write(path) if writable else cls._open_to_read(path)
+            with journal._closed_on_error():
+                journal._check_version()
+        return journal
+
+    @classmethod
+    def _open_to_read(cls, path: Path) -> Journal:
+        connection, copy = connect_to_read(path)
+        return cls(path, connection, copy=copy)
+
+    @classmethod
+    def _open_to_write(cls, path: Path) -> Journal:
+        lock = WriterLock.take(path)
+        try:
+            return cls(path, connect(path), lock=lock)
+        except BaseException:
+            lock.release()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file; the lock of a writer is given back."""
+        self._connection.close()
+        if self._lock is not None:
+            self._lock.release()
+        if self._copy is not None:
+            self._copy.cleanup()
+
+    # What the campaign was and how it ended
+
+    def meta(self) -> dict[str, Any]:
+        """What the campaign said about itself."""
+        rows = self._rows("SELECT key, value FROM meta")
+        return {key: json.loads(value) for key, value in rows if not key.startswith("journal:")}
+
+    def set_meta(self, key: str, value: Any) -> None:
+        """Add or replace one fact about the campaign."""
+        with guarded(self.path):
+            self._put(key, value)
+
+    @property
+    def vocabulary(self) -> Vocabulary | None:
+        """The vocabulary of the campaign, if it was written down."""
+        data = self.meta().get("vocabulary")
+        return from_data(Vocabulary, data) if data is not None else None
+
+    def finish(self, reason: str) -> None:
+        """Note that the campaign has ended: ``complete``, ``interrupted`` or why it stopped."""
+        with guarded(self.path):
+            self._put(_FINISHED_KEY, reason)
+
+    @property
+    def finished(self) -> str | None:
+        """Why the campaign ended; None while it runs and after it was killed."""
+        rows = self._rows("SELECT value FROM meta WHERE key = ?", _FINISHED_KEY)
+        return str(json.loads(rows[0][0])) if rows else None
+
+    def resume(self) -> None:
+        """Note that a campaign that had ended goes on."""
+        self._write("DELETE FROM meta WHERE key = ?", _FINISHED_KEY)
+
+    # The baseline
+
+    def add_test(self, round: int, repetition: int, test: TestEnd) -> None:
+        """Add one test of the baseline; the same test again replaces it."""
+        self._write(
+            "INSERT OR REPLACE INTO test VALUES (?, ?, ?, ?, ?)",
+            round, repetition, test.test, test.outcome, _dump(test),
+        )  # fmt: skip
+
+    def tests(self) -> list[BaselineTest]:
+        """The tests of the baseline in the order they were added."""
+        rows = self._rows("SELECT round, repetition, data FROM test ORDER BY rowid")
+        return [
+            BaselineTest(round, repetition, from_data(TestEnd, json.loads(data)))
+            for round, repetition, data in rows
+        ]
+
+    # The plan
+
+    def set_plan(
+        self,
+        mutants: Iterable[Mutant],
+        left_out: Iterable[LeftOut],
+        *,
+        sources: Mapping[str, str] | None = None,
+    ) -> None:
+        """Write down the plan, whole or not at all; an older plan is replaced.
+
+        ``sources`` holds the text of the files that mutants stand in, by their name in the spans, so that
+        reports show what was mutated and not what became of it since.
+        """
+        with guarded(self.path), self._transaction() as execute:
+            for table in ("mutant", "left_out", "source"):
+                execute(f"DELETE FROM {table}")
+            for mutant in mutants:
+                execute("INSERT INTO mutant VALUES (?, ?, ?)", mutant.number, mutant.id, _dump(mutant))
+            for item in left_out:
+                execute("INSERT INTO left_out VALUES (?, ?, ?)", item.id, item.reason, _dump(item))
+            for file, text in (sources or {}).items():
+                execute("INSERT INTO source VALUES (?, ?)", file, text)
+
+    def mutants(self) -> list[Mutant]:
+        """The planned mutants by number."""
+        return self._read(Mutant, "SELECT data FROM mutant ORDER BY number, rowid")
+
+    def left_out(self) -> list[LeftOut]:
+        """What the plan leaves out, in its order."""
+        return self._read(LeftOut, "SELECT data FROM left_out ORDER BY rowid")
+
+    def source(self, file: str) -> str | None:
+        """The text of a mutated file at the time of the campaign, or None if it was not written down."""
+        rows = self._rows("SELECT text FROM source WHERE file = ?", file)
+        return str(rows[0][0]) if rows else None
+
+    # Outcomes
+
+    def add_outcome(self, outcome: Outcome) -> None:
+        """Add one outcome; a later one of the same mutant and round takes its place."""
+        self._write(
+            "INSERT INTO outcome VALUES (?, ?, ?, ?, ?)",
+            outcome.mutant, outcome.round, outcome.verdict.value,
+            outcome.by.value if outcome.by else None, _dump(outcome),
+        )  # fmt: skip
+
+    def outcomes(self) -> list[Outcome]:
+        """The last outcome of each (mutant, round), in the order they came."""
+        last = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
+        return self._read(Outcome, f"SELECT data FROM outcome WHERE rowid IN ({last}) ORDER BY rowid")
+
+    # Controls
+
+    def add_control(self, test_file: str, control: str, ok: bool, detail: str = "") -> None:
+        """Add the end of one control mutant."""
+        self._write("INSERT INTO control VALUES (?, ?, ?, ?)", test_file, control, int(ok), detail)
+
+    def controls(self) -> list[ControlEnd]:
+        """The controls in the order they were added."""
+        rows = self._rows("SELECT test_file, control, ok, detail FROM control ORDER BY rowid")
+        return [ControlEnd(file, control, bool(ok), detail) for file, control, ok, detail in rows]
+
+    # Plumbing
+
+    def _put(self, key: str, value: Any) -> None:
+        self._connection.execute("INSERT OR REPLACE INTO meta VALUES (?, ?)", (key, _dump(value)))
+
+    def _write(self, statement: str, *values: Any) -> None:
+        with guarded(self.path):
+            self._connection.execute(statement, values)
+
+    def _rows(self, statement: str, *values: Any) -> list[Any]:
+        with guarded(self.path):
+            return self._connection.execute(statement, values).fetchall()
+
+    def _read(self, kind: type[Any], statement: str) -> list[Any]:
+        return [from_data(kind, json.loads(data)) for (data,) in self._rows(statement)]
+
+    def _begin(self, meta: Mapping[str, Any]) -> None:
+        with self._transaction() as execute:
+            for statement in _SCHEMA.split(";"):
+                execute(statement)
+            self._put(_VERSION_KEY, SCHEMA_VERSION)
+            for key, value in meta.items():
+                self._put(key, value)
+
+    @contextmanager
+    def _closed_on_error(self) -> Iterator[None]:
+        try:
+            yield
+        except BaseException:
+            self.close()
+            raise
+
+    @contextmanager
+    def _transaction(self) -> Iterator[Any]:
+        self._connection.execute("BEGIN IMMEDIATE")
+        try:
+            yield lambda statement, *values: self._connection.execute(statement, values)
+        except BaseException:
+            if self._connection.in_transaction:  # SQLite itself rolls back when the disk is full
+                self._connection.execute("ROLLBACK")
+            raise
+        self._connection.execute("COMMIT")
+
+    def _check_version(self) -> None:
+        path = str(self.path)
+        tables = {name for (name,) in self._rows("SELECT name FROM sqlite_master WHERE type = 'table'")}
+        if not {"meta", "outcome"} <= tables:
+            raise JournalError(f"{path} is a database, but not a journal of mutabot", path=path)
+        rows = self._rows("SELECT value FROM meta WHERE key = ?", _VERSION_KEY)
+        found = json.loads(rows[0][0]) if rows else None
+        if found != SCHEMA_VERSION:
+            raise JournalError(
+                f"{path} was written by another version of mutabot (journal version {found}, this one reads "
+                f"{SCHEMA_VERSION}); run the campaign again",
+                path=path,
+            )
+
+
+def _dump(value: Any) -> str:
+    return json.dumps(to_data(value), ensure_ascii=False, default=str)
+
+
+def _keep_previous(path: Path) -> None:
+    if not path.exists():
+        return
+    if path.stat().st_size and not path.read_bytes()[:16].startswith(b"SQLite format 3"):
+        raise JournalError(f"{path} is in the way: it is not a journal of mutabot", path=str(path))
+    for suffix in ("", "-wal", "-shm"):
+        old = path.with_name(path.name + suffix)
+        kept = path.with_name(PREVIOUS + suffix)
+        kept.unlink(missing_ok=True)
+        if old.exists():
+            old.replace(kept)

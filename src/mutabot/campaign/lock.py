@@ -1,0 +1,53 @@
+"""The lock that keeps a second campaign out of the same journal."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import time
+from pathlib import Path
+
+from mutabot.errors import JournalError
+
+
+class WriterLock:
+    """Held by the one process that writes a journal; the system gives it back when that process dies."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor: int | None = descriptor
+
+    @classmethod
+    def take(cls, journal: Path) -> WriterLock:
+        """Take the lock of a journal. Raises JournalError if another process holds it."""
+        descriptor = os.open(journal.with_name(journal.name + ".lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+        # A reader that looks whether somebody writes holds it for a moment, hence more than one try.
+        for _ in range(10):
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                time.sleep(0.02)
+            else:
+                return cls(descriptor)
+        os.close(descriptor)
+        raise JournalError(f"{journal} is being written by another `mutabot run`", path=str(journal))
+
+    def release(self) -> None:
+        """Give the lock back; a second time does nothing."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
+
+
+def is_written(journal: Path) -> bool:
+    """Whether some process writes this journal now."""
+    try:
+        descriptor = os.open(journal.with_name(journal.name + ".lock"), os.O_RDONLY | os.O_CLOEXEC)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(descriptor)
+    return False
