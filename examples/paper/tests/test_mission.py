@@ -1,23 +1,17 @@
 """The steps of the published scenario.
 
-They say "cm" but compare metres, and they round before they compare: both as published (see the README).
+They say "cm" but compare metres, as published (see the README).
 """
 
 from __future__ import annotations
 
 import mission
 import pytest
+from expected import HOME, ON_CONVEYOR, TARGETS, is_within
 from pytest_bdd import given, parsers, scenarios, then, when
 from sensors import box_end_position, box_start_position, robot_home_position
 
 from mutabot.cells import Cell, Position
-
-HOME = Position(0.5761017, 0.0021496, 0.4340113)
-ON_CONVEYOR = Position(0.55, 0.2, 1.0)
-TARGETS = {
-    "red": Position(-0.3252520, 0.2205990, 0.7675002),
-    "blue": Position(-0.3189651, 0.4354883, 0.7683375),
-}
 
 scenarios("features/mission.feature")
 
@@ -26,10 +20,6 @@ scenarios("features/mission.feature")
 def target(cell: Cell) -> Position:
     """Where the box of this round belongs; world frame, m."""
     return TARGETS[cell.sensors.colour()]
-
-
-def is_within(expected: float, reading: float, threshold: float) -> bool:
-    return round(abs(expected - reading), 2) <= threshold
 
 
 @given("the system is initialised")

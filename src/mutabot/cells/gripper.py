@@ -65,7 +65,10 @@ class Gripper:
         """
         if not isinstance(position, (int, float)) or isinstance(position, bool) or not 0.0 <= position <= 1.0:
             raise BadArgument(f"Expected 0 <= position <= 1 but got position={position!r}")
-        self._target = position * robotiq.STROKE
+        target = position * robotiq.STROKE
+        if target != self._target:
+            self._target = target
+            self._setpoint = self._closed()  # blocked fingers start from where they are, not from where they wanted
         if wait:
             for _ in range(_LONGEST_TICKS):
                 self._simulation.tick()

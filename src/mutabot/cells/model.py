@@ -80,8 +80,18 @@ def _box_xml(box: Box) -> str:
     return (
         f'<body name="{box.name}" pos="{_numbers((x, y, z + half))}" quat="{math.cos(yaw)} 0 0 {math.sin(yaw)}">'
         f'<freejoint name="{box.name}"/>'
-        f'<geom name="{box.name}" class="box" type="box" size="{half} {half} {half}" mass="{box.mass}" priority="1" solref="0.004 1" solimp="0.95 0.99 0.001" '
+        f'<geom name="{box.name}" class="box" type="box" size="{half} {half} {half}" mass="{box.mass}" priority="1" solref="0.015 1" solimp="0.95 0.99 0.001" '
         f'friction="{box.friction} 0.005 0.0001" rgba="{_numbers(rgba)}"/></body>'
+    )
+
+
+def _grip_xml(box: Box) -> str:
+    # Stiffer than other contacts: what is gripped must turn with the fingers. As stiff as this, a falling box would
+    # bounce, for numerical reasons.
+    return "".join(
+        f'<pair geom1="{pad}" geom2="{box.name}" condim="3" solref="0.004 1" solimp="0.95 0.99 0.001" '
+        f'friction="{box.friction} {box.friction} 0.005 0.0001 0.0001"/>'
+        for pad in ("left pad", "right pad")
     )
 
 
@@ -101,6 +111,7 @@ def cell_xml(scene: Scene, grip_force: float) -> str:
   {things}
 </worldbody>
 <tendon>{robotiq.tendon_xml()}</tendon>
+<contact>{"".join(_grip_xml(box) for box in scene.boxes)}</contact>
 <equality>{robotiq.coupling_xml()}</equality>
 <actuator>{kinova.actuators_xml()}{robotiq.actuator_xml(grip_force)}</actuator>
 </mujoco>"""
