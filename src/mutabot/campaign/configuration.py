@@ -1,0 +1,258 @@
+"""The configuration: ``[tool.mutabot]`` in ``pyproject.toml``, or ``mutabot.toml``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+from mutabot.errors import ConfigurationError, nearest_name
+from mutabot.vocabulary.document import Document
+from mutabot.vocabulary.explain import Check, raise_errors
+from mutabot.vocabulary.lines import Place
+
+_PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
+_INIT = "run `mutabot init` to propose one"
+_MEMORY = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
+_PREFIXES = {"": 0, "k": 1, "m": 2, "g": 3, "t": 4}
+_LEAST_MEMORY = 100_000_000
+_WILD = re.compile(r"[*?\[]")
+
+
+def parse_memory(value: Any) -> Any:
+    """Bytes in a text such as ``4 GB`` or ``512 MiB``; whole numbers are bytes already."""
+    if isinstance(value, str):
+        match = _MEMORY.fullmatch(value)
+        if match is None:
+            raise _fault(f"{value!r} is no amount of memory; write it like '4 GB'")
+        unit = match[2].lower().removesuffix("b")
+        base = 1024 if unit.endswith("i") else 1000
+        value = round(float(match[1]) * base ** _PREFIXES[unit.removesuffix("i")])
+    if isinstance(value, int) and not isinstance(value, bool) and value < _LEAST_MEMORY:
+        raise _fault(f"{value} bytes are too little for Python and pytest; write it like '4 GB'")
+    return value
+
+
+def _fault(text: str) -> PydanticCustomError:
+    return PydanticCustomError("mutabot", "{text}", {"text": text})
+
+
+_Texts = Annotated[tuple[str, ...], Field(strict=False)]
+_SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
+_Share = Annotated[float, Field(ge=0, le=1)]
+
+
+class Settings(BaseModel):
+    """The keys a user can write, as documented in ``Configuration``."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+    program: _SomeTexts
+    oracle: _Texts = ()
+    tests: _SomeTexts = ("tests",)
+    vocabulary: _SomeTexts
+    rounds: Annotated[int, Field(ge=1)] = 1
+    seed: Annotated[int, Field(ge=0)] = 1
+    jobs: Annotated[int, Field(ge=1)] | None = None
+    selection: str | None = None
+    timeout_factor: Annotated[float, Field(gt=1)] = 10.0
+    timeout_seconds: Annotated[float, Field(gt=0)] = 60.0
+    memory: Annotated[int, BeforeValidator(parse_memory)] = 4_000_000_000
+    unstable_limit: _Share = 0.1
+    timeout_limit: _Share = 1.0
+    min_score: Annotated[float, Field(ge=0, le=100)] | None = None
+    pytest_args: _Texts = ()
+
+
+class Configuration(Settings):
+    """What a campaign is to do.
+
+    Attributes:
+        program: files and folders with the robot program, relative to ``root``, sorted, globs expanded.
+        oracle: the same for readings that the tests' own checks take.
+        tests: pytest arguments that say which tests there are.
+        vocabulary: vocabulary files, or names of shipped vocabularies.
+        rounds: repetitions, each with its own seeds.
+        seed: the campaign's seed.
+        jobs: processes at a time; None for one per core.
+        selection: file with the ids of the mutants to run, relative to ``root``; None for all.
+        timeout_factor: how many times the baseline's operations and simulated time a mutant may use.
+        timeout_seconds: wall-clock time in seconds that every test gets at least.
+        memory: address space of a worker, in bytes.
+        unstable_limit, timeout_limit: fraction of mutants above which a run fails.
+        min_score: score in percent below which a run fails; None for no limit.
+        pytest_args: further pytest arguments.
+        root: absolute path of the project.
+        file: the file it was read from, relative to ``root``.
+    """
+
+    root: Path
+    file: str
+
+
+def load_configuration(folder: Path) -> Configuration:
+    """The configuration of the project in ``folder``.
+
+    Raises ConfigurationError or UnknownNameError: the first mistake, with a message that tells about all.
+    """
+    document, place = _find(folder)
+    raw = _child(document.data, place)
+    check = Check(document)
+    if document.file == _OWN and isinstance(raw.get("tool"), dict) and "mutabot" in raw["tool"]:
+        raise document.error(
+            ("tool", "mutabot"), f"in {_OWN} the keys stand at the top, without [tool.mutabot]"
+        )
+    settings = check.table(Settings, raw, place, salvage=True)
+    if settings is None:
+        raise_errors(check.errors)
+        raise AssertionError("a table without a mistake is refused")
+    paths = _Paths(check, place, folder.resolve())
+    program, oracle = paths.sources("program", settings.program), paths.sources("oracle", settings.oracle)
+    paths.refuse_overlap(program, oracle)
+    paths.check_tests(settings.tests, "tests" in raw)
+    paths.check_rest(settings)
+    raise_errors(check.errors)
+    changed = {"program": program, "oracle": oracle, "root": folder.resolve(), "file": document.file}
+    return Configuration(**{**dict(settings), **changed})
+
+
+def _find(folder: Path) -> tuple[Document, Place]:
+    """The document with the configuration, and where in it the keys stand."""
+    if not folder.is_dir():
+        raise ConfigurationError("there is no such folder", file=str(folder))
+    found: list[tuple[Document, Place]] = []
+    hint = ""
+    if (folder / _PYPROJECT).exists():
+        document = Document.read(folder / _PYPROJECT, _PYPROJECT, ConfigurationError)
+        tool = document.data.get("tool", {})
+        if isinstance(tool, dict) and "mutabot" in tool:
+            found.append((document, ("tool", "mutabot")))
+        near = nearest_name("mutabot", tool) if isinstance(tool, dict) else None
+        hint = f" (there is [tool.{near}]; did you mean [tool.mutabot]?)" if near else ""
+    if (folder / _OWN).exists():
+        found.append((Document.read(folder / _OWN, _OWN, ConfigurationError), ()))
+    if not found:
+        problem = f"no [tool.mutabot] in {_PYPROJECT} and no {_OWN} in {folder}{hint}; {_INIT}"
+        raise ConfigurationError(problem)
+    if len(found) > 1:
+        line = found[0][0].line(("tool", "mutabot"))
+        problem = f"there is also {_OWN}; keep the configuration in one of the two"
+        raise ConfigurationError(problem, file=_PYPROJECT, key="tool.mutabot", line=line)
+    return found[0]
+
+
+def _child(data: dict[str, Any], place: Place) -> Any:
+    node: Any = data
+    for part in place:
+        node = node[part]
+    return node
+
+
+class _Paths:
+    """The paths of a configuration: inside the project, and really there."""
+
+    def __init__(self, check: Check, place: Place, root: Path) -> None:
+        self.check, self.place, self.root = check, place, root
+
+    def sources(self, key: str, names: tuple[str, ...]) -> tuple[str, ...]:
+        """Files and folders, relative to the root, sorted; globs expanded."""
+        found: set[str] = set()
+        for index, name in enumerate(names):
+            where = (*self.place, key, index)
+            if not self.is_inside(where, name):
+                continue
+            if _WILD.search(name) and not (self.root / name).exists():
+                found.update(self._expanded(where, name))
+            elif self.exists(where, name):
+                found.add(PurePosixPath(name).as_posix())
+        return tuple(sorted(found))
+
+    def is_inside(self, where: Place, name: str) -> bool:
+        """Whether a path lies in the project; if not, that is noted."""
+        path = PurePosixPath(name)
+        if not name.strip():
+            self.check.error(where, "is an empty path")
+        elif "\0" in name:
+            self.check.error(where, f"{name!r} is no path")
+        elif path.is_absolute() or name.startswith("~"):
+            self.check.error(where, f"{name!r} must be relative to the project's folder")
+        elif ".." in path.parts or not (self.root / path).resolve().is_relative_to(self.root):
+            self.check.error(where, f"{name!r} leads out of the project's folder")
+        else:
+            return True
+        return False
+
+    def exists(self, where: Place, name: str) -> bool:
+        """Whether there is such a file or folder; if not, that is noted."""
+        if (self.root / name).exists():
+            return True
+        near = self._nearest(name)
+        self.check.error(where, f"there is no {name!r}{f'; did you mean {near!r}?' if near else ''}")
+        return False
+
+    def refuse_overlap(self, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:
+        """Note each part of the oracle that is a part of the program as well."""
+        for path in oracle:
+            for other in program:
+                shared = PurePosixPath(path), PurePosixPath(other)
+                if shared[0].is_relative_to(shared[1]) or shared[1].is_relative_to(shared[0]):
+                    text = f"{path!r} overlaps program ({other!r}); a call is the program's or the tests'"
+                    self.check.error((*self.place, "oracle"), text)
+
+    def check_tests(self, tests: tuple[str, ...], given: bool) -> None:
+        """Note each path among pytest's arguments that does not exist."""
+        for index, argument in enumerate(tests):
+            after_option = index > 0 and tests[index - 1].startswith("-")
+            if argument.startswith("-") or after_option:
+                continue
+            where = (*self.place, "tests", *((index,) if given else ()))
+            name = argument.partition("::")[0]
+            if not self.is_inside(where, name) or (self.root / name).exists():
+                continue
+            if given:
+                self.exists(where, name)
+            else:
+                self.check.error(
+                    where, f'there is no folder {name!r}; say where the tests are: tests = ["…"]'
+                )
+
+    def check_rest(self, settings: Settings) -> None:
+        """Note what is wrong with the vocabulary's and the selection's paths."""
+        for index, name in enumerate(settings.vocabulary):
+            self.is_inside((*self.place, "vocabulary", index), name)
+        where = (*self.place, "selection")
+        if settings.selection is not None and self.is_inside(where, settings.selection):
+            self.exists(where, settings.selection)
+
+    def _expanded(self, where: Place, pattern: str) -> list[str]:
+        try:
+            matches = list(self.root.glob(pattern))
+        except ValueError as error:
+            self.check.error(where, f"{pattern!r} is no pattern of paths: {error}")
+            return []
+        relative = [match.relative_to(self.root) for match in matches]
+        found = [path.as_posix() for path in relative if _is_source(self.root, path)]
+        if not found:
+            what = "no Python file or folder" if relative else "nothing"
+            self.check.error(where, f"{pattern!r} matches {what}")
+        return found
+
+    def _nearest(self, name: str) -> str | None:
+        folder = (self.root / name).parent
+        while not folder.is_dir():
+            folder = folder.parent
+        known = [path.relative_to(self.root).as_posix() for path in _visible(folder)]
+        return nearest_name(name, known)
+
+
+def _is_source(root: Path, path: Path) -> bool:
+    hidden = any(part.startswith(".") or part == "__pycache__" for part in path.parts)
+    return not hidden and (path.suffix == ".py" or (root / path).is_dir())
+
+
+def _visible(folder: Path) -> Iterator[Path]:
+    return (path for path in sorted(folder.iterdir()) if not path.name.startswith((".", "__")))

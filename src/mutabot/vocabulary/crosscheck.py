@@ -1,0 +1,88 @@
+"""What operations say about each other, checked when all files are read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from mutabot.model import Kind, Operation, Quantity
+from mutabot.model.quantity import READING_OF
+
+from .explain import Check
+from .lines import Place
+
+#: an operation with the document and place it was read from
+Read = tuple[Operation, Check, Place]
+
+
+def check_operations(read: Mapping[str, Read]) -> None:
+    """Note every ``current`` and ``opposite`` that names no fitting operation."""
+    for operation, check, place in read.values():
+        if operation.current is not None:
+            _check_current(operation, check, (*place, "current"), read)
+        if operation.opposite is not None:
+            _check_opposite(operation, check, (*place, "opposite"), read)
+
+
+def is_reading_of(reading: Quantity, written: Quantity) -> bool:
+    """Whether a reading tells where a commanded motion starts from."""
+    frames = {reading.frame, written.frame} - {None}
+    if reading.axis != written.axis or len(frames) > 1:
+        return False
+    is_joint = written.axis is not None and written.axis.startswith("j")
+    return reading.kind is READING_OF[written.kind] or (
+        is_joint and written.kind is Kind.ROTATION and reading.kind is Kind.ANGLE
+    )
+
+
+def _check_current(operation: Operation, check: Check, place: Place, read: Mapping[str, Read]) -> None:
+    name = operation.current
+    assert name is not None
+    if name not in read:
+        check.unknown(place, "operation", name, read)
+        return
+    moved = [quantity for quantity in _all_arguments(operation) if quantity.kind in READING_OF]
+    if not moved:
+        check.error(place, "is of no use here: no argument is a translation or a rotation")
+        return
+    readings = read[name][0].result
+    if not any(is_reading_of(reading, written) for written in moved for reading in readings):
+        missing = ", ".join(dict.fromkeys(_wanted(quantity) for quantity in moved))
+        found = ", ".join(_described(reading) for reading in readings) or "nothing"
+        check.error(place, f"{name} reads {found}, but here it would have to read {missing}")
+
+
+def _check_opposite(operation: Operation, check: Check, place: Place, read: Mapping[str, Read]) -> None:
+    name = operation.opposite
+    assert name is not None
+    if name == operation.target:
+        check.error(place, "an operation cannot be its own opposite")
+        return
+    if name not in read:
+        check.unknown(place, "operation", name, read)
+        return
+    mine, others = (_roots(each) for each in (operation, read[name][0]))
+    if mine != others:
+        odd = sorted(mine ^ others)[0]
+        who = name if odd in others else operation.target
+        check.error(place, f"an opposite has the same arguments, but only {who} has {odd!r}")
+
+
+def _all_arguments(operation: Operation) -> list[Quantity]:
+    return [*operation.arguments, *(q for pattern in operation.patterns for q in pattern.arguments)]
+
+
+def _roots(operation: Operation) -> set[str]:
+    return {quantity.path.root for quantity in operation.arguments if quantity.path.root is not None}
+
+
+def _wanted(written: Quantity) -> str:
+    kind = READING_OF[written.kind]
+    return " ".join(part for part in (kind, written.axis, _in_frame(written)) if part)
+
+
+def _described(reading: Quantity) -> str:
+    return " ".join(part for part in (reading.kind, reading.axis, _in_frame(reading)) if part)
+
+
+def _in_frame(quantity: Quantity) -> str:
+    return f"in frame {quantity.frame!r}" if quantity.frame is not None else ""

@@ -1,0 +1,127 @@
+"""Vocabulary files: found, read, checked and put together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from mutabot.errors import ConfigurationError, UnknownNameError
+from mutabot.model import Clock, Operation, Probe, Vocabulary
+
+from .crosscheck import Read, check_operations
+from .document import Document
+from .explain import Check, raise_errors
+from .lines import Place
+from .operations import check_targets, read_clock, read_operation, read_probe
+from .schema import VocabularyTable
+
+_SHIPPED = Path(__file__).parent / "shipped"
+
+
+def load(names: Sequence[str], root: Path) -> Vocabulary:
+    """The vocabulary in these files, put together.
+
+    Each name is a file relative to ``root``, or the name of a vocabulary that mutabot ships.
+
+    Raises ConfigurationError, VocabularyError or UnknownNameError: the first mistake, with a message that
+    tells about all of them.
+    """
+    merged = _Merged()
+    for name in dict.fromkeys(names):
+        merged.add(_find(name, root))
+    check_operations(merged.read)
+    raise_errors(merged.errors)
+    return Vocabulary(
+        operations=tuple(operation for operation, _, _ in merged.read.values()),
+        refusals=tuple(dict.fromkeys(merged.refusals)),
+        checks=tuple(dict.fromkeys(merged.checks)),
+        failures=tuple(dict.fromkeys(merged.failures)),
+        clock=merged.clock,
+        probes=tuple(merged.probes.values()),
+    )
+
+
+def shipped() -> tuple[str, ...]:
+    """Names of the vocabularies that mutabot ships."""
+    return tuple(sorted(path.stem for path in _SHIPPED.glob("*.toml")))
+
+
+@dataclass
+class _Merged:
+    """What the files read so far say, and the mistakes in them."""
+
+    errors: list[ConfigurationError] = field(default_factory=list)
+    read: dict[str, Read] = field(default_factory=dict)
+    refusals: list[str] = field(default_factory=list)
+    checks: list[str] = field(default_factory=list)
+    failures: list[str] = field(default_factory=list)
+    clock: Clock | None = None
+    probes: dict[str, Probe] = field(default_factory=dict)
+
+    def add(self, document: Document) -> None:
+        check = Check(document, self.errors)
+        table = check.table(VocabularyTable, document.data, (), salvage=True)
+        if table is None:
+            return
+        if not document.data:
+            check.error((), "is empty; a vocabulary names operations: [[operation]]")
+        for index, raw in enumerate(table.operation):
+            self._add_operation(check, read_operation(check, raw, ("operation", index)), index)
+        for name in ("refusals", "checks", "failures"):
+            check_targets(check, getattr(table, name), (name,))
+            getattr(self, name).extend(getattr(table, name))
+        if table.clock is not None:
+            self._add_clock(check, read_clock(check, table.clock, ("clock",)))
+        for index, raw in enumerate(table.probe):
+            self._add_probe(check, read_probe(check, raw, ("probe", index)), index)
+
+    def _add_operation(self, check: Check, operation: Operation | None, index: int) -> None:
+        if operation is None:
+            return
+        place: Place = ("operation", index)
+        known = self.read.get(operation.target)
+        if known is None:
+            self.read[operation.target] = (operation, check, place)
+        elif _sourceless(known[0]) != _sourceless(operation):
+            check.error(
+                (*place, "call"), f"is described twice, differently: also in {_file_of(known[0].source)}"
+            )
+
+    def _add_clock(self, check: Check, clock: Clock | None) -> None:
+        if clock is None:
+            return
+        if self.clock is not None and replace(self.clock, source="") != replace(clock, source=""):
+            check.error(("clock",), f"there is another clock in {_file_of(self.clock.source)}")
+        self.clock = self.clock or clock
+
+    def _add_probe(self, check: Check, probe: Probe | None, index: int) -> None:
+        if probe is None:
+            return
+        known = self.probes.setdefault(probe.target, probe)
+        if known.tolerance != probe.tolerance:
+            check.error(
+                ("probe", index), f"is described twice, differently: also in {_file_of(known.source)}"
+            )
+
+
+def _find(name: str, root: Path) -> Document:
+    if (root / name).is_file():
+        return Document.read(root / name, name)
+    if name in shipped():
+        return Document.read(_SHIPPED / f"{name}.toml", name)
+    raise UnknownNameError("vocabulary", name, _known_names(root))
+
+
+def _known_names(root: Path) -> Iterable[str]:
+    own = (path.name for path in root.glob("*.toml") if path.name not in ("pyproject.toml", "mutabot.toml"))
+    return [*own, *shipped()]
+
+
+def _sourceless(operation: Operation) -> Operation:
+    patterns = tuple(replace(pattern, source="") for pattern in operation.patterns)
+    return replace(operation, source="", patterns=patterns)
+
+
+def _file_of(source: str) -> str:
+    return source.partition(" · ")[0]

@@ -1,0 +1,133 @@
+"""Text commands: entries of ``patterns`` turned into patterns."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mutabot.model import Path, Pattern, Quantity
+from mutabot.model.notation import Field, Notation
+
+from .explain import Check
+from .lines import Place
+from .quantities import read_quantity, read_result
+from .schema import PatternTable, QuantityTable
+
+
+def read_patterns(check: Check, raw: list[Any], place: Place, source: str) -> tuple[Pattern, ...]:
+    """The patterns of an operation; ``source`` is the operation's own."""
+    patterns: list[Pattern] = []
+    seen: dict[tuple[str, ...], str] = {}
+    for index, item in enumerate(raw):
+        where = (*place, index)
+        pattern = _read_pattern(check, item, where, source)
+        if pattern is None:
+            continue
+        form = _form(Notation.compile(pattern.text))
+        if form in seen:
+            check.error((*where, "text"), f"takes the same commands as {seen[form]!r}")
+        seen.setdefault(form, pattern.text)
+        patterns.append(pattern)
+    return tuple(patterns)
+
+
+def _read_pattern(check: Check, raw: Any, place: Place, source: str) -> Pattern | None:
+    table = check.table(PatternTable, raw, place)
+    notation = _notation(check, table.text, (*place, "text")) if table is not None else None
+    if table is None or notation is None:
+        return None
+    inline = {key: raw[key] for key in QuantityTable.model_fields if key in raw}
+    if inline:
+        arguments = _read_only_field(check, inline, place, notation, table)
+    else:
+        arguments = _read_fields(check, table.arguments, (*place, "arguments"), notation)
+    if table.opposite is not None:
+        _check_opposite(check, table.opposite, (*place, "opposite"), notation)
+    return Pattern(
+        text=table.text,
+        arguments=arguments,
+        result=read_result(check, table.result, (*place, "result")),
+        opposite=table.opposite,
+        source=f"{_with_line(check, source, place)} · {notation.short}",
+    )
+
+
+def _read_only_field(
+    check: Check, inline: dict[str, Any], place: Place, notation: Notation, table: PatternTable
+) -> tuple[Quantity, ...]:
+    fields = notation.fields
+    names = " and ".join(f"{{{field.name}}}" for field in fields)
+    if table.arguments:
+        check.error(place, "describe the fields either here or under arguments, not both")
+    elif not fields:
+        check.error(place, f"{table.text!r} has no field that this quantity could describe")
+    elif len(fields) > 1:
+        text = (
+            f"has the fields {names}: describe each, as arguments = {{ {fields[0].name} = {{ kind = … }} }}"
+        )
+        check.error((*place, "text"), text)
+    else:
+        return _read_field(check, inline, place, fields[0])
+    return ()
+
+
+def _read_fields(check: Check, raw: dict[str, Any], place: Place, notation: Notation) -> tuple[Quantity, ...]:
+    fields = {field.name: field for field in notation.fields}
+    quantities: list[Quantity] = []
+    for name, item in raw.items():
+        if name in fields:
+            quantities.extend(_read_field(check, item, (*place, name), fields[name]))
+        else:
+            check.unknown((*place, name), "field", name, fields)
+    return tuple(quantities)
+
+
+def _read_field(check: Check, raw: Any, place: Place, field: Field) -> tuple[Quantity, ...]:
+    quantities = tuple(read_quantity(check, raw, place, Path(field.name), written=True))
+    for quantity in quantities:
+        fault = _field_fault(field, quantity)
+        if fault is not None:
+            check.error(place, fault)
+    return quantities
+
+
+def _field_fault(field: Field, quantity: Quantity) -> str | None:
+    named = [value for value in quantity.values or () if isinstance(value, str)]
+    if field.kind != "s":
+        return f"{{{field.name}}} takes numbers, not {named[0]!r}; write {{{field.name}}}" if named else None
+    if quantity.values is not None and len(named) == len(quantity.values):
+        return None
+    return f"{{{field.name}}} takes text; for numbers write {{{field.name}:g}} (or :d, :.2f …)"
+
+
+def _check_opposite(check: Check, text: str, place: Place, notation: Notation) -> None:
+    opposite = _notation(check, text, place)
+    if opposite is None:
+        return
+    names, wanted = ({field.name for field in each.fields} for each in (opposite, notation))
+    if names != wanted:
+        odd = sorted(names ^ wanted)[0]
+        here, there = (text, notation.text) if odd in names else (notation.text, text)
+        check.error(
+            place, f"the opposite must have the same fields: {{{odd}}} is in {here!r}, not in {there!r}"
+        )
+    elif _form(opposite) == _form(notation):
+        check.error(place, "a command cannot be its own opposite")
+
+
+def _notation(check: Check, text: str, place: Place) -> Notation | None:
+    try:
+        return Notation.compile(text)
+    except ValueError as error:
+        check.error(place, str(error))
+        return None
+
+
+def _form(notation: Notation) -> tuple[str, ...]:
+    """What tells commands apart: literal text and types of fields, not the fields' names."""
+    return tuple(part if isinstance(part, str) else f"{{:{part.kind}}}" for part in notation.parts)
+
+
+def _with_line(check: Check, source: str, place: Place) -> str:
+    line = check.document.line(place)
+    _, separator, call = source.partition(" · ")
+    return f"{check.document.file}:{line}{separator}{call}" if line is not None else source

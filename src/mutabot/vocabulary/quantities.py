@@ -1,0 +1,133 @@
+"""Tables of a vocabulary turned into quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from mutabot.model import Path, Quantity
+
+from .axes import slice_of, split_axes, spread
+from .explain import Check, shown
+from .lines import Place
+from .rules import default_unit, default_values, faults
+from .schema import QuantityTable
+
+
+def read_arguments(check: Check, raw: dict[str, Any], place: Place) -> tuple[Quantity, ...]:
+    """The quantities of an ``arguments`` table, whose keys are paths that start with an argument's name."""
+    return _read_paths(check, raw, place, written=True)
+
+
+def read_result(check: Check, raw: dict[str, Any] | None, place: Place) -> tuple[Quantity, ...]:
+    """The quantities of a ``result``: a quantity, or a table whose keys are paths into the result."""
+    if raw is None:
+        return ()
+    if is_quantity(raw):
+        return tuple(read_quantity(check, raw, place, Path(), written=False, name="result"))
+    return _read_paths(check, raw, place, written=False)
+
+
+def is_quantity(raw: dict[str, Any]) -> bool:
+    """Whether a table is a quantity, rather than a table of paths."""
+    return isinstance(raw.get("kind"), str) or not all(isinstance(item, dict) for item in raw.values())
+
+
+def read_quantity(
+    check: Check, raw: Any, place: Place, path: Path, *, written: bool, name: str | None = None
+) -> Iterator[Quantity]:
+    """The quantity of a table, or one per axis where a slice has several; mistakes are noted."""
+    table = check.table(QuantityTable, raw, place)
+    if table is None:
+        return
+    axes = split_axes(table.axis) if table.axis is not None else None
+    several = axes is not None and len(axes) > 1
+    vector = slice_of(path) is not None and not several
+    found = list(faults(table, written=written, vector=vector))
+    for fault in found:
+        where = (*place, fault.key)
+        if fault.known is None:
+            check.error(where, fault.text)
+        else:
+            check.unknown(where, fault.key, fault.text, fault.known)
+    if found:
+        return
+    if axes is None or not several:
+        yield _quantity(table, path, table.axis, name)
+        return
+    try:
+        for axis, part in zip(axes, _spread(path, axes), strict=True):
+            yield _quantity(table, part, axis, None)
+    except ValueError as error:
+        check.error((*place, "axis"), str(error))
+
+
+def _read_paths(check: Check, raw: dict[str, Any], place: Place, *, written: bool) -> tuple[Quantity, ...]:
+    quantities: list[Quantity] = []
+    for text, item, where in _leaves(raw, "", place):
+        if not isinstance(item, dict):
+            check.error(where, f"expected a table such as {{ kind = … }}, got {shown(item)}")
+            continue
+        path = _path(check, text, where, written)
+        if path is None:
+            continue
+        for quantity in read_quantity(check, item, where, path, written=written):
+            if any(quantity.name == other.name for other in quantities):
+                check.error(where, f"{quantity.name} is described twice")
+            quantities.append(quantity)
+    return tuple(quantities)
+
+
+def _leaves(raw: dict[str, Any], before: str, place: Place) -> Iterator[tuple[str, Any, Place]]:
+    """Path, table and place of each quantity; ``arguments.pose.x`` without quotes is nested in TOML."""
+    for key, item in raw.items():
+        text = f"{before}{key}" if not before or key.startswith((".", "[")) else f"{before}.{key}"
+        if isinstance(item, dict) and item and not is_quantity(item):
+            yield from _leaves(item, text, (*place, key))
+        else:
+            yield text, item, (*place, key)
+
+
+def _path(check: Check, text: str, place: Place, written: bool) -> Path | None:
+    if not written and not text.startswith((".", "[")):
+        check.error(
+            place, f"a path into the result begins with a dot or a bracket: write result.{_dotted(text)}"
+        )
+        return None
+    try:
+        path = Path.parse(text, rooted=written)
+    except ValueError as error:
+        check.error(place, str(error))
+        return None
+    if any(step.bounds is not None for step in path.steps[:-1]):
+        check.error(place, f"path {text!r}: a slice can only be the last step")
+        return None
+    return path
+
+
+def _dotted(text: str) -> str:
+    return f'"[{text}]"' if text.isdigit() else f'".{text}"'
+
+
+def _spread(path: Path, axes: Sequence[str]) -> list[Path]:
+    if slice_of(path) is None:
+        raise ValueError(
+            f"{''.join(axes)!r} names {len(axes)} axes, for which the path must end with a slice "
+            f'such as "{path}[0:{len(axes)}]"'
+        )
+    return spread(path, tuple(axes))
+
+
+def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | None) -> Quantity:
+    return Quantity(
+        name=name or str(path),
+        path=path,
+        kind=table.kind,
+        axis=axis,
+        unit=default_unit(table),
+        frame=table.frame,
+        mode=table.mode,
+        values=default_values(table),
+        range=(table.range[0], table.range[1]) if table.range is not None else None,
+        noise=table.noise,
+    )

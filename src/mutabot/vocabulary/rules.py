@@ -1,0 +1,203 @@
+"""What a quantity must say, by its kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from mutabot.errors import nearest_name
+from mutabot.model import Kind
+from mutabot.model.quantity import DIMENSIONS, MEASURED, READ, WRITTEN
+from mutabot.model.units import UNITS, dimension_of
+
+from .axes import AXES, split_axes
+from .explain import shown
+from .schema import QuantityTable
+
+_MOVED = (Kind.TRANSLATION, Kind.ROTATION)
+_AXES_IN_SHORT = ("x", "y", "z", "j1 … j12")
+_WITH_AXIS = MEASURED - {Kind.DURATION}
+#: how a kind that stands on the wrong side would be written there
+_AS_ARGUMENT = {
+    Kind.POSITION: '; a commanded position is kind = "translation" with mode = "to"',
+    Kind.ORIENTATION: '; a commanded orientation is kind = "rotation" with mode = "to"',
+    Kind.ANGLE: '; a commanded joint angle is kind = "rotation" with mode = "to" and the joint as axis',
+    Kind.LABEL: '; a commanded choice is kind = "output" with its values',
+    Kind.FLAG: '; a commanded switch is kind = "output" with values = [false, true]',
+}
+_AS_RESULT = {
+    Kind.TRANSLATION: '; where the robot is, is kind = "position"',
+    Kind.ROTATION: '; how the robot is turned, is kind = "orientation" (or "angle" for a joint)',
+    Kind.OPENING: '; how far the gripper is open, is kind = "distance", and whether it is, "flag"',
+    Kind.OUTPUT: '; a state that is read back is kind = "flag" or "label"',
+}
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A broken rule: the key, and a sentence; or the name that does not exist and those that do."""
+
+    key: str
+    text: str
+    known: tuple[str, ...] | None = None
+
+
+def faults(table: QuantityTable, *, written: bool, vector: bool = False) -> Iterator[Fault]:
+    """The rules a quantity breaks.
+
+    ``written`` tells whether it is an argument; ``vector``, whether it is a slice that stays one quantity.
+    """
+    side = list(_side(table, written))
+    if side:
+        yield from side
+        return
+    yield from _unit(table)
+    yield from _mode(table)
+    yield from _axis(table)
+    yield from _vector(table, vector)
+    yield from _values(table)
+    yield from _range(table)
+    yield from _noise(table)
+
+
+def default_unit(table: QuantityTable) -> str | None:
+    """The unit, where it goes without saying: an opening between 0 and 1 is a fraction."""
+    if table.unit is None and table.kind is Kind.OPENING:
+        numbers = [*(table.values or ()), *(table.range or ())]
+        if numbers and all(_is_number(number) and 0 <= number <= 1 for number in numbers):
+            return "fraction"
+    return table.unit
+
+
+def default_values(table: QuantityTable) -> tuple[Any, ...] | None:
+    """The values, where they go without saying: a flag is false or true."""
+    if table.values is None:
+        return (False, True) if table.kind is Kind.FLAG else None
+    return tuple(table.values)
+
+
+def _side(table: QuantityTable, written: bool) -> Iterator[Fault]:
+    kind = table.kind
+    if written and kind not in WRITTEN:
+        yield Fault(
+            "kind",
+            f"a {kind} is read from the robot, so it belongs to result, not to arguments"
+            f"{_AS_ARGUMENT.get(kind, '')}",
+        )
+    if not written and kind not in READ:
+        yield Fault(
+            "kind",
+            f"{_a(kind)} is sent to the robot, so it belongs to arguments, not to result"
+            f"{_AS_RESULT.get(kind, '')}",
+        )
+
+
+def _unit(table: QuantityTable) -> Iterator[Fault]:
+    kind, unit = table.kind, default_unit(table)
+    dimensions = DIMENSIONS.get(kind, frozenset())
+    fitting = tuple(name for name in UNITS if dimension_of(name) in dimensions)
+    if not fitting:
+        if unit is not None:
+            yield Fault("unit", f"{_a(kind)} has no unit")
+    elif unit is None:
+        if not _has_named_values(table):
+            yield Fault("unit", f"{_a(kind)} needs a unit: {_listed(fitting)}")
+    elif unit not in UNITS:
+        yield Fault("unit", unit, fitting)
+    elif unit not in fitting:
+        yield Fault("unit", f"{unit!r} is no unit for {_a(kind)}; use {_listed(fitting)}")
+    elif _has_named_values(table):
+        yield Fault("unit", f"{_a(kind)} with named values has no unit")
+
+
+def _mode(table: QuantityTable) -> Iterator[Fault]:
+    if table.kind in _MOVED and table.mode is None:
+        yield Fault("mode", f'{_a(table.kind)} needs mode = "by" (relative) or "to" (absolute target)')
+    if table.kind not in _MOVED and table.mode is not None:
+        yield Fault("mode", f"{_a(table.kind)} has no mode; only a translation or rotation has")
+
+
+def _axis(table: QuantityTable) -> Iterator[Fault]:
+    if table.axis is None:
+        return
+    if table.kind not in _WITH_AXIS:
+        yield Fault("axis", f"{_a(table.kind)} has no axis")
+    elif split_axes(table.axis) is None:
+        yield Fault("axis", table.axis, AXES if nearest_name(table.axis, AXES) else _AXES_IN_SHORT)
+
+
+def _vector(table: QuantityTable, vector: bool) -> Iterator[Fault]:
+    if not vector:
+        return
+    if table.kind not in MEASURED:
+        yield Fault("kind", f"{_a(table.kind)} is a single value; give an index instead of a slice")
+    elif table.values is not None:
+        yield Fault("values", "a slice that stays one quantity cannot have values; give indices instead")
+
+
+def _values(table: QuantityTable) -> Iterator[Fault]:
+    kind, values = table.kind, table.values
+    if values is None:
+        if kind is Kind.LABEL:
+            yield Fault("values", "a label needs values: all that it can read")
+        if kind in (Kind.OPENING, Kind.OUTPUT) and table.range is None:
+            yield Fault("values", f"{_a(kind)} needs values (all that can be sent) or a range")
+        return
+    wrong = [value for value in values if not _fits(kind, value)]
+    if wrong:
+        wanted = "numbers" if kind in MEASURED else "texts, numbers, true or false"
+        yield Fault("values", f"values must be {wanted}, not {shown(wrong[0])}")
+    elif len(values) < 2:
+        yield Fault("values", f"needs at least two different values, got {len(values)}")
+    elif len(set(values)) < len(values):
+        twice = next(value for position, value in enumerate(values) if value in values[:position])
+        yield Fault("values", f"{twice!r} stands there twice")
+    elif kind is Kind.FLAG and len(values) != 2:
+        yield Fault("values", f"a flag has two values, false first, not {len(values)}; use a label")
+
+
+def _range(table: QuantityTable) -> Iterator[Fault]:
+    if table.range is None:
+        return
+    least, most = table.range
+    if table.kind in (Kind.LABEL, Kind.FLAG):
+        yield Fault("range", f"a {table.kind} has no range, but values")
+    elif not least < most:
+        yield Fault("range", f"must rise from the least to the greatest value, got [{least}, {most}]")
+    else:
+        outside = [v for v in table.values or () if _is_number(v) and not least <= v <= most]
+        if outside:
+            yield Fault("values", f"{outside[0]} lies outside the range [{least}, {most}]")
+
+
+def _noise(table: QuantityTable) -> Iterator[Fault]:
+    if table.noise is None:
+        return
+    if table.kind not in MEASURED & READ:
+        yield Fault("noise", f"{_a(table.kind)} has no noise; only a measured reading has")
+    elif table.noise <= 0:
+        yield Fault("noise", f"must be more than 0 (a standard deviation), got {table.noise}")
+
+
+def _fits(kind: Kind, value: Any) -> bool:
+    if kind in MEASURED:
+        return _is_number(value)
+    return isinstance(value, str | bool) or _is_number(value)
+
+
+def _is_number(value: Any) -> bool:
+    finite = isinstance(value, int | float) and abs(value) < float("inf")
+    return finite and not isinstance(value, bool)
+
+
+def _has_named_values(table: QuantityTable) -> bool:
+    return table.kind is Kind.OPENING and any(isinstance(value, str | bool) for value in table.values or ())
+
+
+def _a(kind: Kind) -> str:
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return " or ".join(filter(None, (", ".join(names[:-1]), names[-1])))

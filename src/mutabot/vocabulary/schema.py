@@ -1,0 +1,88 @@
+"""The shape of a vocabulary file: which keys there are and what type their values have.
+
+What the values mean together is checked where the tables are turned into operations.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from mutabot.model import Kind, Mode
+
+
+class Table(BaseModel):
+    """A table of a TOML file: nothing unknown, nothing converted, only finite numbers."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class QuantityTable(Table):
+    """``{ kind = "translation", axis = "x", unit = "m", … }``"""
+
+    kind: Annotated[Kind, Field(strict=False)]
+    axis: str | None = None
+    unit: str | None = None
+    frame: str | None = None
+    mode: Annotated[Mode | None, Field(strict=False)] = None
+    values: list[Any] | None = None
+    range: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
+    noise: float | None = None
+
+
+class PatternTable(Table):
+    """One entry of ``patterns``; the keys of a quantity describe its only field."""
+
+    text: str
+    opposite: str | None = None
+    arguments: dict[str, Any] = Field(default_factory=dict)
+    result: dict[str, Any] | None = None
+    kind: Any = None
+    axis: Any = None
+    unit: Any = None
+    frame: Any = None
+    mode: Any = None
+    values: Any = None
+    range: Any = None
+    noise: Any = None
+
+
+class OperationTable(Table):
+    """One ``[[operation]]``."""
+
+    call: str
+    arguments: dict[str, Any] = Field(default_factory=dict)
+    result: dict[str, Any] | None = None
+    command: bool | None = None
+    current: str | None = None
+    opposite: str | None = None
+    refusals: list[str] = Field(default_factory=list)
+    message: str | None = None
+    patterns: list[Any] = Field(default_factory=list)
+
+
+class ClockTable(Table):
+    """``clock = { tick = "module:qualname", time = "self.time", unit = "s" }``"""
+
+    tick: str
+    time: str = ""
+    unit: str = "s"
+
+
+class ProbeTable(Table):
+    """One ``[[probe]]``."""
+
+    call: str
+    tolerance: Annotated[float, Field(ge=0)] = 1e-6
+
+
+class VocabularyTable(Table):
+    """The top of a vocabulary file."""
+
+    operation: list[Any] = Field(default_factory=list)
+    refusals: list[str] = Field(default_factory=list)
+    checks: list[str] = Field(default_factory=list)
+    failures: list[str] = Field(default_factory=list)
+    clock: dict[str, Any] | None = None
+    probe: list[Any] = Field(default_factory=list)

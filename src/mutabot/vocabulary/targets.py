@@ -1,0 +1,37 @@
+"""Names of callables and exceptions: ``module:qualified.name``."""
+
+from __future__ import annotations
+
+import builtins
+import keyword
+
+
+def target_fault(text: str) -> str | None:
+    """What is wrong with a target, or None."""
+    form = "module:qualified.name"
+    if not text.strip():
+        return f"is empty; expected {form}"
+    if text.count(":") > 1:
+        return f"{text!r} has more than one colon; expected {form}"
+    if ":" not in text:
+        return f"{text!r} has no colon between module and name; write {_with_colon(text)!r}"
+    module, _, name = text.partition(":")
+    if not module or not name:
+        return f"{text!r} has no {'name after' if module else 'module before'} the colon; expected {form}"
+    for part in (*module.split("."), *name.split(".")):
+        if not part:
+            return f"{text!r} has a dot too many; expected {form}"
+        if not part.isidentifier() or keyword.iskeyword(part):
+            return f"{text!r}: {part!r} is not a Python name; expected {form}"
+    return None
+
+
+def _with_colon(text: str) -> str:
+    if isinstance(getattr(builtins, text, None), type):
+        return f"builtins:{text}"
+    parts = text.split(".")
+    if len(parts) == 1:
+        return f"module:{text}"
+    # robot.Arm.move: by convention a module's name is lower case and a class's is not
+    first = next((index for index, part in enumerate(parts) if index and part[:1].isupper()), len(parts) - 1)
+    return f"{'.'.join(parts[:first])}:{'.'.join(parts[first:])}"
