@@ -1,0 +1,105 @@
+"""Why a mutant ended as it did, in one line an engineer can act on."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from mutabot.campaign.comparison import value_text
+from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
+from mutabot.model.quantity import READ
+
+
+def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | None:
+    """The quantity a mutant changes, or None if it concerns the call or the vocabulary is not known."""
+    operation = vocabulary.operation(mutant.operation) if vocabulary is not None else None
+    if operation is None or mutant.quantity is None:
+        return None
+    pattern = operation.pattern(mutant.pattern)
+    owner = pattern if pattern is not None else operation
+    known = (*owner.arguments, *owner.result, *operation.arguments, *operation.result)
+    return next((quantity for quantity in known if quantity.name == mutant.quantity), None)
+
+
+def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary | None = None) -> str:
+    """One line about a mutant's outcomes: what changed, and what became of the world or who noticed.
+
+    Speaks about the survivor farthest from the original, if there is any; else about the verdict that
+    occurred most.
+    """
+    if not outcomes:
+        return "not run"
+    quantity = quantity_of(mutant, vocabulary)
+    survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
+    if survivors:
+        worst = max(survivors, key=lambda one: one.distance or 0.0)
+        parts = (change_text(mutant, worst, quantity), _world_text(worst))
+        return "; ".join(part for part in parts if part)
+    verdict, _ = Counter(one.verdict for one in outcomes).most_common(1)[0]
+    return _end_text(next(one for one in outcomes if one.verdict is verdict))
+
+
+def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = None) -> str | None:
+    """What the mutant changed when it first acted: ``read −0.0014 m instead of 0.0014 m``."""
+    if outcome.example is None or len(outcome.example) != 2:
+        return None
+    before, after = (_valued(value, quantity) for value in outcome.example)
+    if before == after:
+        return None
+    return f"{_verb(quantity)} {after} instead of {before}"
+
+
+def rank(outcomes: Sequence[Outcome]) -> float:
+    """How far a mutant's survivors took the world from the original's, in multiples of the tolerance."""
+    survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
+    return max((one.distance or 0.0 for one in survivors), default=0.0)
+
+
+def is_indistinguishable(outcomes: Sequence[Outcome]) -> bool:
+    """Whether the mutant survived somewhere and never looked other than the original."""
+    survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
+    return bool(survivors) and all(one.indistinguishable for one in survivors)
+
+
+def _valued(value: object, quantity: Quantity | None) -> str:
+    if quantity is not None:
+        return quantity.text(value).replace("-", "−") if _is_number(value) else str(value)
+    return value_text(value)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _verb(quantity: Quantity | None) -> str:
+    if quantity is None:
+        return "had"
+    return "read" if quantity.kind in READ else "sent"
+
+
+def _world_text(outcome: Outcome) -> str:
+    if outcome.indistinguishable:
+        return "the world ended as in the original (indistinguishable)"
+    if outcome.divergence:
+        return outcome.divergence[0]
+    if outcome.distance is not None:
+        return "every probe ended within its tolerance"
+    return "nothing tells how the world ended (the vocabulary names no probe)"
+
+
+def _end_text(outcome: Outcome) -> str:
+    match outcome.verdict:
+        case Verdict.NOT_COVERED:
+            return "no test reaches it"
+        case Verdict.NO_EFFECT:
+            return outcome.message or "it changed no value"
+        case Verdict.KILLED:
+            return f"killed by {outcome.by or 'a test'}: {first_line(outcome.message)}"
+        case _:
+            return f"{outcome.verdict}: {first_line(outcome.message)}"
+
+
+def first_line(text: str | None) -> str:
+    """The first line of a message, or words that say there is none."""
+    lines = (text or "").strip().splitlines()
+    return lines[0] if lines else "no message"

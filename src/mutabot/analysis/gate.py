@@ -1,0 +1,66 @@
+"""Whether a campaign is good enough: the limits that decide its exit code."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mutabot.model import Verdict
+
+from .results import Results
+
+PASSED, SCORE_TOO_LOW, NOTHING_VALID, TOO_MANY_TIMEOUTS = 0, 1, 3, 5
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """The end of a campaign as a continuous-integration job sees it.
+
+    Attributes:
+        exit_code: what the command ends with.
+        lines: why it is not 0, one line each; empty if all is well.
+    """
+
+    exit_code: int
+    lines: tuple[str, ...] = ()
+
+
+def decide(
+    results: Results, *, min_score: float | None = None, max_timeouts: float | None = None
+) -> Decision:
+    """Hold the results against the limits.
+
+    ``min_score`` (0 … 1) holds for every printed mean score, that is for each family and role on its own:
+    a good score of the oracle never hides a poor one of the program. ``max_timeouts`` (0 … 1) is the
+    greatest share of time-outs among the valid outcomes.
+    """
+    total = results.all.total
+    if not total.valid:
+        return Decision(NOTHING_VALID, (_nothing_valid(results),))
+    share = total.timeouts / total.valid
+    if max_timeouts is not None and share > max_timeouts:
+        text = f"{total.timeouts} of {total.valid} valid outcomes are time-outs ({share:.0%})"
+        return Decision(TOO_MANY_TIMEOUTS, (f"{text}; the limit is {max_timeouts:.0%}",))
+    low = tuple(_too_low(results, min_score)) if min_score is not None else ()
+    return Decision(SCORE_TOO_LOW, low) if low else Decision(PASSED)
+
+
+def _nothing_valid(results: Results) -> str:
+    if not results.mutants:
+        return "no mutant was planned, so nothing is known about the tests"
+    counts = results.all.total.counts
+    if not counts:
+        return "no mutant was run, so nothing is known about the tests"
+    if set(counts) == {Verdict.REFUSED}:
+        return "the robot refused every mutant, so nothing is known about the tests"
+    ends = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
+    return f"no mutant was valid ({ends}), so nothing is known about the tests"
+
+
+def _too_low(results: Results, min_score: float) -> list[str]:
+    lines = []
+    for group in results.groups:
+        mean = group.scores.mean
+        if mean is not None and mean < min_score:
+            name = f"{group.family} mutants of the {group.role}"
+            lines.append(f"the score of the {name} is {mean:.1%}, under the limit of {min_score:.1%}")
+    return lines

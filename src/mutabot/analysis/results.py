@@ -1,0 +1,149 @@
+"""Everything a report needs, read from a journal once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from mutabot.campaign.journal import BaselineTest, ControlEnd, Journal
+from mutabot.campaign.lock import is_written
+from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
+
+from .divergence import explain, is_indistinguishable, quantity_of, rank
+from .score import Group, KillRate, RoundScores, groups_of
+
+
+@dataclass(frozen=True, slots=True)
+class MutantResult:
+    """What became of one mutant.
+
+    Attributes:
+        mutant: the mutant.
+        rounds: its outcome in each round; None where it has not been run.
+        quantity: what it changes, if the journal holds the vocabulary.
+        why: one line about how it ended.
+    """
+
+    mutant: Mutant
+    rounds: tuple[Outcome | None, ...]
+    quantity: Quantity | None
+    why: str
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """The outcomes there are."""
+        return tuple(outcome for outcome in self.rounds if outcome is not None)
+
+    @property
+    def kill_rate(self) -> KillRate:
+        """In how many rounds it was killed."""
+        return KillRate.of(self.outcomes)
+
+    @property
+    def is_survivor(self) -> bool:
+        """Whether any round lets it through, by surviving or because no test reaches it."""
+        return any(one.verdict.is_valid and not one.verdict.is_killed for one in self.outcomes)
+
+    @property
+    def indistinguishable(self) -> bool:
+        """Whether no survivor of it looked other than the original."""
+        return is_indistinguishable(self.outcomes)
+
+    @property
+    def distance(self) -> float:
+        """How far its survivors took the world from the original's, in multiples of the tolerance."""
+        return rank(self.outcomes)
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """What became of a campaign.
+
+    Attributes:
+        meta: what the campaign said about itself.
+        state: ``complete``, ``interrupted``, ``running``, ``killed`` or why it stopped.
+        rounds: number of rounds.
+        mutants: every planned mutant by number.
+        groups: scores per family and role.
+        all: scores of all mutants together, as published studies give them. Only to be shown beside
+            ``groups``, because it mixes roles.
+        left_out: what the plan leaves out.
+        controls: the control mutants.
+        tests: the baseline.
+    """
+
+    meta: Mapping[str, Any]
+    state: str
+    rounds: int
+    mutants: tuple[MutantResult, ...]
+    groups: tuple[Group, ...]
+    all: RoundScores
+    left_out: tuple[LeftOut, ...]
+    controls: tuple[ControlEnd, ...]
+    tests: tuple[BaselineTest, ...]
+
+    @property
+    def survivors(self) -> list[MutantResult]:
+        """Mutants that some round lets through, the farthest from the original first."""
+        found = [result for result in self.mutants if result.is_survivor]
+        return sorted(found, key=lambda one: (-one.distance, one.indistinguishable, one.mutant.number))
+
+    def with_verdict(self, *verdicts: Verdict) -> list[tuple[MutantResult, Outcome]]:
+        """Each mutant with its first outcome of one of these verdicts, by number."""
+        found = []
+        for result in self.mutants:
+            outcome = next((one for one in result.outcomes if one.verdict in verdicts), None)
+            if outcome is not None:
+                found.append((result, outcome))
+        return found
+
+    @property
+    def planned(self) -> int:
+        """Number of (mutant, round) pairs the campaign was to run."""
+        return len(self.mutants) * self.rounds
+
+    @property
+    def done(self) -> int:
+        """Number of (mutant, round) pairs that have an outcome."""
+        return sum(len(result.outcomes) for result in self.mutants)
+
+
+def read_results(journal: Journal) -> Results:
+    """Put together what the journal holds now."""
+    meta, mutants = journal.meta(), journal.mutants()
+    planned = {mutant.id for mutant in mutants}
+    outcomes = [outcome for outcome in journal.outcomes() if outcome.mutant in planned]
+    rounds = _number_of_rounds(meta, outcomes)
+    outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
+    vocabulary = journal.vocabulary
+    by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
+
+    def result(mutant: Mutant) -> MutantResult:
+        row = tuple(by_place.get((mutant.id, number)) for number in range(rounds))
+        why = explain(mutant, [outcome for outcome in row if outcome is not None], vocabulary)
+        return MutantResult(mutant, row, quantity_of(mutant, vocabulary), why)
+
+    return Results(
+        meta=meta,
+        state=_state(journal),
+        rounds=rounds,
+        mutants=tuple(result(mutant) for mutant in mutants),
+        groups=groups_of(mutants, outcomes, rounds),
+        all=RoundScores.of(outcomes, rounds),
+        left_out=tuple(journal.left_out()),
+        controls=tuple(journal.controls()),
+        tests=tuple(journal.tests()),
+    )
+
+
+def _number_of_rounds(meta: Mapping[str, Any], outcomes: list[Outcome]) -> int:
+    said = meta.get("rounds")
+    return said if isinstance(said, int) else max((one.round + 1 for one in outcomes), default=0)
+
+
+def _state(journal: Journal) -> str:
+    finished = journal.finished
+    if finished is not None:
+        return finished
+    return "running" if is_written(journal.path) else "killed"

@@ -1,0 +1,158 @@
+"""Scores: how many of the valid mutants were killed. A score always carries its counts."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from statistics import fmean
+
+from mutabot.model import By, Mutant, Outcome, Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """What a number of outcomes comes to.
+
+    Which verdict stands where in the score is decided in ``model.verdict`` alone.
+
+    Attributes:
+        counts: outcomes per verdict; verdicts that did not occur are missing.
+        by_check: kills by an assertion of the test or a monitor.
+    """
+
+    counts: Mapping[Verdict, int] = field(default_factory=dict)
+    by_check: int = 0
+
+    @classmethod
+    def of(cls, outcomes: Iterable[Outcome]) -> Score:
+        """The score of these outcomes."""
+        outcomes = list(outcomes)
+        checked = (one for one in outcomes if one.verdict is Verdict.KILLED and one.by is By.CHECK)
+        return cls(Counter(one.verdict for one in outcomes), sum(1 for _ in checked))
+
+    @property
+    def valid(self) -> int:
+        """The denominator."""
+        return sum(count for verdict, count in self.counts.items() if verdict.is_valid)
+
+    @property
+    def killed(self) -> int:
+        """The numerator of the score; time-outs are in it and also shown apart."""
+        return sum(count for verdict, count in self.counts.items() if verdict.is_killed)
+
+    @property
+    def timeouts(self) -> int:
+        """The part of ``killed`` that only ran out of its budget."""
+        return self.counts.get(Verdict.TIMEOUT, 0)
+
+    @property
+    def outside(self) -> int:
+        """Outcomes that do not count: refused, invalid, without effect, unstable, errors."""
+        return sum(self.counts.values()) - self.valid
+
+    @property
+    def score(self) -> float | None:
+        """Killed / valid, 0 … 1; None when nothing was valid."""
+        return self.killed / self.valid if self.valid else None
+
+    @property
+    def check_score(self) -> float | None:
+        """Killed by a check / valid, 0 … 1; None when nothing was valid."""
+        return self.by_check / self.valid if self.valid else None
+
+
+@dataclass(frozen=True, slots=True)
+class RoundScores:
+    """The scores of a group of mutants, round by round.
+
+    Attributes:
+        rounds: one score per round.
+    """
+
+    rounds: tuple[Score, ...]
+
+    @classmethod
+    def of(cls, outcomes: Iterable[Outcome], rounds: int) -> RoundScores:
+        """The scores of these outcomes in rounds 0 … ``rounds`` − 1."""
+        by_round: list[list[Outcome]] = [[] for _ in range(rounds)]
+        for outcome in outcomes:
+            by_round[outcome.round].append(outcome)
+        return cls(tuple(Score.of(one) for one in by_round))
+
+    @property
+    def total(self) -> Score:
+        """All rounds in one: its counts are of (mutant, round) pairs."""
+        counts: Counter[Verdict] = Counter()
+        for score in self.rounds:
+            counts.update(score.counts)
+        return Score(counts, sum(score.by_check for score in self.rounds))
+
+    @property
+    def mean(self) -> float | None:
+        """Mean of the rounds' scores; rounds without a valid mutant have none. None if no round has one."""
+        return _mean([score.score for score in self.rounds])
+
+    @property
+    def mean_check(self) -> float | None:
+        """Mean of the rounds' check scores, likewise."""
+        return _mean([score.check_score for score in self.rounds])
+
+
+@dataclass(frozen=True, slots=True)
+class KillRate:
+    """In how many rounds a mutant was killed.
+
+    Attributes:
+        killed: rounds in which it was killed.
+        valid: rounds in which it was valid.
+    """
+
+    killed: int
+    valid: int
+
+    @classmethod
+    def of(cls, outcomes: Iterable[Outcome]) -> KillRate:
+        """The kill rate of one mutant from its outcomes, one per round."""
+        score = Score.of(outcomes)
+        return cls(score.killed, score.valid)
+
+    @property
+    def rate(self) -> float | None:
+        """Killed / valid, or None when it was valid in no round."""
+        return self.killed / self.valid if self.valid else None
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """The scores of one family in one role. Groups are never added up to one score.
+
+    Attributes:
+        family: the operators' family.
+        role: ``program`` or ``oracle``.
+        mutants: number of planned mutants.
+        scores: round by round.
+    """
+
+    family: str
+    role: str
+    mutants: int
+    scores: RoundScores
+
+
+def groups_of(mutants: Sequence[Mutant], outcomes: Iterable[Outcome], rounds: int) -> tuple[Group, ...]:
+    """One group per family and role, in the order in which they first occur in the plan."""
+    key_of = {mutant.id: (mutant.family, mutant.site.role.value) for mutant in mutants}
+    sizes = Counter(key_of.values())
+    found: dict[tuple[str, str], list[Outcome]] = {key: [] for key in key_of.values()}
+    for outcome in outcomes:
+        found[key_of[outcome.mutant]].append(outcome)
+    return tuple(
+        Group(family, role, sizes[family, role], RoundScores.of(those, rounds))
+        for (family, role), those in found.items()
+    )
+
+
+def _mean(scores: Sequence[float | None]) -> float | None:
+    known = [score for score in scores if score is not None]
+    return fmean(known) if known else None
