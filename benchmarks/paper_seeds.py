@@ -2,8 +2,8 @@
 
     python benchmarks/paper_seeds.py [seeds]
 
-Runs the program once per seed in this process, judges it by the test's own readings, numbers and rounding, and prints
-how many passed per colour and the largest deviations.
+Runs the program once per seed in this process and judges it by the test's own readings, numbers and rounding.
+Prints how many passed per colour, and the largest deviations.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pathlib import Path
 EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "paper"
 sys.path[:0] = [str(EXAMPLE), str(EXAMPLE / "tests")]
 
+import expected as criteria  # noqa: E402
 import kinova  # noqa: E402
 import mission  # noqa: E402
 import sensors  # noqa: E402
-import expected as criteria  # noqa: E402
 
 from mutabot.cells import Cell, CellError, Position  # noqa: E402
 
@@ -59,14 +59,16 @@ def main(count: int) -> int:
         passed[colour] += fine
         worst[colour] = [max(pair) for pair in zip(worst.get(colour, deviations), deviations, strict=True)]
         if not fine:
-            print(f"seed {seed} ({colour}) failed: " + " ".join(f"{1000 * value:.1f}" for value in deviations))
+            shown = " ".join(f"{1000 * value:.1f}" for value in deviations)
+            print(f"seed {seed} ({colour}) failed; deviations in mm: {shown}")
     wall = time.perf_counter() - start
-    print(f"passed {passed.total()} of {total.total()} seeds; {simulated / wall:.0f} times real time, set-up included")
+    ratio = simulated / wall
+    print(f"passed {passed.total()} of {total.total()} seeds; {ratio:.0f} times real time, set-up included")
     for colour in sorted(total):
-        shown = [f"{1000 * value:5.1f}" for value in worst[colour]]
+        columns = [f"{1000 * value:5.1f}" for value in worst[colour]]
         print(f"  {colour:5} {passed[colour]:4} of {total[colour]:4}; largest deviations in mm (x y z):")
         for name, index in (("robot at home", 0), ("box on the conveyor", 3), ("box at the end", 6)):
-            print(f"        {name:20} {' '.join(shown[index : index + 3])}")
+            print(f"        {name:20} {' '.join(columns[index : index + 3])}")
     return 0 if passed == total else 1
 
 

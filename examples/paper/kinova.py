@@ -12,7 +12,7 @@ _cell: Cell | None = None
 
 def connect(cell: Cell) -> None:
     """Let all commands and readings go to this cell."""
-    global _cell
+    global _cell  # noqa: PLW0603  (one robot per process, as with the maker's driver)
     _cell = cell
 
 

@@ -1,7 +1,7 @@
 """MuJoCo work cells: robot, gripper, sensors, scene.
 
-Importing this package is cheap; MuJoCo is loaded when a name that needs it is first used. `SimulatorMissing` says what
-to install when it is not there.
+Importing this package is cheap; MuJoCo is loaded when a name that needs it is first used. `SimulatorMissing`
+says what to install when it is not there.
 """
 
 from __future__ import annotations
@@ -13,25 +13,48 @@ from typing import TYPE_CHECKING
 
 from .errors import (
     BadArgument as BadArgument,
+)
+from .errors import (
     CellError as CellError,
+)
+from .errors import (
     ConditionBroken as ConditionBroken,
+)
+from .errors import (
     MotionRefused as MotionRefused,
+)
+from .errors import (
     ProtectiveStop as ProtectiveStop,
+)
+from .errors import (
     SensorError as SensorError,
+)
+from .errors import (
     SimulationDiverged as SimulationDiverged,
+)
+from .errors import (
     SimulatorMissing as SimulatorMissing,
 )
 from .scene import (
     Box as Box,
+)
+from .scene import (
     Fixture as Fixture,
+)
+from .scene import (
     Mark as Mark,
+)
+from .scene import (
     Scene as Scene,
 )
 
 if TYPE_CHECKING:
-    from .cell import Cell as Cell, current as current, world as world
+    from .cell import Cell as Cell
+    from .cell import current as current
+    from .cell import world as world
     from .clock import simulated_time as simulated_time
-    from .geometry import Pose as Pose, Position as Position
+    from .geometry import Pose as Pose
+    from .geometry import Position as Position
     from .rendering import render as render
 
 if "numpy" not in sys.modules:

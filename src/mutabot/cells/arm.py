@@ -10,7 +10,7 @@ import numpy as np
 
 from . import kinova
 from .errors import BadArgument, MotionRefused, ProtectiveStop
-from .geometry import Array, Pose, euler_from_rotation, rotation_from_euler
+from .geometry import Array, Pose, pose_of, rotation_from_euler
 from .kinematics import Kinematics, Line
 from .model import PHYSICS_STEP
 from .simulation import STEPS_PER_TICK, Simulation
@@ -28,7 +28,8 @@ _SETTLING_TICKS = 50
 class Arm:
     """Kinova Gen3 with a servo per joint.
 
-    Poses are in the base frame: m, and Euler angles x, y, z in degrees (R = Rz·Ry·Rx). Joint angles are in degrees.
+    Poses are in the base frame: m, and Euler angles x, y, z in degrees (R = Rz·Ry·Rx). Joint angles are in
+    degrees.
     Every move returns when it has been carried out.
     """
 
@@ -45,8 +46,6 @@ class Arm:
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._guard)
 
-    # ---- where it is -------------------------------------------------------------------------------------------
-
     def commanded_joints(self) -> tuple[float, ...]:
         """Setpoints of the joints, degrees, not wrapped."""
         return tuple(np.degrees(self._setpoint).tolist())
@@ -54,9 +53,7 @@ class Arm:
     def commanded_pose(self) -> Pose:
         """Tool pose that the setpoints stand for: relative moves start here."""
         position, rotation = self._kinematics.tool(self._setpoint)
-        return Pose(*position.tolist(), *euler_from_rotation(rotation))
-
-    # ---- moves -------------------------------------------------------------------------------------------------
+        return pose_of(position, rotation)
 
     def home(self) -> None:
         """Joint move to the home position; continuous joints turn the shorter way.
@@ -88,8 +85,8 @@ class Arm:
             elif abs(target[index]) > joint.limit:
                 excess = math.degrees(abs(target[index]) - joint.limit)
                 raise MotionRefused(
-                    f"motion refused: joint {index + 1} would go to {angles[index]:.1f} deg, {excess:.1f} deg "
-                    f"beyond its limit of {math.degrees(joint.limit):.1f} deg",
+                    f"motion refused: joint {index + 1} would go to {angles[index]:.1f} deg, "
+                    f"{excess:.1f} deg beyond its limit of {math.degrees(joint.limit):.1f} deg",
                     limit=f"joint {index + 1}",
                     value=float(angles[index]),
                     allowed=math.copysign(math.degrees(joint.limit), target[index]),
@@ -132,7 +129,7 @@ class Arm:
         *,
         speed: float = 1.0,
     ) -> None:
-        """Like `move_to`, relative: m in the base frame and degrees are added to the commanded pose's values."""
+        """Like `move_to`, relative: m (base frame) and degrees are added to the commanded pose's values."""
         _check_numbers("amounts", (x, y, z, theta_x, theta_y, theta_z), 6)
         now = self.commanded_pose()
         self.move_to(
@@ -151,8 +148,6 @@ class Arm:
         """Allow motions again after a protective stop."""
         self._stop = None
         self._pressed_ticks = 0
-
-    # ---- inside ------------------------------------------------------------------------------------------------
 
     def _check_ready(self) -> None:
         if self._stop is not None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import weakref
+from collections.abc import Callable
 from dataclasses import replace
 from types import TracebackType
-from collections.abc import Callable
 
 from .arm import Arm
 from .errors import BadArgument
@@ -46,7 +46,7 @@ class Truth:
         return STROKE - float(self._simulation.data.ten_length[0])
 
     def world(self) -> dict[str, float]:
-        """All of the above and the simulated time, flat: keys such as "box.x", "tool.z", "opening", "time"."""
+        """All of the above and the simulated time, flat: "box.x", "tool.z", "opening", "time" and so on."""
         pose = self.tool_pose()
         state = {
             "time": self._simulation.time,
@@ -130,7 +130,7 @@ class Cell:
     def always(self, condition: Callable[[], object], name: str, values: Values | None = None) -> Condition:
         """Watch `condition` from now on, at every control tick.
 
-        The condition should look at `cell.truth`: a sensor read at every tick would use up that sensor's noise.
+        The condition should look at `cell.truth`: a sensor read at every tick would use up its noise.
 
         Args:
             condition: gives something true as long as all is well.
@@ -180,10 +180,17 @@ def current() -> Cell | None:
     return None if _current is None else _current()
 
 
+def forget_current() -> None:
+    """From now on there is no current cell."""
+    global _current  # noqa: PLW0603  (see Cell)
+    _current = None
+
+
 def world() -> dict[str, float]:
     """The exact final state of the cell made last, flat; {} without one.
 
-    Meant for mutabot's comparison of a mutant's world with the original's at the end of a test, not for robot programs.
+    Meant for mutabot's comparison of a mutant's world with the original's at the end of a test, not for robot
+    programs.
     """
     cell = current()
     return {} if cell is None else cell.truth.world()

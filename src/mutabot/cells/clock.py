@@ -18,7 +18,7 @@ def simulated_time(cell: Cell) -> Iterator[None]:
     A program that wrote `from time import sleep` before keeps the real one; let it call `time.sleep`.
     """
     real_sleep = time.sleep
-    time.sleep = cell.wait
+    time.sleep = cell.wait  # type: ignore[assignment]  # float() is all that sleep needs of its argument
     try:
         yield
     finally:

@@ -12,6 +12,7 @@
 Each error carries its data as attributes too, so that reports need not parse messages.
 """
 
+# ruff: noqa: N818  (the names say what happened, as robot controllers do: "motion refused", "protective stop")
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -37,7 +38,8 @@ class MotionRefused(CellError):
     """The controller refused a motion before anything moved.
 
     Attributes:
-        limit: what would be exceeded: "reach", "joint 4", "orientation", "self-collision" or "protective stop".
+        limit: what would be exceeded: "reach", "joint 1" to "joint 7", "singularity"; or "protective stop"
+            when an earlier one has not been acknowledged.
         value: the value that the motion would need, in `unit`; None where there is none.
         allowed: the nearest allowed value, in `unit`; None where there is none.
         excess: by how much the limit would be exceeded (>= 0), in `unit`.

@@ -44,6 +44,12 @@ class Pose:
         return Position(self.x, self.y, self.z)
 
 
+def pose_of(position: Array, rotation: Array) -> Pose:
+    """The pose of a position, shape (3,), m, and a rotation matrix, shape (3, 3)."""
+    x, y, z = position.tolist()
+    return Pose(x, y, z, *euler_from_rotation(rotation))
+
+
 def rotation_from_euler(theta_x: float, theta_y: float, theta_z: float) -> Array:
     """Rotation matrix, shape (3, 3), from Euler angles in degrees."""
     cx, cy, cz = (math.cos(math.radians(a)) for a in (theta_x, theta_y, theta_z))

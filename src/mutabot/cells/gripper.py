@@ -68,7 +68,8 @@ class Gripper:
         target = position * robotiq.STROKE
         if target != self._target:
             self._target = target
-            self._setpoint = self._closed()  # blocked fingers start from where they are, not from where they wanted
+            # blocked fingers start from where they are, not from where they wanted to be
+            self._setpoint = self._closed()
         if wait:
             for _ in range(_LONGEST_TICKS):
                 self._simulation.tick()
@@ -84,7 +85,7 @@ class Gripper:
         return self._noise.add("opening", robotiq.STROKE - self._closed())
 
     def holding(self) -> bool:
-        """Whether the fingers are blocked before the commanded opening while pressing: something is between them.
+        """Whether the fingers press and are blocked before the commanded opening: something is between them.
 
         Like the real gripper's object detection, it knows only its own position, speed and motor current.
         """
@@ -99,7 +100,6 @@ class Gripper:
         return abs(float(self._simulation.data.ten_velocity[self._tendon])) < _STANDING
 
     def _drive(self) -> None:
-        if self._setpoint != self._target:
-            step = self._speed * TICK
-            self._setpoint += math.copysign(min(step, abs(self._target - self._setpoint)), self._target - self._setpoint)
+        missing = self._target - self._setpoint
+        self._setpoint += math.copysign(min(self._speed * TICK, abs(missing)), missing)
         self._simulation.setpoints[:, self._servo] = self._setpoint

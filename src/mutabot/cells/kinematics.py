@@ -1,7 +1,7 @@
 """Forward and inverse kinematics of the arm: joint paths that keep the tool on a straight line.
 
-Forward kinematics comes from MuJoCo, inverse kinematics from mink (imported at the first straight-line motion: it
-brings scipy and would make every start slower).
+Forward kinematics comes from MuJoCo, inverse kinematics from mink. mink is imported at the first
+straight-line motion: it brings scipy and would make every start slower.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import numpy as np
 from . import kinova, model
 from .errors import MotionRefused, SimulatorMissing
 from .geometry import Array, rotation_about, rotation_vector
+from .trajectory import Spline
 
 if TYPE_CHECKING:
     import mink
@@ -33,6 +34,7 @@ _KNOT_DISTANCE = 0.03
 _KNOT_ANGLE = math.radians(5.0)
 _MOST_KNOTS = 512
 _LARGEST_KNOT_STEP = 0.5
+_REACH_CHECKS = 41
 _ITERATIONS = 40
 _POSTURE_COST = 1e-3
 _ORIENTATION_COST = 0.3
@@ -40,9 +42,23 @@ _ORIENTATION_COST = 0.3
 _SHOULDER = np.array([0.0, 0.0, kinova.JOINTS[0].origin[2] - kinova.JOINTS[1].origin[2]])
 _WRIST_TO_TOOL = -kinova.JOINTS[6].origin[1] - kinova.INTERFACE_OFFSET[2] + kinova.TOOL_LENGTH
 REACH = -(
-    kinova.JOINTS[2].origin[1] + kinova.JOINTS[3].origin[2] + kinova.JOINTS[4].origin[1] + kinova.JOINTS[5].origin[2]
+    kinova.JOINTS[2].origin[1]
+    + kinova.JOINTS[3].origin[2]
+    + kinova.JOINTS[4].origin[1]
+    + kinova.JOINTS[5].origin[2]
 )
 """Largest distance between shoulder and wrist, m."""
+
+
+def wrist_distance(position: Array, rotation: Array) -> float:
+    """Distance between shoulder and wrist, m.
+
+    Args:
+        position: of the tool, shape (3,), m.
+        rotation: of the tool, shape (3, 3).
+    """
+    wrist = position - _WRIST_TO_TOOL * rotation[:, 2]
+    return float(np.linalg.norm(wrist - _SHOULDER))
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +113,11 @@ class Kinematics:
         self._solver: _Solver | None = None
 
     def tool(self, joints: Array) -> tuple[Array, Array]:
-        """Tool position (shape (3,), m) and rotation (shape (3, 3)) in the base frame at `joints` (shape (7,), rad)."""
+        """Tool position (shape (3,), m) and rotation (shape (3, 3)) in the base frame.
+
+        Args:
+            joints: shape (7,), rad.
+        """
         self._data.qpos[:] = joints
         mujoco.mj_kinematics(self._model, self._data)
         return self._data.site_xpos[self._site].copy(), self._data.site_xmat[self._site].reshape(3, 3).copy()
@@ -105,13 +125,13 @@ class Kinematics:
     def follow(self, joints: Array, line: Line) -> Array:
         """Joint angles at evenly spaced points of `line`, starting at `joints`: shape (knots, 7), rad.
 
-        Between the knots a cubic spline (`trajectory.Spline`) keeps the tool on the line within `STRAIGHTNESS`.
+        Between the knots a cubic spline (`trajectory.Spline`) keeps the tool on the line, within
+        `STRAIGHTNESS`.
 
         Raises:
             MotionRefused: some point of the line cannot be reached within the joint limits.
         """
-        from .trajectory import Spline  # noqa: PLC0415  (keeps the two modules independent at import)
-
+        self._check_reach(line)
         count = max(4, math.ceil(line.length / _KNOT_DISTANCE), math.ceil(line.angle / _KNOT_ANGLE))
         while True:
             knots = self._knots(joints, line, count)
@@ -129,10 +149,27 @@ class Kinematics:
             )
         return knots
 
-    def _is_straight(self, spline: object, line: Line, count: int) -> bool:
-        from .trajectory import Spline  # noqa: PLC0415
+    @staticmethod
+    def _check_reach(line: Line) -> None:
+        """Refuse a line on which the wrist would be further from the shoulder than the arm is long."""
+        fractions = np.linspace(0.0, 1.0, _REACH_CHECKS).tolist()
+        distances = [wrist_distance(line.position_at(part), line.rotation_at(part)) for part in fractions]
+        farthest = max(distances)
+        if farthest <= REACH:
+            return
+        fraction = next(part for part, distance in zip(fractions, distances, strict=True) if distance > REACH)
+        raise MotionRefused(
+            f"motion refused: out of reach from {fraction:.0%} of the line: the wrist would be "
+            f"{farthest:.3f} m from the shoulder, {(farthest - REACH) * 1000:.0f} mm more than the arm's {REACH:.3f} m",
+            limit="reach",
+            value=farthest,
+            allowed=REACH,
+            excess=farthest - REACH,
+            unit="m",
+            fraction=fraction,
+        )
 
-        assert isinstance(spline, Spline)
+    def _is_straight(self, spline: Spline, line: Line, count: int) -> bool:
         fractions = (np.arange(count) + 0.5) / count
         for fraction, joints in zip(fractions.tolist(), spline.value(fractions), strict=True):
             position, rotation = self.tool(joints)
@@ -159,7 +196,7 @@ class Kinematics:
 
 
 class _Solver:
-    """mink set up for this arm: the tool's pose first, staying near a posture second, inside the joint limits."""
+    """mink set up for this arm: the tool's pose first, near a posture second, inside the joint limits."""
 
     def __init__(self) -> None:
         try:
@@ -206,19 +243,6 @@ class _Solver:
     def refusal(self, position: Array, rotation: Array, joints: Array, *, fraction: float) -> MotionRefused:
         """Why the tool cannot go on from `joints` to there."""
         at = f"at {fraction:.0%} of the line"
-        wrist = position - _WRIST_TO_TOOL * rotation[:, 2]
-        distance = float(np.linalg.norm(wrist - _SHOULDER))
-        if distance > REACH:
-            return MotionRefused(
-                f"motion refused: out of reach {at}: the wrist would be {distance:.3f} m from the shoulder, "
-                f"{(distance - REACH) * 1000:.0f} mm more than the arm's {REACH:.3f} m",
-                limit="reach",
-                value=distance,
-                allowed=REACH,
-                excess=distance - REACH,
-                unit="m",
-                fraction=fraction,
-            )
         free = self.solve(position, rotation, joints, near=joints, limited=False)
         if free is not None:
             over = np.maximum(free - self._upper, self._lower - free)
@@ -227,7 +251,8 @@ class _Solver:
                 allowed = self._upper[worst] if free[worst] > 0 else self._lower[worst]
                 return MotionRefused(
                     f"motion refused: joint {worst + 1} would need {math.degrees(free[worst]):.1f} deg {at}, "
-                    f"{math.degrees(over[worst]):.1f} deg beyond its limit of {math.degrees(allowed):.1f} deg",
+                    f"{math.degrees(over[worst]):.1f} deg beyond its limit of "
+                    f"{math.degrees(allowed):.1f} deg",
                     limit=f"joint {worst + 1}",
                     value=math.degrees(free[worst]),
                     allowed=math.degrees(allowed),

@@ -1,7 +1,7 @@
 """The Kinova Gen3 arm with 7 joints: published kinematics, masses and limits, and its shape.
 
-Source: the maker's public robot description (joint origins, masses, joint, torque and speed limits) and user guide
-(acceleration limits). Link shapes are our own capsules; each mass is spread over its capsule.
+Source: the maker's public robot description (joint origins, masses, joint, torque and speed limits) and user
+guide (acceleration limits). Link shapes are our own capsules; each mass is spread over its capsule.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ INTERFACE_OFFSET = (0.0, 0.0, -0.0615250)
 TOOL_LENGTH = 0.12
 BASE_MASS = 1.697
 JERK_RATIO = 10.0
-"""Jerk limit of a joint divided by its acceleration limit, 1/s (our choice: full acceleration within 0.1 s)."""
+"""Jerk limit of a joint divided by its acceleration limit, 1/s (our choice: reached within 0.1 s)."""
 
 HOME_DEGREES = (0.0, 15.0, 180.0, -130.0, 0.0, 55.0, 90.0)
 HOME = tuple(math.radians(angle) for angle in HOME_DEGREES)
@@ -108,7 +108,8 @@ def arm_xml(tool: str = "") -> str:
         limited = "" if math.isinf(joint.limit) else f' range="{-joint.limit} {joint.limit}" limited="true"'
         end = JOINTS[index + 1].origin if number < JOINT_COUNT else INTERFACE_OFFSET
         opening.append(
-            f'<body name="link {number}" pos="{_numbers(joint.origin)}" quat="{_turn(joint.turn)}" gravcomp="1">'
+            f'<body name="link {number}" pos="{_numbers(joint.origin)}" quat="{_turn(joint.turn)}" '
+            'gravcomp="1">'
             f'<joint name="joint {number}" armature="{_ROTOR_INERTIA[index]}" actuatorgravcomp="true" '
             f'actuatorfrclimited="true" actuatorfrcrange="{-joint.torque} {joint.torque}"{limited}/>'
             + _link_shape(number, end, joint.mass)

@@ -23,8 +23,8 @@ _DEFAULTS = """
 </default>
 """
 
-# The dense Jacobian is right for this size; it also avoids a fault of MuJoCo 4.0.0's sparse factorisation (its
-# issue 3767: wrong accelerations).
+# The dense Jacobian is right for this size; it also avoids a fault of MuJoCo 4.0.0's sparse factorisation
+# (its issue 3767: wrong accelerations; repaired in 4.0.1).
 _OPTIONS = f"""
 <option timestep="{PHYSICS_STEP}" integrator="implicitfast" cone="elliptic" impratio="100" jacobian="dense"
         solver="Newton" iterations="20" tolerance="1e-8">
@@ -41,7 +41,8 @@ _LOOKS = """
   <map znear="0.02" zfar="30"/>
 </visual>
 <asset>
-  <texture type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.70 0.76 0.82" width="64" height="384"/>
+  <texture type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.70 0.76 0.82" width="64"
+           height="384"/>
   <texture name="floor" type="2d" builtin="checker" rgb1="0.80 0.81 0.82" rgb2="0.75 0.76 0.78" width="128"
            height="128"/>
   <material name="floor" texture="floor" texrepeat="8 8" reflectance="0.04"/>
@@ -64,6 +65,20 @@ def _fixture_xml(fixture: Fixture) -> str:
     )
 
 
+def _legs_xml(fixture: Fixture) -> str:
+    """Four legs to look at; nothing touches them."""
+    (width, depth, height), (x, y, z) = fixture.size, fixture.centre
+    half = (z - height / 2) / 2
+    if half <= 0.05:
+        return ""
+    return "".join(
+        f'<geom class="looks" type="box" size="0.025 0.025 {half}" rgba="0.42 0.43 0.45 1" '
+        f'pos="{x + side * (width / 2 - 0.06)} {y + end * (depth / 2 - 0.06)} {half}"/>'
+        for side in (-1, 1)
+        for end in (-1, 1)
+    )
+
+
 def _mark_xml(mark: Mark) -> str:
     x, y, z = mark.centre
     return (
@@ -78,16 +93,18 @@ def _box_xml(box: Box) -> str:
     yaw = math.radians(box.yaw) / 2
     rgba = RED_RGBA if box.colour == "red" else BLUE_RGBA
     return (
-        f'<body name="{box.name}" pos="{_numbers((x, y, z + half))}" quat="{math.cos(yaw)} 0 0 {math.sin(yaw)}">'
+        f'<body name="{box.name}" pos="{_numbers((x, y, z + half))}" '
+        f'quat="{math.cos(yaw)} 0 0 {math.sin(yaw)}">'
         f'<freejoint name="{box.name}"/>'
-        f'<geom name="{box.name}" class="box" type="box" size="{half} {half} {half}" mass="{box.mass}" priority="1" solref="0.015 1" solimp="0.95 0.99 0.001" '
+        f'<geom name="{box.name}" class="box" type="box" size="{half} {half} {half}" mass="{box.mass}" '
+        f'priority="1" solref="0.015 1" solimp="0.95 0.99 0.001" '
         f'friction="{box.friction} 0.005 0.0001" rgba="{_numbers(rgba)}"/></body>'
     )
 
 
 def _grip_xml(box: Box) -> str:
-    # Stiffer than other contacts: what is gripped must turn with the fingers. As stiff as this, a falling box would
-    # bounce, for numerical reasons.
+    # Stiffer than other contacts: what is gripped must turn with the fingers. As stiff as this, a falling box
+    # would bounce, for numerical reasons.
     return "".join(
         f'<pair geom1="{pad}" geom2="{box.name}" condim="3" solref="0.004 1" solimp="0.95 0.99 0.001" '
         f'friction="{box.friction} {box.friction} 0.005 0.0001 0.0001"/>'
@@ -97,7 +114,7 @@ def _grip_xml(box: Box) -> str:
 
 def cell_xml(scene: Scene, grip_force: float) -> str:
     """MJCF of the whole cell. `grip_force` in N."""
-    things = "".join(_fixture_xml(fixture) for fixture in scene.fixtures)
+    things = "".join(_fixture_xml(fixture) + _legs_xml(fixture) for fixture in scene.fixtures)
     things += "".join(_mark_xml(mark) for mark in scene.marks)
     things += "".join(_box_xml(box) for box in scene.boxes)
     height = BASE_POSITION[2]

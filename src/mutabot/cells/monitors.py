@@ -21,7 +21,7 @@ class Condition:
 
 
 class Monitors:
-    """Watches conditions; remembers what broke, so that a swallowed exception still fails the test at its end."""
+    """Watches conditions; remembers what broke, so that a swallowed exception still fails the test."""
 
     def __init__(self, simulation: Simulation, values: Values) -> None:
         self._simulation = simulation

@@ -42,7 +42,7 @@ class Noise:
         return value + self.stream(name).gauss(0.0, STANDARD_DEVIATIONS[name])
 
     def bounded(self, name: str, deviation: float) -> float:
-        """A normal draw with mean 0, cut at two standard deviations; not switched off with the sensors' noise."""
+        """A normal draw with mean 0, cut at two standard deviations; drawn also with sensor noise off."""
         while True:
             draw = self.stream(name).gauss(0.0, deviation)
             if math.fabs(draw) <= 2 * deviation:

@@ -1,6 +1,7 @@
 """The Robotiq 2F-85 gripper as two coupled finger pads on slides.
 
-Source of the figures: the maker's data sheet (stroke 85 mm, force 20..235 N, finger speed 20..150 mm/s, about 0.9 kg).
+Source of the figures: the maker's data sheet (stroke 85 mm, force 20..235 N, finger speed 20..150 mm/s, about
+0.9 kg).
 The real fingers hang on linkages and stay parallel; slides give the pads the same motion.
 """
 
@@ -60,7 +61,8 @@ def coupling_xml() -> str:
 def tendon_xml() -> str:
     """MJCF of the tendon whose length is the path both fingers have closed, 0..STROKE m."""
     return (
-        '<fixed name="closing"><joint joint="left finger" coef="1"/><joint joint="right finger" coef="1"/></fixed>'
+        '<fixed name="closing"><joint joint="left finger" coef="1"/>'
+        '<joint joint="right finger" coef="1"/></fixed>'
     )
 
 

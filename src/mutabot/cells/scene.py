@@ -1,4 +1,7 @@
-"""What stands in the cell, as plain data. Lengths in m, angles in degrees, masses in kg, world frame with z up."""
+"""What stands in the cell, as plain data.
+
+Lengths in m, angles in degrees, masses in kg; world frame with z up.
+"""
 
 from __future__ import annotations
 

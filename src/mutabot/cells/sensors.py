@@ -9,7 +9,7 @@ import numpy as np
 
 from . import kinova
 from .errors import SensorError
-from .geometry import Pose, Position, euler_from_rotation
+from .geometry import Pose, Position, pose_of
 from .noise import Noise
 from .scene import BASE_POSITION, Box
 from .simulation import Simulation
@@ -23,7 +23,9 @@ _DISTANCE_START = 0.085
 class Sensors:
     """Readings of the cell. World frame unless said otherwise."""
 
-    def __init__(self, simulation: Simulation, noise: Noise, boxes: tuple[Box, ...], numbers: dict[str, int]) -> None:
+    def __init__(
+        self, simulation: Simulation, noise: Noise, boxes: tuple[Box, ...], numbers: dict[str, int]
+    ) -> None:
         self._simulation = simulation
         self._noise = noise
         self._boxes = {box.name: box for box in boxes}
@@ -95,7 +97,7 @@ def true_tool_pose(simulation: Simulation) -> Pose:
     """Exact tool pose in the base frame."""
     site = simulation.model.site("tool").id
     position = simulation.data.site_xpos[site] - np.array(BASE_POSITION)
-    return Pose(*position.tolist(), *euler_from_rotation(simulation.data.site_xmat[site].reshape(3, 3)))
+    return pose_of(position, simulation.data.site_xmat[site].reshape(3, 3))
 
 
 def true_box_position(simulation: Simulation, box: Box) -> Position:

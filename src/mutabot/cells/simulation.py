@@ -21,15 +21,15 @@ _ABSURD_SPEED = 1e4
 
 
 def _ignore_warning(message: str) -> None:
-    """MuJoCo would write its warnings into a file in the working directory; `tick` finds what matters itself."""
+    """MuJoCo would write warnings into a file in the working directory; `tick` finds what matters itself."""
 
 
 class Simulation:
     """Model and state of the cell, and its time.
 
     Attributes:
-        setpoints: wanted inputs of all servos for the coming tick, shape (STEPS_PER_TICK, servos): joints in rad, then
-            the fingers' closed path in m. Drivers fill it before each tick.
+        setpoints: wanted inputs of all servos for the coming tick, shape (STEPS_PER_TICK, servos): joints in
+            rad, then the fingers' closed path in m. Drivers fill it before each tick.
         before_tick: called before each tick, in order; they write `setpoints`.
         after_tick: called after each tick, in order; they may raise.
     """

@@ -1,7 +1,8 @@
 """Time laws: how a path is travelled under speed, acceleration and jerk limits.
 
-ruckig gives the time-optimal law of a joint motion, and of the travelled fraction of a straight line. Where a line asks
-a joint to be faster than it may be, time is stretched there, smoothly, so that the path stays the same.
+ruckig gives the time-optimal law of a joint motion, and of the travelled fraction of a straight line.
+Where a line asks a joint to be faster than it may be, time is stretched there, smoothly: the path stays the
+same.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ class Spline:
         right = np.zeros_like(knots)
         right[1:-1] = 6.0 / step**2 * (knots[2:] - 2 * knots[1:-1] + knots[:-2])
         self._knots = knots
-        self._bends: Array = np.linalg.solve(matrix, right)
+        self._bends = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
         self._step = step
         self._intervals = intervals
 
@@ -146,7 +147,7 @@ def line_motion(knots: Array, length: float, angle: float, step: float, speed: f
 def _ruckig(
     start: Array, end: Array, speed: Array, acceleration: Array, jerk: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Times (n,), positions, speeds and accelerations (n, dof) of the time-optimal motion from rest to rest."""
+    """Times (n,), positions, speeds and accelerations (n, dof) of the fastest motion from rest to rest."""
     try:
         import ruckig  # noqa: PLC0415  (not needed before the first motion)
     except ImportError as error:
