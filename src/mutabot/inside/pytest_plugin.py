@@ -3,14 +3,57 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Generator
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE
+
+if TYPE_CHECKING:
+    from .conductor import Conductor
+
+#: gives the seed of tests that run without a campaign
+SEED_VARIABLE = "MUTABOT_SEED"
+
+_conductor: Conductor | None = None
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_load_initial_conftests() -> None:
+    """Before any of the user's code is imported: wake up if there is a job."""
+    global _conductor  # noqa: PLW0603  # pytest knows this module, not an object of ours
+    if JOB_VARIABLE in os.environ and _conductor is None:
+        # tests that start pytest themselves must not find the job again
+        job, pipe = os.environ.pop(JOB_VARIABLE), os.environ.pop(PIPE_VARIABLE)
+        from .conductor import Conductor  # noqa: PLC0415  # a sleeping plugin costs nothing
+
+        _conductor = Conductor.from_files(job, int(pipe))
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Hand pytest's hooks to the conductor."""
+    if _conductor is not None:
+        config.pluginmanager.register(_conductor, "mutabot-conductor")
+
 
 @pytest.fixture
-def mutabot_seed() -> int:
+def mutabot_seed(request: pytest.FixtureRequest) -> int:
     """The seed of this test in this round: a whole number of 32 bits.
 
     Outside a campaign it comes from the environment variable MUTABOT_SEED, default 0.
     """
-    return int(os.environ.get("MUTABOT_SEED", "0"))
+    if _conductor is not None:
+        return _conductor.seed_of(request.node.nodeid)
+    return int(os.environ.get(SEED_VARIABLE, "0"))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, Any]:
+    """Fixtures shared by several tests draw from a seed of their own."""
+    if _conductor is None or fixturedef.scope == "function":
+        return (yield)
+    from .seeds import seeded_apart  # noqa: PLC0415
+
+    with seeded_apart(_conductor.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
+        return (yield)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import types
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import MISSING, fields, is_dataclass
 from enum import Enum
 from functools import cache
 from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -54,10 +54,20 @@ def _decode(kind: Any, data: Any) -> Any:
         return {key: _decode(item, value) for key, value in data.items()}
     if isinstance(kind, type) and is_dataclass(kind):
         hints = _hints(kind)
-        return kind(**{name: _decode(hints[name], value) for name, value in data.items()})
+        given = {name: _decode(hints[name], value) for name, value in data.items()}
+        return kind(**{**_left_out(kind), **given})
     if isinstance(kind, type) and issubclass(kind, Enum):
         return kind(data)
     return float(data) if kind is float and isinstance(data, int) else data
+
+
+def _left_out(kind: type[Any]) -> dict[str, None]:
+    """Fields without a default: they are missing in the data when they were None."""
+    return {
+        field.name: None
+        for field in fields(kind)
+        if field.default is MISSING and field.default_factory is MISSING
+    }
 
 
 def _decode_sequence(origin: Any, arguments: tuple[Any, ...], data: Any) -> Any:

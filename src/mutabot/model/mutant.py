@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from .notation import Notation
 from .site import Site
@@ -22,6 +23,8 @@ class Mutant:
         quantity: name of the quantity it changes; None if it concerns the call as a whole.
         variant: which of several mutants of the same operator here; empty if there is only one.
         description: one line that an engineer recognises.
+        idle: what the operation answered here in the baseline, if that is a plain value: what the program
+            gets when the command is left out. ``{"opaque": type}`` if it is no plain value.
     """
 
     number: int
@@ -33,6 +36,7 @@ class Mutant:
     quantity: str | None
     variant: str
     description: str
+    idle: Any = None
 
     @property
     def id(self) -> str:

@@ -55,7 +55,7 @@ class ByTo(Operator):
 
         async def mutated(call: Call, proceed: Proceed) -> Reply:
             value = call.values.get(quantity.name)
-            if value is None or not is_number(value):
+            if value is None or not is_number(value) or (quantity.mode is Mode.BY and value == 0):
                 return await proceed(call)
             changed = value + sign * await call.current(quantity)
             if not allowed(quantity, changed):
@@ -69,7 +69,3 @@ class ByTo(Operator):
         was, becomes = ("by", "to") if quantity.mode is Mode.BY else ("to", "by")
         amount = quantity.text(before)
         return f"{label(quantity)} {was} {amount} → {becomes} {amount}"
-
-    def foresees(self, subject: Subject) -> bool:
-        # Where the robot stands is known only at run time.
-        return False

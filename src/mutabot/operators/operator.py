@@ -113,10 +113,6 @@ class Operator(ABC):
         that cannot be known beforehand.
         """
 
-    def foresees(self, subject: Subject) -> bool:
-        """Whether its effect follows from the recorded values alone."""
-        return True
-
 
 def is_number(value: Value) -> bool:
     """Whether a value is a plain number (numpy scalars included, truth values not)."""

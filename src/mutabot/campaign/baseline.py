@@ -1,0 +1,270 @@
+"""The baseline: the suite on the unmutated program, twice per round, recorded.
+
+It tells which tests reach which site with which values, how long they take, and whether they can be
+relied on. What differs between the two runs of a round is flaky, and is set aside before any mutant runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from mutabot.errors import BaselineError, NothingToDoError
+from mutabot.model import Budget, Site, SiteSeen, TestEnd
+from mutabot.vocabulary import problem_error
+
+from .comparison import Event, Observation, compare
+from .request import Progress, Request
+from .sites import Sources
+from .workers import Result, Task, Workers
+
+REPETITIONS = 2
+#: operations and simulated seconds that a test may use beyond its multiple of the baseline
+SPARE_OPERATIONS, SPARE_SIMULATED = 200, 10.0
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Place:
+    """Where and what a mutant can act on: a site, an operation, a text command."""
+
+    site: Site
+    operation: str
+    pattern: str | None = None
+
+    @property
+    def key(self) -> str:
+        """The same place in words, equal between processes."""
+        span = self.site.span
+        columns = f"{span.line}:{span.column}-{span.end_line}:{span.end_column}"
+        return f"{span.file}:{columns} {self.operation} {self.pattern or ''}".rstrip()
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """Which run of the suite: the key of its task."""
+
+    round: int
+    repetition: int
+
+
+@dataclass(frozen=True, slots=True)
+class Hit:
+    """One recorded call: the values it wrote and read, and what a command returned."""
+
+    written: Mapping[str, Any]
+    read: Mapping[str, Any]
+    returned: Any
+
+
+@dataclass(slots=True)
+class Baseline:
+    """What is known about the original.
+
+    Attributes:
+        tests: per round, the tests that passed in all repetitions, in the order of the suite.
+        ends: the report of each (round, test), from the first repetition.
+        hits: recorded calls by place, in the order in which places were first reached.
+        reaching: (round, place) to the tests that reach it, fastest first.
+        observations: (round, test) to what is compared with a mutant's.
+        unstable: tests set aside as flaky, with the reason, by (round, test).
+        restless: (round, test) whose trace or probes differ between repetitions; never compared.
+        skipped: number of tests that skipped themselves.
+        startup: seconds from a worker's start to the end, less the tests; the longest.
+    """
+
+    tests: list[list[str]] = field(default_factory=list)
+    ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
+    hits: dict[Place, list[Hit]] = field(default_factory=dict)
+    reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
+    observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
+    unstable: dict[tuple[int, str], str] = field(default_factory=dict)
+    restless: set[tuple[int, str]] = field(default_factory=set)
+    skipped: int = 0
+    startup: float = 0.0
+
+    @property
+    def places(self) -> list[Place]:
+        """All places that any test reaches in any round."""
+        return list(self.hits)
+
+    def budget(self, round: int, test: str, factor: float) -> Budget:
+        """What a mutant may use in this test."""
+        end = self.ends[round, test]
+        return Budget(
+            operations=int(end.operations * factor) + SPARE_OPERATIONS,
+            simulated=None if end.simulated is None else end.simulated * factor + SPARE_SIMULATED,
+        )
+
+
+def take_baseline(request: Request, workers: Workers, progress: Progress) -> tuple[Baseline, list[Result]]:
+    """Run the suite on the original and look at what it does.
+
+    Returns the baseline and the raw results, first repetitions first.
+
+    Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
+    tests, BaselineError when tests fail.
+    """
+    progress.stage("baseline", request.rounds * REPETITIONS)
+    results: dict[tuple[int, int], Result] = {}
+    for result in workers.run(_tasks(request)):
+        run: _Run = result.task.key
+        results[run.round, run.repetition] = result
+        _refuse(result)
+        progress.advance(f"baseline, round {run.round + 1}, run {run.repetition + 1}: {_counts(result)}")
+    baseline = Baseline()
+    sources = Sources(request.root)
+    for round in range(request.rounds):
+        repetitions = [results[round, repetition] for repetition in range(REPETITIONS)]
+        _add_round(baseline, request, sources, round, repetitions)
+    if not any(baseline.tests):
+        raise NothingToDoError(_no_tests(baseline))
+    return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
+
+
+def _tasks(request: Request) -> Iterator[Task]:
+    for repetition in range(REPETITIONS):
+        for round in range(request.rounds):
+            inspect = (round, repetition) == (0, 0)
+            yield Task(
+                _Run(round, repetition), request.job(round, record=True, inspect=inspect), startup=300.0
+            )
+
+
+def _refuse(result: Result) -> None:
+    """Stop at once if this run of the suite cannot be a baseline."""
+    if result.problems:
+        raise _worst_problem(result)
+    if result.end is None:
+        raise BaselineError(
+            f"the tests cannot be run on the original: {death(result)}", tests=_running(result)
+        )
+    if result.end.errors:
+        raise BaselineError("the tests cannot be collected:\n" + "\n".join(result.end.errors))
+    if not result.end.collected:
+        raise NothingToDoError(f"pytest finds no tests ({last_line(result.log)})")
+    broken = [end for end in result.ends if end.failure is not None]
+    if broken:
+        raise BaselineError(
+            f"{broken[0].test}: {broken[0].failure}; the original must run before mutants can",
+            tests=[end.test for end in broken],
+        )
+
+
+def _worst_problem(result: Result) -> Exception:
+    errors = [problem_error(problem) for problem in result.problems]
+    if len(errors) > 1:
+        errors[0].args = ("\n".join(str(error) for error in errors[:10]),)
+    return errors[0]
+
+
+def _running(result: Result) -> list[str]:
+    return [result.running] if result.running is not None else []
+
+
+def death(result: Result) -> str:
+    """How a worker ended that did not end in an orderly way."""
+    during = f" during {result.running}" if result.running else ""
+    if result.overdue:
+        return f"{result.overdue}{during}"
+    code = result.exit_code
+    how = f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
+    said = last_line(result.log)
+    return f"{how}{during}{f'; it said last: {said}' if said else ''}"
+
+
+def last_line(log: str) -> str:
+    """The last line with text in it."""
+    lines = [line.strip() for line in log.splitlines() if line.strip()]
+    return lines[-1][:300] if lines else ""
+
+
+def _counts(result: Result) -> str:
+    counts: dict[str, int] = {}
+    for end in result.ends:
+        counts[end.outcome] = counts.get(end.outcome, 0) + 1
+    return ", ".join(f"{count} {outcome}" for outcome, count in counts.items()) or "nothing ran"
+
+
+def _add_round(
+    baseline: Baseline, request: Request, sources: Sources, round: int, repetitions: list[Result]
+) -> None:
+    runs = [{end.test: end for end in result.ends} for result in repetitions]
+    observed = [_observations(result, sources) for result in repetitions]
+    failed = []
+    good: list[str] = []
+    for test, end in runs[0].items():
+        others = [run.get(test) for run in runs[1:]]
+        outcomes = {other.outcome if other is not None else "missing" for other in [end, *others]}
+        if outcomes == {"failed"}:
+            failed.append(end)
+        elif len(outcomes) > 1:
+            baseline.unstable[round, test] = f"{' and '.join(sorted(outcomes))} in equal runs"
+        elif outcomes == {"skipped"}:
+            baseline.skipped += 1
+        else:
+            good.append(test)
+            baseline.ends[round, test] = replace(end, wall=max(end.wall, *(o.wall for o in others if o)))
+            baseline.observations[round, test] = observed[0][test]
+            probes = request.vocabulary.probes
+            if not all(
+                compare(observed[0][test], run[test], probes).indistinguishable for run in observed[1:]
+            ):
+                baseline.restless.add((round, test))
+    if failed:
+        raise BaselineError(_failures(round, failed), tests=[end.test for end in failed])
+    baseline.tests.append(good)
+    spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
+    baseline.startup = max(baseline.startup, *spent)
+    _add_hits(baseline, sources, round, repetitions[0], good)
+
+
+def _failures(round: int, failed: list[TestEnd]) -> str:
+    shown = "\n".join(f"  {end.test}: {(end.message or 'no message').splitlines()[0]}" for end in failed[:10])
+    more = f"\n  … and {len(failed) - 10} more" if len(failed) > 10 else ""
+    noun = "test fails" if len(failed) == 1 else "tests fail"
+    return f"{len(failed)} {noun} on the unmutated program in round {round + 1}:\n{shown}{more}"
+
+
+def _no_tests(baseline: Baseline) -> str:
+    if baseline.unstable:
+        test, reason = next((key[1], reason) for key, reason in baseline.unstable.items())
+        return f"no test can be relied on: all are flaky, such as {test} ({reason})"
+    return f"no test ran: {baseline.skipped} skipped"
+
+
+def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, good: list[str]) -> None:
+    places = places_of(result, sources)
+    reaching: dict[Place, list[str]] = {}
+    for end in result.ends:
+        if end.test not in good:
+            continue
+        for index, written, read, returned in end.trace:
+            place = places[index]
+            baseline.hits.setdefault(place, []).append(Hit(written, read, returned))
+            tests = reaching.setdefault(place, [])
+            if end.test not in tests:
+                tests.append(end.test)
+    for place, tests in reaching.items():
+        baseline.reaching[round, place] = sorted(tests, key=lambda test: baseline.ends[round, test].wall)
+
+
+def places_of(result: Result, sources: Sources) -> dict[int, Place]:
+    """The places a worker reported, by their index in its traces."""
+    return {seen.index: place_of(seen, sources) for seen in result.sites}
+
+
+def place_of(seen: SiteSeen, sources: Sources) -> Place:
+    """The place at which something was seen."""
+    return Place(sources.site(seen), seen.operation, seen.pattern)
+
+
+def _observations(result: Result, sources: Sources) -> dict[str, Observation]:
+    places = places_of(result, sources)
+    return {end.test: observation(end, places) for end in result.ends}
+
+
+def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
+    """What is compared of a test."""
+    events = [Event(places[index].key, written, read) for index, written, read, _ in end.trace]
+    return Observation(events, end.probes, end.truncated)

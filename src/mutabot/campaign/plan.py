@@ -1,0 +1,154 @@
+"""The plan: operators at places make mutants; what cannot matter is left out, with the reason."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from random import Random
+from typing import Any
+
+from mutabot.errors import OperatorError
+from mutabot.model import Call, LeftOut, Mutant, Operation, Reply, Vocabulary
+from mutabot.operators import Operator, Subject, names, operator
+from mutabot.operators.driving import Passage, rehearse
+
+from .baseline import Baseline, Hit, Place
+
+#: recorded calls per place that are tried out; calls of one place are much alike
+TRIED = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Mutants to run, and what is left out."""
+
+    mutants: list[Mutant]
+    left_out: list[LeftOut]
+
+
+def make_plan(baseline: Baseline, vocabulary: Vocabulary) -> Plan:
+    """All mutants of all operators at all places that the tests reach."""
+    mutants: list[Mutant] = []
+    left_out: list[LeftOut] = []
+    taken: set[str] = set()
+    operators = [operator(name) for name in names()]
+    for place, hits in baseline.hits.items():
+        operation = vocabulary.operation(place.operation)
+        if operation is None:
+            continue
+        for subject, rule in _subjects(operators, operation, place):
+            mutant = _mutant(len(mutants) + 1, rule, subject, place)
+            mutant = _distinct(mutant, taken)
+            seen, reason = _foresee(rule, subject, hits)
+            mutant = replace(mutant, description=_description(rule, subject, place, seen))
+            if reason is None:
+                mutants.append(replace(mutant, idle=_idle(hits) if rule.name == "skip" else None))
+            else:
+                left_out.append(LeftOut(mutant.id, mutant.description, reason))
+    return Plan(mutants, left_out)
+
+
+def _subjects(
+    operators: Iterable[Operator], operation: Operation, place: Place
+) -> Iterator[tuple[Subject, Operator]]:
+    pattern = operation.pattern(place.pattern)
+    for rule in operators:
+        try:
+            subjects = list(rule.subjects(operation, pattern))
+        except Exception as error:  # a plug-in may fail in any way; the user needs to know which one it was
+            raise OperatorError(
+                f"operator {rule.name!r} fails on {operation.target}: {error!r}", operator=rule.name
+            ) from error
+        for subject in subjects:
+            yield subject, rule
+
+
+def _mutant(number: int, rule: Operator, subject: Subject, place: Place) -> Mutant:
+    return Mutant(
+        number=number,
+        family=rule.family,
+        operator=rule.name,
+        site=place.site,
+        operation=place.operation,
+        pattern=place.pattern,
+        quantity=subject.quantity.name if subject.quantity is not None else None,
+        variant=subject.variant,
+        description="",
+    )
+
+
+def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
+    """Two operations at one site (the object decides) may have quantities of the same name."""
+    if mutant.id in taken:
+        name = mutant.operation.partition(":")[2]
+        mutant = replace(mutant, variant="+".join(part for part in (mutant.variant, name) if part))
+    taken.add(mutant.id)
+    return mutant
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """A recorded value of the subject, and what it would become; None where nobody knows beforehand."""
+
+    before: Any = None
+    after: Any = None
+
+
+def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, str | None]:
+    """What the mutant would do to the recorded calls, and why it is left out, if it is."""
+    last = _Seen()
+    for hit in hits[:TRIED]:
+        before = _value(subject, hit)
+        try:
+            passage = _rehearsal(rule, subject, hit)
+        except LookupError:  # it asks where the robot is, which only the run can tell
+            return _Seen(before), None
+        if passage.acted:
+            return _Seen(before, _changed(subject, passage)), None
+        if last.before is None:
+            last = _Seen(before)
+    return last, _reason(subject, last.before, len(hits))
+
+
+def _rehearsal(rule: Operator, subject: Subject, hit: Hit) -> Passage:
+    call = Call(subject.operation, subject.pattern, hit.written, idle=Reply())
+    try:
+        return rehearse(rule.middleware(subject, Random(1)), call, hit.read, operator=rule.name)
+    except (LookupError, OperatorError):
+        raise
+    except Exception as error:  # as above: a plug-in's own fault
+        raise OperatorError(
+            f"operator {rule.name!r} fails on {subject.operation.target}: {error!r}", operator=rule.name
+        ) from error
+
+
+def _value(subject: Subject, hit: Hit) -> Any:
+    if subject.quantity is None:
+        return None
+    return {**hit.read, **hit.written}.get(subject.quantity.name)
+
+
+def _changed(subject: Subject, passage: Passage) -> Any:
+    name = subject.quantity.name if subject.quantity is not None else ""
+    if passage.changed_reading and passage.received is not None:
+        return passage.received.values.get(name)
+    return passage.performed[0].values.get(name) if passage.performed else None
+
+
+def _reason(subject: Subject, value: Any, hits: int) -> str:
+    calls = "the call" if hits == 1 else f"any of {hits} calls"
+    if value is None:
+        return "the call gives no such value" if hits == 1 else f"none of {hits} calls gives such a value"
+    shown = subject.quantity.text(value) if subject.quantity is not None else str(value)
+    return f"would change nothing in {calls} (value {shown})"
+
+
+def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen) -> str:
+    what = place.site.text
+    if subject.pattern is not None:
+        what = f"{what}({subject.pattern.name!r})"
+    return f"{what}: {rule.describe(subject, seen.before, seen.after)}"
+
+
+def _idle(hits: list[Hit]) -> Any:
+    return hits[0].returned if hits else None

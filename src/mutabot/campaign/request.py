@@ -1,0 +1,90 @@
+"""What a campaign is asked to do, and how it tells what it is doing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from mutabot.model import Job, Vocabulary
+
+from .configuration import Configuration
+
+
+@dataclass(frozen=True)
+class Request:
+    """One campaign.
+
+    Attributes:
+        configuration: the project's configuration.
+        vocabulary: the robot API.
+        rounds, seed, jobs: as in the configuration, unless the command line says otherwise.
+        only, skip: selections as in ``select``.
+        selection: file with the ids to run; None for all.
+        engine: ``auto`` or ``replay``.
+    """
+
+    configuration: Configuration
+    vocabulary: Vocabulary
+    rounds: int
+    seed: int
+    jobs: int
+    only: tuple[str, ...] = ()
+    skip: tuple[str, ...] = ()
+    selection: Path | None = None
+    engine: str = "auto"
+
+    @property
+    def root(self) -> Path:
+        """The project's folder."""
+        return self.configuration.root
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """The project's pytest arguments."""
+        return (*self.configuration.tests, *self.configuration.pytest_args)
+
+    @property
+    def journal_path(self) -> Path:
+        """Where the journal of this project lies."""
+        return self.root / ".mutabot" / "journal.sqlite"
+
+    def job(self, round: int, **details: Any) -> Job:
+        """A job of this campaign in a round."""
+        return Job(
+            root=str(self.root),
+            program=self.configuration.program,
+            oracle=self.configuration.oracle,
+            vocabulary=self.vocabulary,
+            seed=self.seed,
+            round=round,
+            memory=self.configuration.memory,
+            **details,
+        )
+
+
+class Progress(Protocol):
+    """Told what a campaign is doing."""
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        """A new stage begins, of so many steps if that is known."""
+
+    def advance(self, line: str | None = None) -> None:
+        """One step is done; ``line`` says which."""
+
+    def note(self, text: str) -> None:
+        """Something the user should know."""
+
+
+@dataclass(frozen=True, slots=True)
+class CheckReport:
+    """What ``mutabot check`` found.
+
+    Attributes:
+        lines: for people.
+        data: the same for machines.
+    """
+
+    lines: list[str]
+    data: Mapping[str, Any]

@@ -1,0 +1,188 @@
+"""The campaign: baseline, plan, controls, engine, journal, in this order."""
+
+from __future__ import annotations
+
+import platform
+import time
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from mutabot import __version__
+from mutabot.errors import NothingToDoError
+from mutabot.model import LeftOut, Mutant, Vocabulary, to_data
+
+from .baseline import REPETITIONS, Baseline, take_baseline
+from .controls import run_controls
+from .journal import Journal
+from .plan import Plan, make_plan
+from .replay import replay
+from .request import CheckReport, Progress, Request
+from .selection import select
+from .workers import Result, Workers
+
+#: what else decides how a campaign ends, beside the user's own files
+_VERSIONS = ("pytest", "wrapt", "mujoco", "mink", "ruckig", "numpy", "pytest-bdd")
+
+
+def run_campaign(request: Request, progress: Progress) -> Path:
+    """Run a whole campaign and return the path of its journal.
+
+    Outcomes are in the journal as soon as they are known; an interrupted campaign leaves what it has.
+
+    Raises ConfigurationError, BaselineError, NothingToDoError, ControlError.
+    """
+    with _workers(request) as workers:
+        baseline, results = take_baseline(request, workers, progress)
+        plan = selected(request, make_plan(baseline, request.vocabulary), baseline)
+        with Journal.create(request.journal_path, meta=_meta(request)) as journal:
+            try:
+                _write_beginning(journal, request, results, plan)
+                _note_unstable(baseline, progress)
+                for control in run_controls(request, baseline, workers, progress):
+                    journal.add_control(control.test_file, control.control, True, control.detail)
+                _run_mutants(request, baseline, workers, progress, plan, journal)
+            except BaseException as error:
+                journal.finish(_reason(error))
+                raise
+            journal.finish("complete")
+    return request.journal_path
+
+
+def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut]]:
+    """Baseline and plan, without running a mutant."""
+    with _workers(request) as workers:
+        baseline, _ = take_baseline(request, workers, progress)
+    plan = selected(request, make_plan(baseline, request.vocabulary), baseline)
+    return plan.mutants, plan.left_out
+
+
+def check(request: Request, progress: Progress) -> CheckReport:
+    """Try the whole set-up, controls included, without running mutants."""
+    with _workers(request) as workers:
+        baseline, _ = take_baseline(request, workers, progress)
+        plan = make_plan(baseline, request.vocabulary)
+        controls = [control.detail for control in run_controls(request, baseline, workers, progress)]
+    mutants = selected(request, plan, baseline).mutants
+    return _report(request, baseline, plan, mutants, len(controls))
+
+
+def selected(request: Request, plan: Plan, baseline: Baseline) -> Plan:
+    """The plan with the mutants that were asked for.
+
+    Raises NothingToDoError if none is left, saying why.
+    """
+    if not plan.mutants:
+        raise NothingToDoError(_why_no_mutants(request, plan, baseline))
+    mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
+    if not mutants:
+        raise NothingToDoError("the selection leaves no mutant to run")
+    return Plan(mutants, plan.left_out)
+
+
+def _workers(request: Request) -> Workers:
+    return Workers(request.root, request.arguments, request.jobs)
+
+
+def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
+    if not baseline.hits:
+        files = ", ".join((*request.configuration.program, *request.configuration.oracle))
+        return f"no mutants: no test reaches a call of the vocabulary's operations in {files}"
+    return f"no mutants: all {len(plan.left_out)} would change nothing"
+
+
+def _run_mutants(
+    request: Request, baseline: Baseline, workers: Workers, progress: Progress, plan: Plan, journal: Journal
+) -> None:
+    progress.stage("mutants", len(plan.mutants) * request.rounds)
+    numbers = {mutant.id: mutant.number for mutant in plan.mutants}
+    for outcome in replay(request, baseline, workers, plan.mutants):
+        journal.add_outcome(outcome)
+        by = f" by {outcome.by}" if outcome.by is not None else ""
+        progress.advance(f"#{numbers[outcome.mutant]} round {outcome.round + 1}: {outcome.verdict}{by}")
+
+
+def _write_beginning(journal: Journal, request: Request, results: Sequence[Result], plan: Plan) -> None:
+    for index, result in enumerate(results):
+        repetition, round = divmod(index, request.rounds)
+        for end in result.ends:
+            journal.add_test(round, repetition, end)
+    files = {mutant.site.span.file for mutant in plan.mutants}
+    sources = {file: (request.root / file).read_text(encoding="utf-8", errors="replace") for file in files}
+    journal.set_plan(plan.mutants, plan.left_out, sources=sources)
+
+
+def _note_unstable(baseline: Baseline, progress: Progress) -> None:
+    for (round, test), reason in baseline.unstable.items():
+        progress.note(f"set aside as flaky in round {round + 1}: {test} ({reason})")
+
+
+def _reason(error: BaseException) -> str:
+    return "interrupted" if isinstance(error, KeyboardInterrupt) else f"{type(error).__name__}: {error}"
+
+
+def _meta(request: Request) -> dict[str, Any]:
+    return {
+        "mutabot": __version__,
+        "python": platform.python_version(),
+        "versions": _versions(),
+        "root": str(request.root),
+        "seed": request.seed,
+        "rounds": request.rounds,
+        "engine": "replay",
+        "jobs": request.jobs,
+        "started": time.time(),
+        "vocabulary": to_data(request.vocabulary),
+    }
+
+
+def _versions() -> dict[str, str]:
+    found = {}
+    for name in _VERSIONS:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def _report(
+    request: Request, baseline: Baseline, plan: Plan, mutants: list[Mutant], controls: int
+) -> CheckReport:
+    tests = sorted({test for tests in baseline.tests for test in tests})
+    never = _never_called(request.vocabulary, baseline)
+    lines = [
+        f"tests     {len(tests)} pass in {request.rounds} rounds × {REPETITIONS} runs"
+        + (f", {baseline.skipped} skipped" if baseline.skipped else ""),
+        f"sites     {len({place.site for place in baseline.places})} reached",
+        f"controls  {controls} ended as they must",
+        f"mutants   {len(mutants)}"
+        + (f" selected of {len(plan.mutants)}" if len(mutants) != len(plan.mutants) else "")
+        + f", {len(plan.left_out)} left out because they would change nothing",
+    ]
+    lines += [
+        f"flaky     {test} in round {round + 1}: {why}" for (round, test), why in baseline.unstable.items()
+    ]
+    lines += [
+        f"restless  {test} in round {round + 1}: equal runs differ in values"
+        for round, test in sorted(baseline.restless)
+    ]
+    lines += [f"unused    {target}: no test reaches it from the program or the oracle" for target in never]
+    data = {
+        "tests": tests,
+        "sites": [place.key for place in baseline.places],
+        "mutants": len(mutants),
+        "planned": len(plan.mutants),
+        "left_out": len(plan.left_out),
+        "controls": controls,
+        "unstable": [{"round": r, "test": t, "reason": why} for (r, t), why in baseline.unstable.items()],
+        "restless": [{"round": r, "test": t} for r, t in sorted(baseline.restless)],
+        "unused": never,
+    }
+    return CheckReport(lines, data)
+
+
+def _never_called(vocabulary: Vocabulary, baseline: Baseline) -> list[str]:
+    reached = {place.operation for place in baseline.places}
+    return [operation.target for operation in vocabulary.operations if operation.target not in reached]

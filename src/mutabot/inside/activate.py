@@ -1,0 +1,172 @@
+"""Activation: one mutant at work at its site."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from random import Random
+from typing import Any
+
+from mutabot.model import Call, Middleware, Mutant, Operation, Reply, Span
+from mutabot.operators import Subject, operator
+from mutabot.operators.control import FatalFault
+from mutabot.operators.driving import Carried, Passage, passed, run
+
+from .door import Door
+
+
+@dataclass(slots=True)
+class Evidence:
+    """What a mutant did in the running test.
+
+    Attributes:
+        hits: calls at its site.
+        acted: hits at which it changed something.
+        example: value before and after, at the first hit at which it acted.
+        refusal: the exception by which the robot refused a mutated call, or None.
+        invalid: whether a mutated call rejected its arguments' types.
+        failure: what went wrong in the tool or the operator itself, or None.
+    """
+
+    hits: int = 0
+    acted: int = 0
+    example: tuple[Any, ...] | None = None
+    refusal: BaseException | None = None
+    invalid: bool = False
+    failure: str | None = None
+
+
+@dataclass(slots=True)
+class Activation:
+    """A mutant in place.
+
+    Attributes:
+        mutant: the mutant.
+        operation: the operation it acts on.
+        refusals: names of exceptions that are refusals.
+        on_act: told when it changes something for the first time in a test.
+        evidence: what it did in the running test.
+    """
+
+    mutant: Mutant
+    operation: Operation
+    refusals: frozenset[str]
+    on_act: Callable[[], None]
+    evidence: Evidence = field(default_factory=Evidence)
+    _middleware: Middleware | None = None
+
+    def start(self, seed: int) -> None:
+        """A new test begins; the mutant's randomness follows from ``seed`` alone."""
+        self.evidence = Evidence()
+        self._middleware = operator(self.mutant.operator).middleware(self._subject(), Random(seed))
+
+    def is_here(self, span: Span, target: str) -> bool:
+        """Whether calls of this operation at this place are the mutant's, bar the text command."""
+        return self.mutant.operation == target and self.mutant.site.span == span
+
+    def fits(self, call: Call) -> bool:
+        """Whether the call is the text command that the mutant is about."""
+        return (call.pattern.text if call.pattern is not None else None) == self.mutant.pattern
+
+    def run(self, door: Door, call: Call) -> tuple[Any, Reply | None]:
+        """Make a plain call as the mutant: (what the program receives, the robot's last answer)."""
+        return run(self.run_async(door, call, awaits=False), operator=self.mutant.operator)
+
+    async def run_async(self, door: Door, call: Call, *, awaits: bool = True) -> tuple[Any, Reply | None]:
+        """Make an async call as the mutant: (what the program receives, the robot's last answer)."""
+        assert self._middleware is not None
+        self.evidence.hits += 1
+        call = self._with_idle(call)
+        passage = Passage(call)
+        performer = _Performer(self, door, passage, awaits)
+        try:
+            reply = await passed(passage, self._middleware, performer.proceed)
+            self._note(passage)
+            last = passage.answered[-1] if passage.answered else None
+            return door.result(call, reply, last), last
+        except BaseException as error:
+            self._note(passage)
+            if performer.raised is None and not isinstance(error, FatalFault):
+                # neither the robot nor the program: the operator or the vocabulary is at fault
+                self.evidence.failure = f"operator {self.mutant.operator}: {type(error).__name__}: {error}"
+            raise
+
+    def _subject(self) -> Subject:
+        pattern = self.operation.pattern(self.mutant.pattern)
+        subject = Subject(self.operation, pattern, None, self.mutant.variant)
+        quantities = (*subject.written, *subject.read)
+        named = next((quantity for quantity in quantities if quantity.name == self.mutant.quantity), None)
+        return replace(subject, quantity=named)
+
+    def _with_idle(self, call: Call) -> Call:
+        recorded = self.mutant.idle
+        if call.idle is not None and call.idle.payload is not None:
+            return call
+        if isinstance(recorded, dict):
+            return replace(call, idle=None)
+        return replace(call, idle=Reply({}, recorded)) if recorded is not None else call
+
+    def _note(self, passage: Passage) -> None:
+        if not passage.acted:
+            return
+        if not self.evidence.acted:
+            self.evidence.example = self._example(passage)
+            self.on_act()
+        self.evidence.acted += 1
+
+    def _example(self, passage: Passage) -> tuple[Any, ...]:
+        name = self.mutant.quantity
+        if name is None:
+            return (dict(passage.call.values), [dict(call.values) for call in passage.performed])
+        if passage.changed_command:
+            after = passage.performed[0].values.get(name) if passage.performed else None
+            return (passage.call.values.get(name), after)
+        received = passage.received.values.get(name) if passage.received is not None else None
+        return (passage.answered[-1].values.get(name), received)
+
+
+@dataclass(slots=True)
+class _Performer:
+    """Performs calls for a passage, and notes how the robot took the mutated ones."""
+
+    activation: Activation
+    door: Door
+    passage: Passage
+    awaits: bool
+    raised: BaseException | None = None
+
+    async def proceed(self, call: Call) -> Reply:
+        try:
+            result = self.door.perform(call, self.passage.call)
+            if self.awaits and inspect.isawaitable(result):
+                result = await result
+        except BaseException as error:
+            self.raised = error
+            self._judge(error)
+            if isinstance(error, StopIteration):
+                raise Carried(error) from None
+            raise
+        return self.door.reply(call, result)
+
+    def _judge(self, error: BaseException) -> None:
+        if not self.passage.changed_command:
+            return
+        evidence = self.activation.evidence
+        if is_named(error, self.activation.refusals):
+            evidence.refusal = error
+        elif isinstance(error, TypeError) and _raised_at_the_call(error):
+            evidence.invalid = True
+
+
+def is_named(error: BaseException, names: Iterable[str]) -> bool:
+    """Whether the exception's class, or one it derives from, is among ``module:Name``."""
+    return any(f"{kind.__module__}:{kind.__qualname__}" in names for kind in type(error).__mro__)
+
+
+def _raised_at_the_call(error: BaseException) -> bool:
+    """Whether no code of the callable itself ran: its arguments did not fit."""
+    traceback = error.__traceback__
+    while traceback is not None and traceback.tb_next is not None:
+        traceback = traceback.tb_next
+    return traceback is not None and traceback.tb_frame.f_code is Door.perform.__code__

@@ -1,0 +1,132 @@
+"""What ended a test: a check, an exception, a limit, a refusal, or a failure of the tool."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import TracebackType
+
+import pytest
+
+from mutabot.errors import MutabotError
+from mutabot.model import By, Role, Vocabulary
+
+from .activate import Evidence, is_named
+from .limits import BudgetExceeded
+from .locate import Locator
+
+_INSIDE = os.path.dirname(os.path.realpath(__file__))  # noqa: PTH120  # pathlib is slow to import
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """Why a test failed; the fields are those of ``TestEnd`` with the same names."""
+
+    by: By
+    phase: str
+    exception: str
+    message: str
+    place: str | None
+    timeout: str | None = None
+    failure: str | None = None
+    refused: str | None = None
+
+
+def classify(
+    error: BaseException,
+    phase: str,
+    test_file: str,
+    locator: Locator,
+    vocabulary: Vocabulary,
+    evidence: Evidence,
+) -> Ending:
+    """The ending that this exception means.
+
+    Args:
+        error: what pytest caught.
+        phase: ``setup``, ``call`` or ``teardown``.
+        test_file: file of the test; its folder holds the test's own helpers.
+    """
+    kind = type(error)
+    return Ending(
+        by=By.CHECK if _is_check(error, test_file, locator, vocabulary) else By.EXCEPTION,
+        phase=phase,
+        exception=f"{kind.__module__}:{kind.__qualname__}",
+        message=_text(error),
+        place=_place(error, locator),
+        timeout=str(error) if isinstance(error, BudgetExceeded) else None,
+        failure=_failure(error, vocabulary),
+        refused=_refusal(error, evidence),
+    )
+
+
+def _text(error: BaseException) -> str:
+    lines = str(error).strip().splitlines() or [type(error).__name__]
+    return "\n".join(lines[:12])[:2000]
+
+
+def _failure(error: BaseException, vocabulary: Vocabulary) -> str | None:
+    for link in _chain(error):
+        if isinstance(link, MemoryError):
+            return "the memory limit was reached"
+        if isinstance(link, MutabotError) and not type(link).__module__.startswith("mutabot.cells"):
+            return f"{type(link).__name__}: {link}"
+        if is_named(link, vocabulary.failures):
+            return f"{type(link).__name__}: {link}"
+    return None
+
+
+def _refusal(error: BaseException, evidence: Evidence) -> str | None:
+    if evidence.refusal is not None and any(link is evidence.refusal for link in _chain(error)):
+        return str(evidence.refusal)
+    return None
+
+
+def _chain(error: BaseException) -> Iterator[BaseException]:
+    seen: set[int] = set()
+    link: BaseException | None = error
+    while link is not None and id(link) not in seen:
+        seen.add(id(link))
+        yield link
+        link = link.__cause__ or (None if link.__suppress_context__ else link.__context__)
+
+
+def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary: Vocabulary) -> bool:
+    if is_named(error, vocabulary.checks) or isinstance(error, pytest.fail.Exception):
+        return True
+    if not isinstance(error, AssertionError):
+        return False
+    # An assertion is a check if the tests made it. Code of helper libraries says nothing, so the frame
+    # nearest to the raise decides that is the tests', the program's or an operation's.
+    folder = os.path.dirname(os.path.realpath(test_file)) + os.sep  # noqa: PTH120
+    for filename in _files_from_the_raise(error.__traceback__):
+        if filename.startswith(_INSIDE):
+            return False
+        role = locator.role(filename)
+        if role is Role.PROGRAM:
+            return False
+        if role is Role.ORACLE or filename.startswith(folder) or filename.endswith("conftest.py"):
+            return True
+    return True
+
+
+def _files_from_the_raise(traceback: TracebackType | None) -> list[str]:
+    files = []
+    while traceback is not None:
+        files.append(os.path.realpath(traceback.tb_frame.f_code.co_filename))
+        traceback = traceback.tb_next
+    return files[::-1]
+
+
+def _place(error: BaseException, locator: Locator) -> str | None:
+    """The innermost line that is the user's own: the file lies under the root and is not installed."""
+    place = None
+    traceback = error.__traceback__
+    while traceback is not None:
+        filename = traceback.tb_frame.f_code.co_filename
+        relative = locator.relative(filename)
+        if not relative.startswith("..") and "site-packages" not in relative and not filename.startswith("<"):
+            place = f"{relative}:{traceback.tb_lineno}"
+        traceback = traceback.tb_next
+    return place

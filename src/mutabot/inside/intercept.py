@@ -1,0 +1,187 @@
+"""Putting a handler around callables of the robot API, before or after they are imported.
+
+A handler has wrapt's wrapper signature: ``handler(wrapped, instance, args, kwargs)``. Functions, methods,
+class and static methods, async functions and properties can be wrapped. Where a module was already
+imported, names that other modules, classes and default arguments took from it (``from x import f``) are
+re-bound too; references kept in containers or closures are not found.
+"""
+
+from __future__ import annotations
+
+import functools
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from types import FunctionType, ModuleType
+from typing import Any
+
+import wrapt
+
+Handler = Callable[[Callable[..., Any], Any, tuple[Any, ...], dict[str, Any]], Any]
+Undo = Callable[[], None]
+
+
+class NotFoundError(LookupError):
+    """A target names something that its module does not have.
+
+    Attributes:
+        name: the part that does not exist.
+        known: names that exist in its place.
+    """
+
+    def __init__(self, message: str, name: str, known: tuple[str, ...]) -> None:
+        super().__init__(message)
+        self.name, self.known = name, known
+
+
+class NotCallableError(TypeError):
+    """A target names something that cannot be wrapped."""
+
+
+@dataclass(slots=True)
+class Interception:
+    """Wrappers put in place, and how to take them away again.
+
+    Attributes:
+        pending: targets whose module has not been imported yet.
+        found: wrapped original by target.
+        on_error: told about targets that turn out wrong when their module is imported.
+    """
+
+    on_error: Callable[[str, Exception], None]
+    pending: set[str] = field(default_factory=set)
+    found: dict[str, Any] = field(default_factory=dict)
+    _undo: list[Undo] = field(default_factory=list)
+    _removed: bool = False
+
+    def wrap(self, target: str, handler: Handler) -> None:
+        """Wrap ``module:qualified.name`` now, or as soon as its module is imported."""
+        module_name, _, qualname = target.partition(":")
+        self.pending.add(target)
+        late = module_name in sys.modules
+
+        def imported(module: ModuleType) -> None:
+            if self._removed:
+                return
+            self.pending.discard(target)
+            try:
+                self._install(target, module, qualname, handler, late=late)
+            except (NotFoundError, NotCallableError) as error:
+                self.on_error(target, error)
+
+        wrapt.register_post_import_hook(imported, module_name)
+
+    def remove(self) -> None:
+        """Take all wrappers away, last one first. Hooks of modules not yet imported become idle."""
+        self._removed = True
+        while self._undo:
+            self._undo.pop()()
+
+    def _install(
+        self, target: str, module: ModuleType, qualname: str, handler: Handler, *, late: bool
+    ) -> None:
+        owner, name, original = resolve(module, qualname)
+        wrapper = _wrapper(owner, name, original, handler)
+        own = name in vars(owner)
+        try:
+            setattr(owner, name, wrapper)
+        except (AttributeError, TypeError) as error:
+            raise NotCallableError(f"{target} cannot be intercepted: {error}") from error
+        self._undo.append(
+            functools.partial(setattr, owner, name, original)
+            if own
+            else functools.partial(delattr, owner, name)
+        )
+        self.found[target] = original
+        if late:
+            self._undo.extend(_rebind(original, wrapper))
+
+
+def resolve(module: ModuleType, qualname: str) -> tuple[Any, str, Any]:
+    """Owner, last name and raw attribute (descriptors unbound) of a qualified name in a module.
+
+    Raises NotFoundError, naming the part that does not exist and what there is.
+    """
+    owner: Any = module
+    *parents, name = qualname.split(".")
+    for parent in parents:
+        owner = _attribute(owner, parent, module)
+    return owner, name, _attribute(owner, name, module)
+
+
+def _attribute(owner: Any, name: str, module: ModuleType) -> Any:
+    places = owner.__mro__ if isinstance(owner, type) else (owner,)
+    for place in places:
+        if name in vars(place):
+            return vars(place)[name]
+    try:
+        return getattr(owner, name)  # a module may make its attributes on demand
+    except AttributeError:
+        known = tuple(key for key in dir(owner) if not key.startswith("_"))
+        of = f"module {module.__name__}" if owner is module else f"{module.__name__}:{owner.__qualname__}"
+        raise NotFoundError(f"{of} has no {name!r}", name, known) from None
+
+
+def _wrapper(owner: Any, name: str, original: Any, handler: Handler) -> Any:
+    if isinstance(original, property):
+        return _wrapped_property(original, handler)
+    if isinstance(original, functools.cached_property):
+        cached = functools.cached_property(wrapt.FunctionWrapper(original.func, _as_getter(handler)))
+        cached.__set_name__(owner, name)
+        return cached
+    if isinstance(original, type):
+        raise NotCallableError(
+            f"{original.__module__}:{original.__qualname__} is a class; name one of its methods"
+        )
+    if not callable(original) and not isinstance(original, classmethod | staticmethod):
+        raise NotCallableError(f"{name!r} is {type(original).__name__}, which cannot be called")
+    return wrapt.FunctionWrapper(original, handler)
+
+
+def _wrapped_property(original: property, handler: Handler) -> property:
+    if original.fget is None:
+        raise NotCallableError("it is a property that cannot be read")
+    getter = wrapt.FunctionWrapper(original.fget, _as_getter(handler))
+    return property(getter, original.fset, original.fdel, original.__doc__)
+
+
+def _as_getter(handler: Handler) -> Handler:
+    """A property's getter is called as a plain function of the instance; handlers expect a bound method."""
+
+    def get(wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+        return handler(functools.partial(wrapped, *args), args[0], (), {})
+
+    return get
+
+
+def _rebind(original: Any, wrapper: Any) -> Iterator[Undo]:
+    """Put the wrapper wherever loaded modules, their classes or default arguments refer to the original."""
+    if isinstance(original, property | classmethod | staticmethod | functools.cached_property):
+        return
+    for module in list(sys.modules.values()):
+        if not isinstance(module, ModuleType) or module.__name__.startswith("mutabot"):
+            continue
+        for name, value in list(vars(module).items()):
+            if value is original:
+                setattr(module, name, wrapper)
+                yield functools.partial(setattr, module, name, original)
+            elif isinstance(value, FunctionType) and value.__module__ == module.__name__:
+                yield from _rebind_defaults(value, original, wrapper)
+            elif isinstance(value, type) and value.__module__ == module.__name__:
+                yield from _rebind_class(value, original, wrapper)
+
+
+def _rebind_class(owner: type, original: Any, wrapper: Any) -> Iterator[Undo]:
+    for name, value in list(vars(owner).items()):
+        if value is original:
+            setattr(owner, name, wrapper)
+            yield functools.partial(setattr, owner, name, original)
+        elif isinstance(value, FunctionType):
+            yield from _rebind_defaults(value, original, wrapper)
+
+
+def _rebind_defaults(function: FunctionType, original: Any, wrapper: Any) -> Iterator[Undo]:
+    defaults = function.__defaults__
+    if defaults and any(value is original for value in defaults):
+        function.__defaults__ = tuple(wrapper if value is original else value for value in defaults)
+        yield functools.partial(setattr, function, "__defaults__", defaults)

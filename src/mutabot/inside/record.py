@@ -1,0 +1,73 @@
+"""Recording: which sites a test hits, in which order, with which values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from mutabot.model import Role, SiteSeen, Span
+
+#: hits per test that are reported with their values; a test is compared and planned from these
+TRACE_LIMIT = 5000
+
+
+@dataclass(slots=True)
+class Recorder:
+    """Sites of the session, and the trace of the running test.
+
+    Attributes:
+        on_site: told about each site when it is first reached.
+        trace: hits of the running test: site index, written values, read values, returned plain value.
+        truncated: whether hits were left out of the trace.
+    """
+
+    on_site: Callable[[SiteSeen], None]
+    trace: list[tuple[Any, ...]] = field(default_factory=list)
+    truncated: bool = False
+    _indexes: dict[tuple[Span, str, str | None], int] = field(default_factory=dict)
+
+    def start(self) -> None:
+        """A new test begins."""
+        self.trace = []
+        self.truncated = False
+
+    def hit(
+        self,
+        span: Span,
+        role: Role,
+        operation: str,
+        pattern: str | None,
+        written: Mapping[str, Any],
+        read: Mapping[str, Any],
+        returned: Any,
+    ) -> None:
+        """One call at a site has been made."""
+        if len(self.trace) >= TRACE_LIMIT:
+            self.truncated = True
+            return
+        key = (span, operation, pattern)
+        index = self._indexes.get(key)
+        if index is None:
+            index = self._indexes[key] = len(self._indexes)
+            self.on_site(SiteSeen(index, span, operation, pattern, role is Role.ORACLE))
+        self.trace.append((index, _frozen(written), _frozen(read), plain_result(returned)))
+
+
+def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values as they are now: a program may change its lists and arrays later."""
+    return {
+        name: value.tolist()
+        if hasattr(value, "tolist")
+        else list(value)
+        if isinstance(value, list)
+        else value
+        for name, value in values.items()
+    }
+
+
+def plain_result(result: Any) -> Any:
+    """A command's result if it is a plain value, else what type it has."""
+    if result is None or isinstance(result, bool | int | float | str):
+        return result
+    return {"opaque": f"{type(result).__module__}:{type(result).__qualname__}"}

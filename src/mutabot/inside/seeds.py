@@ -1,0 +1,43 @@
+"""Seeds: every (campaign seed, round, test) has its own, every (mutant, round, test) its own generator."""
+
+from __future__ import annotations
+
+import hashlib
+import random
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+
+def derive(*parts: object) -> int:
+    """A whole number of 32 bits that depends on all parts and on nothing else."""
+    text = "\x1f".join(str(part) for part in parts)
+    return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=4).digest(), "big")
+
+
+def seed_all(seed: int) -> None:
+    """Seed ``random``, and numpy's global generator if numpy is loaded."""
+    random.seed(seed)
+    numpy_random = sys.modules.get("numpy.random")
+    if numpy_random is not None:
+        numpy_random.seed(seed)
+
+
+@contextmanager
+def seeded_apart(seed: int) -> Iterator[None]:
+    """Seed for the time of a block, then go on with the generators as they were before.
+
+    Fixtures shared by several tests draw from their own seed: what they draw must not depend on which
+    test happens to need them first.
+    """
+    before: Any = random.getstate()
+    numpy_random = sys.modules.get("numpy.random")
+    numpy_before: Any = numpy_random.get_state() if numpy_random is not None else None
+    seed_all(seed)
+    try:
+        yield
+    finally:
+        random.setstate(before)
+        if numpy_random is not None:
+            numpy_random.set_state(numpy_before)

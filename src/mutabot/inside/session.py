@@ -1,0 +1,249 @@
+"""One session inside: the job at hand, and what happens at every intercepted call."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from functools import partial
+from types import FrameType
+from typing import Any
+
+from mutabot.errors import PathError
+from mutabot.model import Acted, Budget, Call, Job, Operation, Problem, Reply, Role, Span
+
+from .activate import Activation
+from .door import Door
+from .intercept import Handler, Interception, NotFoundError
+from .limits import ClockReader, Meter
+from .pipe import Pipe
+from .record import Recorder
+from .seeds import derive
+
+#: whether an operation is already under way here: only the outermost is a site
+_under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)
+
+
+@dataclass(slots=True)
+class Session:
+    """The job at hand.
+
+    Attributes:
+        job: what to do.
+        pipe: where reports go.
+        locate: finds the site of a frame.
+        recorder: traces; always kept, since survivors are compared with the original.
+        activation: the mutant, or None for the original.
+        meter: what the running test has used; None between tests.
+        test: node id of the running test.
+    """
+
+    job: Job
+    pipe: Pipe
+    locate: Callable[[FrameType | None], tuple[Span, Role] | None]
+    recorder: Recorder = field(init=False)
+    interception: Interception = field(init=False)
+    activation: Activation | None = None
+    meter: Meter | None = None
+    test: str = ""
+    _doors: list[Door] = field(default_factory=list)
+    _told: set[tuple[str, str]] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        self.recorder = Recorder(self.pipe.send)
+        self.interception = Interception(self._target_is_wrong)
+
+    def install(self) -> None:
+        """Put the interception of the whole vocabulary in place, and the mutant with it."""
+        vocabulary = self.job.vocabulary
+        for operation in vocabulary.operations:
+            reading = vocabulary.operation(operation.current) if operation.current is not None else None
+            door = Door(operation, reading, partial(self._path_is_wrong, operation))
+            self._doors.append(door)
+            self.interception.wrap(operation.target, self._handler(door))
+        if vocabulary.clock is not None:
+            self.interception.wrap(
+                vocabulary.clock.tick, self._clock_handler(ClockReader.of(vocabulary.clock))
+            )
+        if self.job.mutant is not None:
+            self.activate()
+
+    def activate(self) -> None:
+        """Take on the job's mutant."""
+        mutant = self.job.mutant
+        assert mutant is not None
+        operation = self.job.vocabulary.operation(mutant.operation)
+        assert operation is not None
+        refusals = frozenset((*operation.refusals, *self.job.vocabulary.refusals))
+        self.activation = Activation(mutant, operation, refusals, self._acted)
+
+    def start_test(self, test: str) -> None:
+        """A test begins, before its fixtures."""
+        self.test = test
+        self.meter = Meter(self.job.budgets.get(test, Budget()))
+        self.recorder.start()
+        for door in self._doors:
+            door.reset()
+        if self.activation is not None:
+            mutant = self.activation.mutant
+            self.activation.start(derive(self.job.seed, self.job.round, test, mutant.id))
+
+    def end_test(self) -> None:
+        """The test and its fixtures are over."""
+        self.meter = None
+
+    def inspect_targets(self) -> None:
+        """Import what no test imported, so that every target of the vocabulary is looked at."""
+        for target in sorted(self.interception.pending):
+            module = target.partition(":")[0]
+            try:
+                __import__(module)
+            except Exception as error:  # the user's module may fail in any way; say which and how
+                self._tell(
+                    self._source_of(target),
+                    "call",
+                    f"module {module!r} cannot be imported: {error!r}",
+                    module,
+                )
+        for operation in self.job.vocabulary.operations:
+            self._check_arguments(operation)
+
+    def _handler(self, door: Door) -> Handler:
+        def handle(
+            wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
+        ) -> Any:
+            __tracebackhide__ = True
+            if self.meter is None or _under_way.get():
+                return wrapped(*args, **kwargs)
+            self.meter.count()
+            located = self.locate(sys._getframe(1))
+            if located is None:
+                return wrapped(*args, **kwargs)
+            if inspect.iscoroutinefunction(wrapped):
+                return self._observe_async(door, located, wrapped, instance, args, kwargs)
+            return self._observe(door, located, wrapped, instance, args, kwargs)
+
+        return handle
+
+    def _observe(
+        self,
+        door: Door,
+        located: tuple[Span, Role],
+        wrapped: Callable[..., Any],
+        instance: Any,
+        args: tuple[Any, ...],
+        kwargs: dict[str, Any],
+    ) -> Any:
+        __tracebackhide__ = True
+        token = _under_way.set(True)
+        call = door.call(wrapped, instance, args, kwargs)
+        reply: Reply | None = None
+        try:
+            mutated = self._mutant_for(located[0], call)
+            if mutated is not None:
+                result, reply = mutated.run(door, call)
+                return result
+            reply = door.reply(call, door.perform(call, call))
+            return reply.payload
+        finally:
+            _under_way.reset(token)
+            self._record(located, call, reply)
+
+    async def _observe_async(
+        self,
+        door: Door,
+        located: tuple[Span, Role],
+        wrapped: Callable[..., Any],
+        instance: Any,
+        args: tuple[Any, ...],
+        kwargs: dict[str, Any],
+    ) -> Any:
+        __tracebackhide__ = True
+        token = _under_way.set(True)
+        call = door.call(wrapped, instance, args, kwargs)
+        reply: Reply | None = None
+        try:
+            mutated = self._mutant_for(located[0], call)
+            if mutated is not None:
+                result, reply = await mutated.run_async(door, call)
+                return result
+            reply = door.reply(call, await door.perform(call, call))
+            return reply.payload
+        finally:
+            _under_way.reset(token)
+            self._record(located, call, reply)
+
+    def _mutant_for(self, span: Span, call: Call) -> Activation | None:
+        activation = self.activation
+        if activation is None or not activation.is_here(span, call.operation.target):
+            return None
+        return activation if activation.fits(call) else None
+
+    def _record(self, located: tuple[Span, Role], call: Call, reply: Reply | None) -> None:
+        span, role = located
+        pattern = call.pattern.text if call.pattern is not None else None
+        read = reply.values if reply is not None else {}
+        returned = reply.payload if reply is not None and call.operation.command else None
+        self.recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned)
+
+    def _clock_handler(self, reader: ClockReader) -> Handler:
+        def handle(
+            wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
+        ) -> Any:
+            __tracebackhide__ = True
+            result = wrapped(*args, **kwargs)
+            if self.meter is not None:
+                bound = (
+                    inspect.signature(wrapped).bind(*args, **kwargs).arguments if reader.clock.rooted else {}
+                )
+                self.meter.tick(reader.seconds(result, instance, bound))
+            return result
+
+        return handle
+
+    def _acted(self) -> None:
+        self.pipe.send(Acted(self.test))
+
+    def _target_is_wrong(self, target: str, error: Exception) -> None:
+        known = error.known if isinstance(error, NotFoundError) else ()
+        name = error.name if isinstance(error, NotFoundError) else None
+        self._tell(self._source_of(target), "call", str(error), name, known)
+
+    def _path_is_wrong(self, operation: Operation, key: str, error: PathError) -> None:
+        self._tell(operation.source, key, str(error), error.step, error.known)
+
+    def _check_arguments(self, operation: Operation) -> None:
+        original = self.interception.found.get(operation.target)
+        if original is None:
+            return
+        try:
+            parameters = inspect.signature(getattr(original, "__func__", original)).parameters
+        except (TypeError, ValueError):  # builtins without a signature: arguments by keyword only
+            return
+        if any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters.values()):
+            return
+        known = tuple(name for name in parameters if name not in ("self", "cls"))
+        roots = {quantity.path.root or "": f"arguments.{quantity.name}" for quantity in operation.arguments}
+        if operation.message is not None:
+            roots[operation.message] = "message"
+        for root, key in roots.items():
+            if root not in parameters:
+                self._tell(operation.source, key, f"{operation.target} has no argument {root!r}", root, known)
+
+    def _source_of(self, target: str) -> str:
+        vocabulary = self.job.vocabulary
+        operation = vocabulary.operation(target)
+        if operation is not None:
+            return operation.source
+        if vocabulary.clock is not None and vocabulary.clock.tick == target:
+            return vocabulary.clock.source
+        return ""
+
+    def _tell(
+        self, source: str, key: str, text: str, name: str | None = None, known: tuple[str, ...] = ()
+    ) -> None:
+        if (source, key) not in self._told:
+            self._told.add((source, key))
+            self.pipe.send(Problem(source, key, text, name, known))
