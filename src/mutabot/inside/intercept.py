@@ -52,6 +52,7 @@ class Interception:
     pending: set[str] = field(default_factory=set)
     found: dict[str, Any] = field(default_factory=dict)
     _undo: list[Undo] = field(default_factory=list)
+    _wrappers: list[tuple[Any, Any]] = field(default_factory=list)
     _removed: bool = False
 
     def wrap(self, target: str, handler: Handler) -> None:
@@ -76,6 +77,9 @@ class Interception:
         self._removed = True
         while self._undo:
             self._undo.pop()()
+        for original, wrapper in self._wrappers:
+            for _ in _rebind(wrapper, original):  # names that were taken while the wrapper was in place
+                pass
 
     def _install(
         self, target: str, module: ModuleType, qualname: str, handler: Handler, *, late: bool
@@ -93,6 +97,7 @@ class Interception:
             else functools.partial(delattr, owner, name)
         )
         self.found[target] = original
+        self._wrappers.append((original, wrapper))
         if late:
             self._undo.extend(_rebind(original, wrapper))
 
