@@ -12,7 +12,7 @@ from mutabot.model.path import Step
 AXES = ("x", "y", "z", *(f"j{number}" for number in range(1, 13)))
 
 _AXIS = re.compile(r"[xyz]|j(?:1[0-2]|[1-9])")
-_JOINTS = re.compile(r"j(\d+)(?:\.\.|-)j(\d+)")
+_JOINTS = re.compile(r"j(\d{1,2})(?:\.\.|-)j(\d{1,2})")
 
 
 def split_axes(text: str) -> tuple[str, ...] | None:
@@ -59,7 +59,7 @@ def _indices(
         raise ValueError(
             f"the slice {text} must start and stop at the same end of the sequence to be spread over axes"
         )
-    indices = range(start, stop, stride)
-    if len(indices) != count:
-        raise ValueError(f"the slice {text} has {len(indices)} elements for {count} axes ({', '.join(axes)})")
-    return indices
+    found = max(0, -((start - stop) // stride))
+    if found != count:
+        raise ValueError(f"the slice {text} has {found} elements for {count} axes ({', '.join(axes)})")
+    return range(start, stop, stride)

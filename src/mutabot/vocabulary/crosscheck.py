@@ -40,6 +40,9 @@ def _check_current(operation: Operation, check: Check, place: Place, read: Mappi
     if name not in read:
         check.unknown(place, "operation", name, read)
         return
+    if read[name][0].command:
+        check.error(place, f"{name} is a command: asking it where the robot is would make the robot act")
+        return
     moved = [quantity for quantity in _all_arguments(operation) if quantity.kind in READING_OF]
     if not moved:
         check.error(place, "is of no use here: no argument is a translation or a rotation")

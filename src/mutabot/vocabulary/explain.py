@@ -232,7 +232,7 @@ def problem_error(problem: Problem) -> ConfigurationError:
 
 def _hint(problem: Problem) -> Iterator[str]:
     # unknown_name_text knows how to end such a sentence: "…; did you mean 'x'?"
-    if "did you mean" not in problem.text and problem.known and problem.name is not None:
+    if ";" not in problem.text and problem.known and problem.name is not None:
         yield ";" + unknown_name_text("", problem.name, problem.known).partition(";")[2]
 
 
