@@ -24,8 +24,8 @@ def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | Non
 def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary | None = None) -> str:
     """One line about a mutant's outcomes: what changed, and what became of the world or who noticed.
 
-    Speaks about the survivor farthest from the original, if there is any; else about the verdict that
-    occurred most.
+    Speaks about the survivor farthest from the original, if there is any; else about a round in which no
+    test reached it; else about the verdict that occurred most.
     """
     if not outcomes:
         return "not run"
@@ -36,6 +36,8 @@ def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary 
         parts = (change_text(mutant, worst, quantity), _world_text(worst))
         return "; ".join(part for part in parts if part)
     verdict, _ = Counter(one.verdict for one in outcomes).most_common(1)[0]
+    if any(one.verdict is Verdict.NOT_COVERED for one in outcomes):
+        verdict = Verdict.NOT_COVERED
     return _end_text(next(one for one in outcomes if one.verdict is verdict))
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from mutabot.campaign.journal import BaselineTest, ControlEnd, Journal
 from mutabot.campaign.lock import is_written
+from mutabot.errors import SelectionError, unknown_name_text
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
 
 from .divergence import explain, is_indistinguishable, quantity_of, rank
@@ -107,6 +108,20 @@ class Results:
     def done(self) -> int:
         """Number of (mutant, round) pairs that have an outcome."""
         return sum(len(result.outcomes) for result in self.mutants)
+
+
+def find_mutant(results: Results, name: str) -> MutantResult:
+    """The mutant with this number or id. Raises SelectionError, naming the nearest id."""
+    for result in results.mutants:
+        if name in (result.mutant.id, str(result.mutant.number)):
+            return result
+    if not results.mutants:
+        raise SelectionError("the journal holds no mutants", unknown=[name])
+    if name.isdigit():
+        problem = f"there is no mutant {name}; they are numbered 1 to {results.mutants[-1].mutant.number}"
+        raise SelectionError(problem, unknown=[name])
+    problem = unknown_name_text("mutant", name, (result.mutant.id for result in results.mutants))
+    raise SelectionError(problem, unknown=[name])
 
 
 def read_results(journal: Journal) -> Results:

@@ -1,0 +1,270 @@
+"""The command line. Exceptions become exit codes in ``main`` and nowhere else.
+
+What a command needs is imported inside it, so that ``--help`` is fast.
+"""
+
+# ruff: noqa: PLC0415 (imports inside commands, see above), PLR0917 (typer makes options of parameters)
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from mutabot.cli_options import (
+    ENGINES,
+    All,
+    Engine,
+    Jobs,
+    Json,
+    MinScore,
+    Only,
+    Rounds,
+    Seed,
+    Selection,
+    Skip,
+    Version,
+)
+from mutabot.errors import MutabotError, UsageError, unknown_name_text
+
+if TYPE_CHECKING:
+    from mutabot.campaign.request import Request
+    from mutabot.report.progress import Reporter
+
+INTERNAL_ERROR, INTERRUPTED = 70, 130
+_SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
+
+app = typer.Typer(
+    name="mutabot",
+    help="Mutation testing for robot programs: would your tests notice?",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+
+@app.callback()
+def options(
+    context: typer.Context,
+    project: Annotated[Path, typer.Option("-C", "--project", metavar="FOLDER", help="The project.")] = Path(),
+    version: Version = False,
+) -> None:
+    """Mutation testing for robot programs: would your tests notice?"""
+    context.obj = project
+
+
+@app.command(rich_help_panel=_SETUP)
+def init(
+    context: typer.Context,
+    program: Annotated[
+        list[Path] | None, typer.Argument(help="Files or folders of the robot program.")
+    ] = None,
+) -> None:
+    """Look at the program and propose a configuration and a vocabulary."""
+    from mutabot.campaign.proposal import propose
+
+    for line in propose(context.obj, program or []):
+        typer.echo(line)
+
+
+@app.command(rich_help_panel=_SETUP)
+def check(context: typer.Context, json: Json = False, jobs: Jobs = None, rounds: Rounds = None) -> None:
+    """Try the whole set-up without running mutants."""
+    from mutabot.campaign import run as campaign
+
+    request = _request(context.obj, jobs=jobs, rounds=rounds)
+    with _progress() as progress:
+        report = campaign.check(request, progress)
+    _print_json(report.data) if json else typer.echo("\n".join(report.lines))
+
+
+@app.command("list", rich_help_panel=_SETUP)
+def list_(
+    context: typer.Context,
+    only: Only = None,
+    skip: Skip = None,
+    selection: Selection = None,
+    rounds: Rounds = None,
+    seed: Seed = None,
+    jobs: Jobs = None,
+    all: All = False,
+    json: Json = False,
+) -> None:
+    """List the mutants that would run, and what is left out."""
+    from mutabot.campaign.run import plan_only
+    from mutabot.report.console import make_console
+    from mutabot.report.listing import plan_data, print_plan
+
+    request = _request(
+        context.obj, only=only, skip=skip, selection=selection, rounds=rounds, seed=seed, jobs=jobs
+    )
+    with _progress() as progress:
+        mutants, left_out = plan_only(request, progress)
+    if json:
+        _print_json(plan_data(mutants, left_out))
+    else:
+        print_plan(make_console(), mutants, left_out, everything=all)
+
+
+@app.command(rich_help_panel=_RUN)
+def run(
+    context: typer.Context,
+    only: Only = None,
+    skip: Skip = None,
+    selection: Selection = None,
+    rounds: Rounds = None,
+    seed: Seed = None,
+    jobs: Jobs = None,
+    engine: Engine = "auto",
+    min_score: MinScore = None,
+    json: Json = False,
+) -> None:
+    """Run the campaign: baseline, controls, mutants, scores."""
+    from mutabot.analysis.gate import decide
+    from mutabot.campaign.run import run_campaign
+
+    request = _request(
+        context.obj, only=only, skip=skip, selection=selection, rounds=rounds, seed=seed, jobs=jobs,
+        engine=engine,
+    )  # fmt: skip
+    with _progress() as progress:
+        journal_path = run_campaign(request, progress)
+    results = _show_results(journal_path, json=json)
+    limit = min_score if min_score is not None else request.configuration.min_score
+    decision = decide(
+        results,
+        min_score=None if limit is None else limit / 100,
+        max_timeouts=request.configuration.timeout_limit,
+    )
+    for line in decision.lines:
+        typer.echo(line, err=True)
+    raise typer.Exit(decision.exit_code)
+
+
+@app.command(rich_help_panel=_LOOK)
+def results(context: typer.Context, all: All = False, json: Json = False) -> None:
+    """Show the results of the last campaign, also of one that was interrupted or still runs."""
+    _show_results(_journal_path(context.obj), json=json, everything=all)
+
+
+@app.command(rich_help_panel=_LOOK)
+def show(
+    context: typer.Context,
+    mutant: Annotated[str, typer.Argument(help="The mutant's id or number.")],
+    json: Json = False,
+) -> None:
+    """Show everything about one mutant."""
+    from mutabot.analysis.results import find_mutant, read_results
+    from mutabot.campaign.journal import Journal
+    from mutabot.report.as_json import result_data
+    from mutabot.report.console import make_console
+    from mutabot.report.detail import print_mutant
+
+    with Journal.open(_journal_path(context.obj)) as journal:
+        result = find_mutant(read_results(journal), mutant)
+        source = journal.source(result.mutant.site.span.file)
+    if json:
+        _print_json(result_data(result))
+    else:
+        print_mutant(make_console(), result, source)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return the exit code of the process."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # a terminal that cannot show a sign gets "?", not an error
+            stream.reconfigure(errors="replace")
+    try:
+        arguments = sys.argv[1:] if arguments is None else arguments
+        code = app(list(arguments), prog_name="mutabot", standalone_mode=False)
+    except (KeyboardInterrupt, typer.Abort):
+        typer.echo("interrupted; `mutabot results` shows what is there", err=True)
+        return INTERRUPTED
+    except MutabotError as error:
+        typer.echo(f"mutabot: {error}", err=True)
+        return error.exit_code
+    except Exception as error:
+        return _usage_or_crash(error)
+    return code if isinstance(code, int) else 0
+
+
+def _usage_or_crash(error: Exception) -> int:
+    show = getattr(error, "show", None)
+    if callable(show) and hasattr(error, "exit_code"):  # the parser's own errors, for a wrong command line
+        show()
+        return UsageError.exit_code
+    text = "".join(traceback.format_exception(error))
+    file = Path(".mutabot", "crash.txt")
+    try:
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    except OSError:
+        typer.echo(text, err=True)
+        file = Path("the lines above")
+    typer.echo(f"mutabot: internal error ({type(error).__name__}: {error}); details are in {file}", err=True)
+    return INTERNAL_ERROR
+
+
+def _request(project: Path, *, selection: Path | None = None, engine: str = "auto", **given: Any) -> Request:
+    from mutabot.campaign.configuration import load_configuration
+    from mutabot.campaign.request import Request
+    from mutabot.vocabulary import load
+
+    if engine not in ENGINES:
+        raise UsageError(unknown_name_text("engine", engine, ENGINES))
+    configuration = load_configuration(project)
+    if selection is None and configuration.selection is not None:
+        selection = configuration.root / configuration.selection
+    return Request(
+        configuration=configuration,
+        vocabulary=load(configuration.vocabulary, configuration.root),
+        rounds=given.get("rounds") or configuration.rounds,
+        seed=configuration.seed if given.get("seed") is None else given["seed"],
+        jobs=given.get("jobs") or configuration.jobs or len(os.sched_getaffinity(0)),
+        only=tuple(given.get("only") or ()),
+        skip=tuple(given.get("skip") or ()),
+        selection=selection,
+        engine=engine,
+    )
+
+
+def _journal_path(project: Path) -> Path:
+    """The journal of the project, also from a folder inside it."""
+    folders = (project.resolve(), *project.resolve().parents)
+    paths = [folder / ".mutabot" / "journal.sqlite" for folder in folders]
+    return next((path for path in paths if path.is_file()), paths[0])
+
+
+def _show_results(path: Path, *, json: bool, everything: bool = False) -> Any:
+    from mutabot.analysis.results import read_results
+    from mutabot.campaign.journal import Journal
+    from mutabot.report.as_json import results_data
+    from mutabot.report.console import make_console
+    from mutabot.report.terminal import print_results
+
+    with Journal.open(path) as journal:
+        found = read_results(journal)
+    if json:
+        _print_json(results_data(found))
+    else:
+        print_results(make_console(), found, everything=everything)
+    return found
+
+
+def _print_json(data: Any) -> None:
+    from mutabot.report.as_json import dumps
+
+    typer.echo(dumps(data))
+
+
+def _progress() -> Reporter:
+    from mutabot.report.console import make_console
+    from mutabot.report.progress import make_progress
+
+    return make_progress(make_console(stderr=True))

@@ -1,0 +1,45 @@
+"""The options that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from mutabot import __version__
+
+ENGINES = ("auto", "replay")
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"mutabot {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON, for a machine to read.")]
+All = Annotated[bool, typer.Option("--all", help="Also list every mutant that the plan leaves out.")]
+Only = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--only",
+        metavar="WHICH",
+        help="Only these: id, number, operator, family, role or file glob. Repeatable.",
+    ),
+]
+Skip = Annotated[list[str] | None, typer.Option("--skip", metavar="WHICH", help="All but these, likewise.")]
+Selection = Annotated[
+    Path | None, typer.Option("--selection", metavar="FILE", help="File with one mutant id per line.")
+]
+Rounds = Annotated[int | None, typer.Option("--rounds", min=1, help="Repetitions, each with its own seeds.")]
+Seed = Annotated[int | None, typer.Option("--seed", min=0, help="The campaign's seed.")]
+Jobs = Annotated[int | None, typer.Option("-j", "--jobs", min=1, help="Processes at a time.")]
+Engine = Annotated[str, typer.Option("--engine", help=f"What runs the mutants: {' or '.join(ENGINES)}.")]
+MinScore = Annotated[
+    float | None,
+    typer.Option("--min-score", min=0, max=100, help="Exit with 1 if a score is under this many percent."),
+]

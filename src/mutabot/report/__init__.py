@@ -1,0 +1,1 @@
+"""Reports: one file per format. They only read the journal."""

@@ -1,0 +1,176 @@
+"""A campaign as JSON; the format is described in docs/json.md."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+from mutabot.analysis.results import MutantResult, Results
+from mutabot.analysis.score import KillRate, RoundScores, Score
+from mutabot.model import Mutant, Outcome, Quantity, Verdict
+
+#: raised when a key changes its meaning or goes away; new keys do not raise it
+FORMAT = 1
+
+
+def dumps(data: Any) -> str:
+    """Valid JSON for any data of ours: numbers that JSON cannot hold become null."""
+    return json.dumps(_finite(data), indent=2, ensure_ascii=False, default=str)
+
+
+def results_data(results: Results) -> dict[str, Any]:
+    """Everything about a campaign, as JSON-like data."""
+    return {
+        "format": FORMAT,
+        "state": results.state,
+        "finished": results.state == "complete",
+        "meta": {key: value for key, value in results.meta.items() if key != "vocabulary"},
+        "rounds": [
+            {"round": number, **score_data(score)} for number, score in enumerate(results.all.rounds, start=1)
+        ],
+        "groups": [
+            {
+                "family": group.family,
+                "role": group.role,
+                "mutants": group.mutants,
+                **scores_data(group.scores),
+            }
+            for group in results.groups
+        ],
+        "mutants": [result_data(result) for result in results.mutants],
+        "left_out": [
+            {"id": item.id, "description": item.description, "reason": item.reason}
+            for item in results.left_out
+        ],
+        "controls": [
+            {"test_file": one.test_file, "control": one.control, "ok": one.ok, "detail": one.detail}
+            for one in results.controls
+        ],
+        "baseline": [
+            {
+                "test": one.test.test,
+                "round": one.round + 1,
+                "repetition": one.repetition + 1,
+                "outcome": one.test.outcome,
+                "wall": one.test.wall,
+                "simulated": one.test.simulated,
+            }
+            for one in results.tests
+        ],
+    }
+
+
+def mutant_data(mutant: Mutant) -> dict[str, Any]:
+    """One mutant as planned."""
+    span = mutant.site.span
+    return {
+        "id": mutant.id,
+        "number": mutant.number,
+        "operator": mutant.operator,
+        "variant": mutant.variant,
+        "family": mutant.family,
+        "role": mutant.site.role.value,
+        "file": span.file,
+        "span": {
+            "line": span.line,
+            "column": span.column + 1,
+            "end_line": span.end_line,
+            "end_column": span.end_column + 1,
+        },
+        "function": span.function,
+        "call": mutant.site.text,
+        "operation": mutant.operation,
+        "pattern": mutant.pattern,
+        "quantity": mutant.quantity,
+        "description": mutant.description,
+    }
+
+
+def result_data(result: MutantResult) -> dict[str, Any]:
+    """One mutant with what became of it."""
+    return {
+        **mutant_data(result.mutant),
+        "meaning": _meaning(result.quantity),
+        "rounds": [_round_data(number, one) for number, one in enumerate(result.rounds, start=1)],
+        "kill_rate": _kill_rate(result.kill_rate),
+        "survivor": result.is_survivor,
+        "indistinguishable": result.indistinguishable,
+        "distance": result.distance if result.is_survivor else None,
+        "why": result.why,
+    }
+
+
+def score_data(score: Score) -> dict[str, Any]:
+    """A score with its counts."""
+    return {
+        "score": score.score,
+        "check_score": score.check_score,
+        "killed": score.killed,
+        "valid": score.valid,
+        "by_check": score.by_check,
+        "timeouts": score.timeouts,
+        "counts": {verdict.value: score.counts.get(verdict, 0) for verdict in Verdict},
+    }
+
+
+def scores_data(scores: RoundScores) -> dict[str, Any]:
+    """Scores over the rounds: the mean, the counts of all rounds together, and each round."""
+    return {
+        **score_data(scores.total),
+        "score": scores.mean,
+        "check_score": scores.mean_check,
+        "rounds": [
+            {"round": number, **score_data(score)} for number, score in enumerate(scores.rounds, start=1)
+        ],
+    }
+
+
+def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
+    if outcome is None:
+        return {"round": number, "verdict": None}
+    return {
+        "round": number,
+        "verdict": outcome.verdict.value,
+        "by": outcome.by.value if outcome.by is not None else None,
+        "test": outcome.test,
+        "exception": outcome.exception,
+        "message": outcome.message,
+        "place": outcome.place,
+        "hits": outcome.hits,
+        "acted": outcome.acted,
+        "example": list(outcome.example) if outcome.example is not None else None,
+        "tests": outcome.tests,
+        "wall": outcome.wall,
+        "simulated": outcome.simulated,
+        "indistinguishable": outcome.indistinguishable,
+        "distance": outcome.distance,
+        "divergence": list(outcome.divergence),
+        "engine": outcome.engine,
+    }
+
+
+def _kill_rate(rate: KillRate) -> dict[str, Any]:
+    return {"killed": rate.killed, "valid": rate.valid, "rate": rate.rate}
+
+
+def _meaning(quantity: Quantity | None) -> dict[str, Any] | None:
+    if quantity is None:
+        return None
+    return {
+        "kind": quantity.kind.value,
+        "axis": quantity.axis,
+        "unit": quantity.unit,
+        "frame": quantity.frame,
+        "mode": quantity.mode.value if quantity.mode is not None else None,
+    }
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

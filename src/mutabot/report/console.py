@@ -1,0 +1,60 @@
+"""The terminal as reports use it: never any markup in what users wrote, readable without colour."""
+
+from __future__ import annotations
+
+import re
+from typing import IO
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+_ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
+_CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
+
+
+def make_console(file: IO[str] | None = None, *, width: int | None = None, stderr: bool = False) -> Console:
+    """A console that prints texts as they are. ``file`` is standard output if None."""
+    return Console(file=file, width=width, stderr=stderr, markup=False, highlight=False, emoji=False)
+
+
+def plain(text: str) -> str:
+    """A text from a program under test without what would confuse the terminal."""
+    return _CONTROLS.sub("", _ESCAPES.sub("", text)).expandtabs(4)
+
+
+def heading(text: str) -> Text:
+    """The heading of a section."""
+    return Text(f"\n{text}", style="bold")
+
+
+def make_table(*, header: bool = True) -> Table:
+    """An empty table in the look of all our tables."""
+    return Table(box=box.SIMPLE_HEAD, show_header=header, pad_edge=False, padding=(0, 1), header_style="bold")
+
+
+def add_number_column(table: Table) -> None:
+    """The column of mutant numbers."""
+    table.add_column("no.", justify="right", no_wrap=True)
+
+
+def short_place(file: str, line: int, *, width: int = 24) -> str:
+    """``file:line``; a long path loses its first folders."""
+    place = f"{file}:{line}"
+    if len(place) <= width:
+        return place
+    parts = place.split("/")
+    while len(parts) > 1 and len("…/" + "/".join(parts)) > width:
+        parts.pop(0)
+    return "…/" + "/".join(parts)
+
+
+def percent(share: float | None) -> str:
+    """A score as text: ``92.3 %``, or ``–`` where nothing was valid."""
+    return "–" if share is None else f"{100 * share:.1f} %"
+
+
+def plural(count: int, singular: str, several: str | None = None) -> str:
+    """``1 mutant``, ``2 mutants``."""
+    return f"{count} {singular if count == 1 else several or singular + 's'}"

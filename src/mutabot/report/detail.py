@@ -1,0 +1,98 @@
+"""Everything about one mutant on the terminal, for ``mutabot show``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rich.console import Console, RenderableType
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from mutabot.analysis.divergence import change_text
+from mutabot.analysis.results import MutantResult
+from mutabot.model import Outcome, Quantity
+
+from .console import heading, make_table, plain
+from .excerpt import excerpt
+from .marks import mark_of
+
+
+def print_mutant(console: Console, result: MutantResult, source: str | None) -> None:
+    """Print one mutant; ``source`` is the text of its file, or None if it is not known."""
+    for part in _parts(result, source):
+        console.print(part)
+
+
+def _parts(result: MutantResult, source: str | None) -> Iterator[RenderableType]:
+    mutant = result.mutant
+    yield Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold")
+    yield _facts(result)
+    lines = excerpt(source, mutant.site.span) if source is not None else []
+    if lines:
+        yield Text("\n" + "\n".join(plain(line) for line in lines), no_wrap=True, overflow="ellipsis")
+    change = next(filter(None, (change_text(mutant, one, result.quantity) for one in result.outcomes)), None)
+    if change is not None:
+        yield Text(f"\nWhere it first acted, the program {plain(change)}.")
+    yield heading("Rounds")
+    for number, outcome in enumerate(result.rounds, start=1):
+        yield from _round(number, outcome)
+
+
+def _facts(result: MutantResult) -> Table:
+    mutant, rate = result.mutant, result.kill_rate
+    table = make_table(header=False)
+    table.add_column(style="dim", no_wrap=True)
+    table.add_column(overflow="fold")
+    facts = {
+        "id": mutant.id,
+        "place": f"{mutant.site.place} in {mutant.site.span.function}",
+        "role": mutant.site.role.value,
+        "operator": f"{mutant.operator} ({mutant.family})",
+        "operation": mutant.operation + (f", command {mutant.pattern_name}" if mutant.pattern else ""),
+        "quantity": _quantity_text(mutant.quantity, result.quantity),
+        "killed": f"in {rate.killed} of the {rate.valid} rounds in which it was valid",
+        "result": result.why,
+    }
+    for name, text in facts.items():
+        table.add_row(name, plain(text))
+    return table
+
+
+def _quantity_text(name: str | None, quantity: Quantity | None) -> str:
+    if name is None:
+        return "the call as a whole"
+    if quantity is None:
+        return name
+    words = [
+        quantity.kind.value,
+        quantity.axis and f"along {quantity.axis}",
+        quantity.unit and f"in {quantity.unit}",
+    ]
+    frame = f"frame {quantity.frame}" if quantity.frame else None
+    return f"{name}: {', '.join(word for word in (*words, frame) if word)}"
+
+
+def _round(number: int, outcome: Outcome | None) -> Iterator[RenderableType]:
+    mark = mark_of(outcome)
+    line = Text.assemble(f"{number:>3}  ", mark.text, f"  {mark.words}")
+    if outcome is None:
+        yield line
+        return
+    if outcome.test is not None:
+        line.append(f" in {outcome.test}")
+    yield line
+    for text in _evidence(outcome):
+        yield Padding(Text(plain(text), overflow="fold"), (0, 0, 0, 8), expand=False)
+
+
+def _evidence(outcome: Outcome) -> Iterator[str]:
+    if outcome.message:
+        exception = f"{outcome.exception.rpartition(':')[2]}: " if outcome.exception else ""
+        yield f"{exception}{outcome.message.rstrip()}"
+    if outcome.place is not None:
+        yield f"at {outcome.place}"
+    if outcome.indistinguishable:
+        yield "calls and probes as in the original (indistinguishable)"
+    yield from outcome.divergence
+    yield f"acted at {outcome.acted} of {outcome.hits} hits, {outcome.tests} tests run, {outcome.wall:.1f} s"

@@ -1,0 +1,131 @@
+"""Progress of a campaign: a bar with the time left on a terminal, a plain line now and then elsewhere."""
+
+from __future__ import annotations
+
+import time
+from types import TracebackType
+from typing import Protocol, Self
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+
+from .console import plain
+
+#: seconds between two plain lines
+EVERY = 5.0
+
+
+class Reporter(Protocol):
+    """What a campaign is told its progress through; ``mutabot.campaign`` defines the same."""
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        """A new stage of the campaign begins."""
+
+    def advance(self, line: str | None = None) -> None:
+        """One step of the stage is done."""
+
+    def note(self, text: str) -> None:
+        """Something the user should know."""
+
+    def __enter__(self) -> Self: ...
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None: ...
+
+
+def make_progress(console: Console) -> Reporter:
+    """The reporter that fits the console."""
+    return Bar(console) if console.is_terminal else Lines(console)
+
+
+class Bar:
+    """A bar per stage on a terminal."""
+
+    def __init__(self, console: Console) -> None:
+        self._progress = Progress(
+            TextColumn("{task.description}", markup=False),
+            BarColumn(bar_width=None),
+            MofNCompleteColumn(),
+            TimeRemainingColumn(elapsed_when_finished=True),
+            TextColumn("{task.fields[line]}", markup=False),
+            console=console,
+        )
+        self._task: TaskID | None = None
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        """Begin another bar."""
+        self._close_stage()
+        self._task = self._progress.add_task(text, total=total, line="")
+
+    def advance(self, line: str | None = None) -> None:
+        """Move the bar on; ``line`` stands beside it."""
+        if self._task is not None:
+            self._progress.update(self._task, advance=1, line=plain(line or ""))
+
+    def note(self, text: str) -> None:
+        """Print a line above the bars."""
+        self._progress.console.print(plain(text))
+
+    def _close_stage(self) -> None:
+        if self._task is not None:
+            self._progress.update(self._task, line="")
+            self._progress.stop_task(self._task)
+
+    def __enter__(self) -> Self:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._close_stage()
+        self._progress.stop()
+
+
+class Lines:
+    """Plain lines: the start and end of each stage, and how far it is every few seconds."""
+
+    def __init__(self, console: Console, *, every: float = EVERY) -> None:
+        self._console, self._every = console, every
+        self._text, self._done = "", 0
+        self._total: int | None = None
+        self._began = self._last = 0.0
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        """Print the stage's name."""
+        self._text, self._total, self._done = text, total, 0
+        self._began = self._last = time.monotonic()
+        self._print(f"{text}: {total}" if total is not None else text)
+
+    def advance(self, line: str | None = None) -> None:
+        """Count, and print how far it is if the last line is long enough ago."""
+        self._done += 1
+        now = time.monotonic()
+        if self._done != self._total and now - self._last < self._every:
+            return
+        self._last = now
+        self._print(f"{self._text} {self._how_far(now)}" + (f" ({line})" if line else ""))
+
+    def note(self, text: str) -> None:
+        """Print a line."""
+        self._print(text)
+
+    def _how_far(self, now: float) -> str:
+        spent = now - self._began
+        if self._total is None:
+            return str(self._done)
+        if self._done >= self._total:
+            return f"{self._done}/{self._total}, took {spent:.0f} s"
+        return f"{self._done}/{self._total}, {spent / self._done * (self._total - self._done):.0f} s left"
+
+    def _print(self, text: str) -> None:
+        self._console.print(plain(text), soft_wrap=True)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        pass

@@ -1,0 +1,225 @@
+"""A campaign on the terminal: mutants by rounds, scores, survivors and what stands outside the score."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from datetime import datetime
+
+from rich.console import Console, RenderableType
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from mutabot.analysis.divergence import first_line
+from mutabot.analysis.results import MutantResult, Results
+from mutabot.analysis.score import Group, RoundScores
+from mutabot.model import LeftOut, Outcome, Verdict
+
+from .console import add_number_column, heading, make_table, percent, plain, plural, short_place
+from .marks import counted, legend, mark_of
+
+#: verdicts outside the score that a user should look at, in this order
+_TOLD = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
+#: rounds from which on a row gives counts in place of one letter each
+_MANY_ROUNDS = 12
+
+
+def print_results(console: Console, results: Results, *, everything: bool = False) -> None:
+    """Print the whole report; ``everything`` also lists each mutant that the plan left out."""
+    for part in _parts(results, console.width, everything):
+        console.print(part)
+
+
+def _parts(results: Results, width: int, everything: bool) -> Iterator[RenderableType]:
+    yield Text(_title(results), style="bold")
+    yield Text(_circumstances(results), style="dim")
+    if results.mutants:
+        yield heading("Mutants by rounds")
+        yield mutant_table(results)
+        yield legend(outcome for result in results.mutants for outcome in result.rounds)
+    if results.done:
+        yield heading("Killed / valid mutants per round")
+        yield from round_tables(results, width)
+        yield heading("Scores")
+        yield group_table(results)
+    yield from _survivors(results)
+    yield from _outside(results)
+    yield from left_out_lines(results.left_out, everything=everything)
+    yield from _controls(results)
+
+
+def _title(results: Results) -> str:
+    size = f"{plural(len(results.mutants), 'mutant')} × {plural(results.rounds, 'round')}"
+    if results.done == results.planned:
+        return f"{size}: {results.state}"
+    return f"{size}: {results.state}, {results.done} of {results.planned} outcomes are known"
+
+
+def _circumstances(results: Results) -> str:
+    meta = results.meta
+    parts = [f"{key} {meta[key]}" for key in ("mutabot", "engine", "seed") if meta.get(key) is not None]
+    started = meta.get("started")
+    if isinstance(started, int | float):
+        parts.append(f"started {datetime.fromtimestamp(started).astimezone():%Y-%m-%d %H:%M}")
+    tests = {one.test.test for one in results.tests}
+    if tests:
+        parts.append(f"baseline of {plural(len(tests), 'test')}")
+    return " · ".join(parts)
+
+
+def mutant_table(results: Results) -> Table:
+    """One row per mutant, one letter per round."""
+    table = make_table()
+    add_number_column(table)
+    table.add_column("role", no_wrap=True)
+    table.add_column("place", overflow="fold")
+    table.add_column("operator", no_wrap=True)
+    table.add_column("what it does", overflow="fold", ratio=1)
+    many = results.rounds > _MANY_ROUNDS
+    table.add_column("rounds" if many else _round_numbers(results.rounds), no_wrap=not many)
+    for result in results.mutants:
+        mutant = result.mutant
+        table.add_row(
+            str(mutant.number), mutant.site.role.value, _place(result), mutant.operator,
+            plain(mutant.description), _row(result.rounds, many),
+        )  # fmt: skip
+    return table
+
+
+def _round_numbers(rounds: int) -> str:
+    return " ".join(str(number)[-1] for number in range(1, rounds + 1)) or "–"
+
+
+def _row(outcomes: Sequence[Outcome | None], many: bool) -> Text:
+    if many:
+        parts = [Text(f"{mark.letter}{count}", style=mark.style) for mark, count in counted(outcomes)]
+    else:
+        parts = [mark_of(outcome).text for outcome in outcomes]
+    return Text(" ").join(parts)
+
+
+def _place(result: MutantResult) -> str:
+    span = result.mutant.site.span
+    return short_place(span.file, span.line)
+
+
+def round_tables(results: Results, width: int) -> Iterator[Table]:
+    """Killed / valid per round for every group; several tables where one would be too wide."""
+    at_once = max(3, (width - 36) // 8)
+    for start in range(0, results.rounds, at_once):
+        yield _round_table(results, range(start, min(start + at_once, results.rounds)))
+
+
+def _round_table(results: Results, rounds: range) -> Table:
+    table = make_table()
+    table.add_column("round")
+    for number in rounds:
+        table.add_column(str(number + 1), justify="right", no_wrap=True)
+    table.add_column("mean", justify="right", no_wrap=True)
+    rows = [(_name(group), group.scores) for group in results.groups]
+    if len(rows) > 1:
+        rows.append(("all together", results.all))
+    for name, scores in rows:
+        cells = [f"{scores.rounds[i].killed}/{scores.rounds[i].valid}" for i in rounds]
+        shares = [_whole_percent(scores.rounds[i].score) for i in rounds]
+        table.add_row(name, *cells, percent(scores.mean))
+        table.add_row("", *(Text(share, style="dim") for share in shares), "")
+    return table
+
+
+def _whole_percent(share: float | None) -> str:
+    return "–" if share is None else f"{100 * share:.0f} %"
+
+
+def _name(group: Group) -> str:
+    return f"{group.family} · {group.role}"
+
+
+def group_table(results: Results) -> Table:
+    """Score, check score and counts per family and role."""
+    table = make_table()
+    table.add_column("family · role")
+    for name in ("mutants", "score", "check score"):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("outcomes over all rounds", overflow="fold")
+    for group in results.groups:
+        total = group.scores.total
+        table.add_row(
+            _name(group),
+            str(group.mutants),
+            f"{percent(group.scores.mean)}\n{total.killed}/{total.valid}",
+            f"{percent(group.scores.mean_check)}\n{total.by_check}/{total.valid}",
+            _counts(group.scores),
+        )
+    return table
+
+
+def _counts(scores: RoundScores) -> str:
+    total = scores.total
+    by_exception = total.counts.get(Verdict.KILLED, 0) - total.by_check
+    parts = [f"{total.by_check} killed by a check", f"{by_exception} by an exception"]
+    others = (verdict for verdict in Verdict if verdict is not Verdict.KILLED)
+    parts += [f"{total.counts[one]} {one}" for one in others if total.counts.get(one)]
+    return ", ".join(parts)
+
+
+def _survivors(results: Results) -> Iterator[RenderableType]:
+    survivors = results.survivors
+    if not survivors:
+        if results.all.total.valid:
+            yield heading("No survivors")
+        return
+    yield heading(f"{plural(len(survivors), 'survivor')}, the farthest from the original first")
+    table = make_table()
+    add_number_column(table)
+    table.add_column("place", overflow="fold")
+    table.add_column("operator", no_wrap=True)
+    table.add_column("let through", justify="right", no_wrap=True)
+    table.add_column("why", overflow="fold", ratio=1)
+    for result in survivors:
+        rate = result.kill_rate
+        let_through = f"{rate.valid - rate.killed} of {rate.valid}"
+        mutant = result.mutant
+        table.add_row(str(mutant.number), _place(result), mutant.operator, let_through, plain(result.why))
+    yield table
+
+
+def _outside(results: Results) -> Iterator[RenderableType]:
+    for verdict in _TOLD:
+        found = results.with_verdict(verdict)
+        if not found:
+            continue
+        yield heading(f"{plural(len(found), 'mutant')} outside the score: {verdict}")
+        for result, outcome in found:
+            reason = plain(first_line(outcome.message))
+            number = f"{result.mutant.number:>4}"
+            yield Text(f"{number}  {_place(result)}  {result.mutant.operator}: {reason}", overflow="fold")
+
+
+def left_out_lines(left_out: Sequence[LeftOut], *, everything: bool = False) -> Iterator[RenderableType]:
+    """What the plan leaves out: how many and why, or each of them."""
+    if not left_out:
+        return
+    hint = "" if everything else " (--all lists them)"
+    yield heading(f"{plural(len(left_out), 'mutant')} left out, because they cannot matter{hint}")
+    for reason, count in Counter(item.reason for item in left_out).most_common():
+        yield Text(f"{count:>4}  {plain(reason)}", overflow="fold")
+        if everything:
+            for item in left_out:
+                if item.reason == reason:
+                    yield Padding(
+                        Text(f"{item.id}  {plain(item.description)}", overflow="fold"), (0, 0, 0, 8)
+                    )
+
+
+def _controls(results: Results) -> Iterator[RenderableType]:
+    if not results.controls:
+        return
+    wrong = [control for control in results.controls if not control.ok]
+    if not wrong:
+        files = {control.test_file for control in results.controls}
+        yield Text(f"\nControls ended as they must in {plural(len(files), 'test file')}.", style="dim")
+    for control in wrong:
+        text = f"\nThe {control.control} control of {control.test_file} ended wrongly: {control.detail}"
+        yield Text(text, style="bold red")
