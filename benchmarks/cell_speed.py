@@ -2,8 +2,8 @@
 
     python benchmarks/cell_speed.py [runs]
 
-Prints per run the simulated and the wall time of the program, planning included, and their ratio; and, separately,
-the start-up: from a fresh interpreter to a ready, homed cell (best and median of several processes).
+Prints per run the simulated and the wall time of the program, planning included, and their ratio. Start-up is
+shown apart: from a fresh interpreter to a ready, homed cell (best and median of several processes).
 """
 
 from __future__ import annotations
@@ -57,12 +57,11 @@ def main(runs: int) -> None:
         wall, processor = time.perf_counter() - wall, time.process_time() - processor
         ratios.append(cell.time / wall)
         print(
-            f"seed {seed}: {cell.time:.2f} s simulated in {wall:.3f} s ({processor:.3f} s of processor time): "
-            f"{ratios[-1]:.0f} times real time"
+            f"seed {seed}: {cell.time:.2f} s simulated in {wall:.3f} s "
+            f"({processor:.3f} s of processor time): {ratios[-1]:.0f} times real time"
         )
-    print(
-        f"real-time ratio: median {statistics.median(ratios):.0f}, lowest {min(ratios):.0f} (aim: at least 60)"
-    )
+    median = statistics.median(ratios)
+    print(f"real-time ratio: median {median:.0f}, lowest {min(ratios):.0f} (aim: at least 60)")
 
 
 if __name__ == "__main__":

@@ -72,6 +72,23 @@ _LAZY = {
 }
 
 
+__all__ = [  # noqa: PLE0604  (the lazy names come from the table above)
+    "BadArgument",
+    "Box",
+    "CellError",
+    "ConditionBroken",
+    "Fixture",
+    "Mark",
+    "MotionRefused",
+    "ProtectiveStop",
+    "Scene",
+    "SensorError",
+    "SimulationDiverged",
+    "SimulatorMissing",
+    *_LAZY,
+]
+
+
 def __getattr__(name: str) -> object:
     if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -21,6 +21,7 @@ EXTERNAL_TORQUE_LIMIT = (20.0, 20.0, 20.0, 20.0, 6.0, 6.0, 6.0)
 FOLLOWING_ERROR_LIMIT = 0.03
 """Distance between setpoint and joint that stops the arm, rad."""
 
+_RELAXING_TICKS = 20
 _SETTLED = 0.001
 _SETTLING_TICKS = 50
 
@@ -40,6 +41,7 @@ class Arm:
         self._stream: Array | None = None
         self._streamed = 0
         self._pressed_ticks = 0
+        self._first_contact = ("", "", 0.0)
         self._stop: ProtectiveStop | None = None
         self._lag = np.array(kinova.SERVO_LAG)
         self._torque_limit = np.array(EXTERNAL_TORQUE_LIMIT)
@@ -145,7 +147,12 @@ class Arm:
         )
 
     def acknowledge_stop(self) -> None:
-        """Allow motions again after a protective stop."""
+        """Allow motions again after a protective stop; takes a moment in which the joints stop pressing."""
+        if self._stop is None:
+            return
+        for _ in range(_RELAXING_TICKS):
+            self._setpoint = self._simulation.data.qpos[: kinova.JOINT_COUNT].copy()
+            self._simulation.tick()
         self._stop = None
         self._pressed_ticks = 0
 
@@ -194,12 +201,17 @@ class Arm:
         external = self._simulation.data.qfrc_constraint[: kinova.JOINT_COUNT]
         pressed = bool((np.abs(external) > self._torque_limit).any())
         self._pressed_ticks = self._pressed_ticks + 1 if pressed else 0
+        if pressed and self._pressed_ticks == 1:
+            self._first_contact = strongest_contact(self._simulation)
         error = self._following_error()
         lagging = float(np.abs(error).max()) > FOLLOWING_ERROR_LIMIT
         if self._pressed_ticks < 2 and not lagging:
             return
         joint = int(np.argmax(np.abs(external) / self._torque_limit if pressed else np.abs(error)))
-        first, second, force = strongest_contact(self._simulation)
+        contacts = [strongest_contact(self._simulation)]
+        if pressed:
+            contacts.append(self._first_contact)
+        first, second, force = max(contacts, key=lambda contact: contact[2])
         self._stop = ProtectiveStop(
             time=self._simulation.time,
             first=first,

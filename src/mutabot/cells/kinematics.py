@@ -33,6 +33,7 @@ TURN_STRAIGHTNESS = 2e-3
 _KNOT_DISTANCE = 0.03
 _KNOT_ANGLE = math.radians(5.0)
 _MOST_KNOTS = 512
+_RETRIED_KNOTS = 64
 _LARGEST_KNOT_STEP = 0.5
 _REACH_CHECKS = 41
 _ITERATIONS = 40
@@ -134,20 +135,26 @@ class Kinematics:
         self._check_reach(line)
         count = max(4, math.ceil(line.length / _KNOT_DISTANCE), math.ceil(line.angle / _KNOT_ANGLE))
         while True:
-            knots = self._knots(joints, line, count)
-            if count >= _MOST_KNOTS or self._is_straight(Spline(knots), line, count):
-                break
+            try:
+                knots = self._knots(joints, line, count)
+            except MotionRefused:
+                # coarse knots can lose a path that exists where the joints turn fast
+                if count > _RETRIED_KNOTS:
+                    raise
+                count *= 4
+                continue
+            largest_step = float(np.abs(np.diff(knots, axis=0)).max())
+            if largest_step <= _LARGEST_KNOT_STEP and self._is_straight(Spline(knots), line, count):
+                return knots
+            if count >= _MOST_KNOTS:
+                raise MotionRefused(
+                    "motion refused: the line passes a singularity, where joints would have to jump by "
+                    f"{math.degrees(largest_step):.0f} deg",
+                    limit="singularity",
+                    excess=math.degrees(largest_step),
+                    unit="deg",
+                )
             count *= 2
-        largest_step = float(np.abs(np.diff(knots, axis=0)).max())
-        if largest_step > _LARGEST_KNOT_STEP:
-            raise MotionRefused(
-                "motion refused: the line passes a singularity, where joints would have to jump by "
-                f"{math.degrees(largest_step):.0f} deg",
-                limit="singularity",
-                excess=math.degrees(largest_step),
-                unit="deg",
-            )
-        return knots
 
     @staticmethod
     def _check_reach(line: Line) -> None:
@@ -160,7 +167,8 @@ class Kinematics:
         fraction = next(part for part, distance in zip(fractions, distances, strict=True) if distance > REACH)
         raise MotionRefused(
             f"motion refused: out of reach from {fraction:.0%} of the line: the wrist would be "
-            f"{farthest:.3f} m from the shoulder, {(farthest - REACH) * 1000:.0f} mm more than the arm's {REACH:.3f} m",
+            f"{farthest:.3f} m from the shoulder, {(farthest - REACH) * 1000:.0f} mm more than the arm's "
+            f"{REACH:.3f} m",
             limit="reach",
             value=farthest,
             allowed=REACH,
