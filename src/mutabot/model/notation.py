@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_INTEGER = r"[-+]?\d+"
+_NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
+_INTEGER = r"[-+]?[0-9]+"
 _WORD = r".+?"
 _DECIMALS = re.compile(r"(?P<plus>\+?)-?(?P<whole>\d*)(?:(?P<point>\.)(?P<decimals>\d*))?")
 
@@ -108,9 +108,15 @@ def _compile(text: str) -> Notation:
 def _field(text: str, name: str, spec: str) -> Field:
     field = Field(name, spec)
     try:
-        format({"d": 1, "g": 1.0, "s": "a"}[field.kind], spec)
+        samples = [
+            format(sample, spec) for sample in {"d": (1, 12345), "g": (1.0, 12345.0), "s": ("a",)}[field.kind]
+        ]
     except ValueError as error:
         raise ValueError(f"notation {text!r}: {{{name}:{spec}}} is no format ({error})") from None
+    if field.kind != "s" and not all(re.fullmatch(field.expression, sample) for sample in samples):
+        raise ValueError(
+            f"notation {text!r}: {samples[-1]!r}, as {{{name}:{spec}}} prints it, cannot be read back"
+        )
     return field
 
 

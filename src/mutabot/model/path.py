@@ -14,6 +14,7 @@ from __future__ import annotations
 import ast
 import copy
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, is_dataclass
 from dataclasses import fields as dataclass_fields
 from typing import Any
@@ -185,11 +186,25 @@ def _with_step(value: Any, step: Step, inner: Any) -> Any:
 
 
 def _copy_for_item(value: Any, inner: Any) -> Any:
-    # An array of integers would silently cut off a fraction; numpy is not imported for this.
+    # An array of integers would silently cut off a fraction, and one without signs refuses a negative
+    # number; numpy is not imported for this.
     kind = getattr(getattr(value, "dtype", None), "kind", None)
-    if kind in ("i", "u") and isinstance(inner, float) and not inner.is_integer():
-        return value.astype(float)
+    if kind in ("i", "u"):
+        numbers = list(_numbers(inner))
+        if not all(float(number).is_integer() for number in numbers):
+            return value.astype(float)
+        if kind == "u" and any(number < 0 for number in numbers):
+            return value.astype(int)
     return copy.copy(value)
+
+
+def _numbers(value: Any) -> Iterator[Any]:
+    """The numbers in a number, array or nested sequence."""
+    for item in getattr(value, "flat", value if isinstance(value, list | tuple) else (value,)):
+        if isinstance(item, list | tuple):
+            yield from _numbers(item)
+        else:
+            yield item
 
 
 def _with_attribute(value: Any, name: str, inner: Any) -> Any:

@@ -1,0 +1,49 @@
+"""Quantities: allowed values, units and how values are printed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from mutabot.model import Kind, Path, Quantity
+
+
+def quantity(**more: Any) -> Quantity:
+    return Quantity(name="x", path=Path("x"), **{"kind": Kind.OUTPUT, **more})
+
+
+@pytest.mark.parametrize(
+    ("given", "value", "allowed"),
+    [
+        ({}, 5, True),
+        ({"values": ("red", "blue")}, "red", True),
+        ({"values": ("red", "blue")}, "green", False),
+        ({"range": (0.0, 1.0)}, 0.0, True),
+        ({"range": (0.0, 1.0)}, 1.0, True),
+        ({"range": (0.0, 1.0)}, 1.01, False),
+        ({"range": (0.0, 1.0), "values": (0, 1)}, 0.5, False),
+    ],
+)
+def test_a_value_is_allowed_within_values_and_range(given: dict[str, Any], value: Any, allowed: bool) -> None:
+    assert quantity(**given).allows(value) is allowed
+
+
+def test_a_value_in_another_unit_is_converted_to_the_quantity_s_own() -> None:
+    assert quantity(kind=Kind.DISTANCE, unit="mm").from_unit(1.5, "cm") == pytest.approx(15)
+    assert quantity().from_unit(1.5, "cm") == 1.5
+
+
+@pytest.mark.parametrize(
+    ("unit", "value", "text"),
+    [
+        ("m", 0.29, "0.29 m"),
+        ("deg", -80, "-80 deg"),
+        ("fraction", 1, "1"),
+        (None, True, "True"),
+        (None, "red", "red"),
+        ("m", 1 / 3, "0.333333 m"),
+    ],
+)
+def test_a_value_is_printed_with_its_unit(unit: str | None, value: Any, text: str) -> None:
+    assert quantity(unit=unit).text(value) == text
