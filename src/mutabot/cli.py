@@ -3,7 +3,8 @@
 What a command needs is imported inside it, so that ``--help`` is fast.
 """
 
-# ruff: noqa: PLC0415 (imports inside commands, see above), PLR0917 (typer makes options of parameters)
+# The imports inside commands are meant, see above; typer makes options of parameters.
+# ruff: noqa: PLC0415, PLR0917
 
 from __future__ import annotations
 

@@ -33,8 +33,7 @@ def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary 
     survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
     if survivors:
         worst = max(survivors, key=lambda one: one.distance or 0.0)
-        parts = (change_text(mutant, worst, quantity), _world_text(worst))
-        return "; ".join(part for part in parts if part)
+        return f"{change_text(mutant, worst, quantity) or mutant.description}; {_world_text(worst)}"
     verdict, _ = Counter(one.verdict for one in outcomes).most_common(1)[0]
     if any(one.verdict is Verdict.NOT_COVERED for one in outcomes):
         verdict = Verdict.NOT_COVERED
@@ -42,8 +41,8 @@ def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary 
 
 
 def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = None) -> str | None:
-    """What the mutant changed when it first acted: ``read −0.0014 m instead of 0.0014 m``."""
-    if outcome.example is None or len(outcome.example) != 2:
+    """What the mutant changed when it first acted: ``read -0.0014 m instead of 0.0014 m``."""
+    if mutant.quantity is None or outcome.example is None or len(outcome.example) != 2:
         return None
     before, after = (_valued(value, quantity) for value in outcome.example)
     if before == after:
@@ -64,13 +63,7 @@ def is_indistinguishable(outcomes: Sequence[Outcome]) -> bool:
 
 
 def _valued(value: object, quantity: Quantity | None) -> str:
-    if quantity is not None:
-        return quantity.text(value).replace("-", "−") if _is_number(value) else str(value)
-    return value_text(value)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    return quantity.text(value) if quantity is not None else value_text(value)
 
 
 def _verb(quantity: Quantity | None) -> str:

@@ -158,11 +158,11 @@ def _change(before: Any, after: Any) -> str:
 
 
 def value_text(value: Any) -> str:
-    """A value as divergence lines print it: short numbers with a true minus sign."""
+    """A value as divergence lines print it: numbers with four digits."""
     if value is None:
         return "nothing"
     if _is_number(value):
-        return f"{value:.4g}".replace("-", "−")
+        return f"{value:.4g}"
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{key}: {value_text(item)}" for key, item in value.items()) + "}"
     if isinstance(value, list | tuple):

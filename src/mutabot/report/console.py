@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import IO
 
 from rich import box
@@ -34,9 +35,23 @@ def make_table(*, header: bool = True) -> Table:
     return Table(box=box.SIMPLE_HEAD, show_header=header, pad_edge=False, padding=(0, 1), header_style="bold")
 
 
-def add_number_column(table: Table) -> None:
-    """The column of mutant numbers."""
+def add_row(table: Table, number: int, facts: Sequence[str], text: str, *more: Text, narrow: bool) -> None:
+    """A row about a mutant: short facts, one text, and what follows it.
+
+    On a narrow terminal the facts stand on a line above the text, in the same column.
+    """
+    cells = [f"{' · '.join(facts)}\n{plain(text)}"] if narrow else [*facts, plain(text)]
+    table.add_row(str(number), *cells, *more)
+
+
+def make_mutant_table(facts: Sequence[str], text: str, *, narrow: bool) -> Table:
+    """A table for ``add_row``, with the headings of the facts and of the text."""
+    table = make_table()
     table.add_column("no.", justify="right", no_wrap=True)
+    for name in () if narrow else facts:
+        table.add_column(name, no_wrap=True)
+    table.add_column("mutant" if narrow else text, overflow="fold", ratio=1)
+    return table
 
 
 def short_place(file: str, line: int, *, width: int = 24) -> str:

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from mutabot.analysis.divergence import change_text
 from mutabot.analysis.results import MutantResult
-from mutabot.model import Outcome, Quantity
+from mutabot.model import Kind, Outcome, Quantity
 
 from .console import heading, make_table, plain
 from .excerpt import excerpt
@@ -66,7 +66,7 @@ def _quantity_text(name: str | None, quantity: Quantity | None) -> str:
         return name
     words = [
         quantity.kind.value,
-        quantity.axis and f"along {quantity.axis}",
+        quantity.axis and f"{'about' if turned else 'along'} {quantity.axis}",
         quantity.unit and f"in {quantity.unit}",
     ]
     frame = f"frame {quantity.frame}" if quantity.frame else None

@@ -10,28 +10,23 @@ from rich.console import Console
 from mutabot.model import LeftOut, Mutant
 
 from .as_json import mutant_data
-from .console import add_number_column, make_table, plain, plural, short_place
-from .terminal import left_out_lines
+from .console import add_row, make_mutant_table, plural, short_place
+from .terminal import WIDE, left_out_lines
 
 
 def print_plan(
     console: Console, mutants: Sequence[Mutant], left_out: Sequence[LeftOut], *, everything: bool = False
 ) -> None:
     """Print every planned mutant; ``everything`` adds ids and each mutant that was left out."""
-    table = make_table()
-    add_number_column(table)
-    for name in ("role", "place"):
-        table.add_column(name, overflow="fold")
-    table.add_column("call", overflow="fold")
-    table.add_column("operator", no_wrap=True)
-    table.add_column("what it does", overflow="fold", ratio=1)
+    narrow = console.width < WIDE
+    table = make_mutant_table(("role", "place", "operator", "quantity"), "what it does", narrow=narrow)
     for mutant in mutants:
         site = mutant.site
+        quantity = "/".join(part for part in (mutant.pattern_name, mutant.quantity) if part) or "–"
         place = short_place(site.span.file, site.span.line)
-        description = plain(mutant.description)
-        if everything:
-            description += f"\n{mutant.id}"
-        table.add_row(str(mutant.number), site.role.value, place, site.text, mutant.operator, description)
+        text = f"{mutant.description}\n{mutant.id}" if everything else mutant.description
+        facts = (site.role.value, place, mutant.operator, quantity)
+        add_row(table, mutant.number, facts, text, narrow=narrow)
     console.print(table)
     console.print(plural(len(mutants), "mutant"))
     for line in left_out_lines(left_out, everything=everything):

@@ -16,13 +16,15 @@ from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import Group, RoundScores
 from mutabot.model import LeftOut, Outcome, Verdict
 
-from .console import add_number_column, heading, make_table, percent, plain, plural, short_place
+from .console import add_row, heading, make_mutant_table, make_table, percent, plain, plural, short_place
 from .marks import counted, legend, mark_of
 
 #: verdicts outside the score that a user should look at, in this order
 _TOLD = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
 #: rounds from which on a row gives counts in place of one letter each
 _MANY_ROUNDS = 12
+#: columns from which on every fact of a mutant has a column of its own
+WIDE = 110
 
 
 def print_results(console: Console, results: Results, *, everything: bool = False) -> None:
@@ -36,15 +38,15 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
     yield Text(_circumstances(results), style="dim")
     if results.mutants:
         yield heading("Mutants by rounds")
-        yield mutant_table(results)
+        yield mutant_table(results, width)
         yield legend(outcome for result in results.mutants for outcome in result.rounds)
     if results.done:
         yield heading("Killed / valid mutants per round")
         yield from round_tables(results, width)
         yield heading("Scores")
         yield group_table(results)
-    yield from _survivors(results)
-    yield from _outside(results)
+    yield from _survivors(results, width)
+    yield from _outside(results, width)
     yield from left_out_lines(results.left_out, everything=everything)
     yield from _controls(results)
 
@@ -68,22 +70,17 @@ def _circumstances(results: Results) -> str:
     return " · ".join(parts)
 
 
-def mutant_table(results: Results) -> Table:
-    """One row per mutant, one letter per round."""
-    table = make_table()
-    add_number_column(table)
-    table.add_column("role", no_wrap=True)
-    table.add_column("place", overflow="fold")
-    table.add_column("operator", no_wrap=True)
-    table.add_column("what it does", overflow="fold", ratio=1)
+def mutant_table(results: Results, width: int) -> Table:
+    """One row per mutant, one letter per round; on a narrow terminal a row has two lines."""
+    narrow = width < WIDE
+    table = make_mutant_table(("role", "place", "operator"), "what it does", narrow=narrow)
     many = results.rounds > _MANY_ROUNDS
     table.add_column("rounds" if many else _round_numbers(results.rounds), no_wrap=not many)
     for result in results.mutants:
         mutant = result.mutant
-        table.add_row(
-            str(mutant.number), mutant.site.role.value, _place(result), mutant.operator,
-            plain(mutant.description), _row(result.rounds, many),
-        )  # fmt: skip
+        facts = (mutant.site.role.value, _place(result), mutant.operator)
+        letters = _row(result.rounds, many)
+        add_row(table, mutant.number, facts, mutant.description, letters, narrow=narrow)
     return table
 
 
@@ -164,37 +161,35 @@ def _counts(scores: RoundScores) -> str:
     return ", ".join(parts)
 
 
-def _survivors(results: Results) -> Iterator[RenderableType]:
+def _survivors(results: Results, width: int) -> Iterator[RenderableType]:
     survivors = results.survivors
     if not survivors:
         if results.all.total.valid:
             yield heading("No survivors")
         return
     yield heading(f"{plural(len(survivors), 'survivor')}, the farthest from the original first")
-    table = make_table()
-    add_number_column(table)
-    table.add_column("place", overflow="fold")
-    table.add_column("operator", no_wrap=True)
-    table.add_column("let through", justify="right", no_wrap=True)
-    table.add_column("why", overflow="fold", ratio=1)
+    narrow = width < WIDE
+    table = make_mutant_table(("place", "operator", "let through"), "why", narrow=narrow)
     for result in survivors:
         rate = result.kill_rate
         let_through = f"{rate.valid - rate.killed} of {rate.valid}"
-        mutant = result.mutant
-        table.add_row(str(mutant.number), _place(result), mutant.operator, let_through, plain(result.why))
+        facts = (_place(result), result.mutant.operator, f"{let_through} rounds" if narrow else let_through)
+        add_row(table, result.mutant.number, facts, result.why, narrow=narrow)
     yield table
 
 
-def _outside(results: Results) -> Iterator[RenderableType]:
+def _outside(results: Results, width: int) -> Iterator[RenderableType]:
+    narrow = width < WIDE
     for verdict in _TOLD:
         found = results.with_verdict(verdict)
         if not found:
             continue
         yield heading(f"{plural(len(found), 'mutant')} outside the score: {verdict}")
+        table = make_mutant_table(("place", "operator"), "reason", narrow=narrow)
         for result, outcome in found:
-            reason = plain(first_line(outcome.message))
-            number = f"{result.mutant.number:>4}"
-            yield Text(f"{number}  {_place(result)}  {result.mutant.operator}: {reason}", overflow="fold")
+            facts = (_place(result), result.mutant.operator)
+            add_row(table, result.mutant.number, facts, first_line(outcome.message), narrow=narrow)
+        yield table
 
 
 def left_out_lines(left_out: Sequence[LeftOut], *, everything: bool = False) -> Iterator[RenderableType]:
