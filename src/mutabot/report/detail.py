@@ -64,6 +64,7 @@ def _quantity_text(name: str | None, quantity: Quantity | None) -> str:
         return "the call as a whole"
     if quantity is None:
         return name
+    turned = quantity.kind in (Kind.ROTATION, Kind.ORIENTATION, Kind.ANGLE)
     words = [
         quantity.kind.value,
         quantity.axis and f"{'about' if turned else 'along'} {quantity.axis}",
