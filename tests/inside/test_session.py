@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mutabot.inside.limits import BudgetExceeded
-from mutabot.model import Acted, Budget
+from mutabot.model import Acted, Budget, Problem
 
 from .stage import Make
 
@@ -192,3 +192,26 @@ def test_an_operator_that_fails_is_a_failure_of_the_tool_not_of_the_program(make
     activation = stage.sessions[-1].activation
     assert activation is not None
     assert "operator by-to" in (activation.evidence.failure or "")
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("robot:Refusd", "Refusd"),
+        ("robot:move", "no exception class"),
+        ("no_such_robot:Refused", "no_such_robot"),
+    ],
+)
+def test_an_exception_that_does_not_exist_is_reported(make_stage: Make, name: str, words: str) -> None:
+    stage = make_stage(ROBOT, "X = 1\n", VOCABULARY.replace("robot:Refused", name))
+    stage.session().inspect_targets()
+    assert any(isinstance(line, Problem) and words in line.text for line in stage.pipe.lines)
+
+
+def test_an_exception_is_known_by_the_name_it_was_re_exported_as(make_stage: Make) -> None:
+    robot = "from decimal import InvalidOperation as Refused\n\ndef move(x):\n    if x < 0:\n        raise Refused(x)\n"
+    program = HANDLES_REFUSAL.format(0.5)
+    vocabulary = VOCABULARY.split("[[operation]]")[0] + "[[operation]]" + VOCABULARY.split("[[operation]]")[1]
+    stage = make_stage(robot, program, vocabulary)
+    _, activation = stage.mutated("reverse", "x")
+    assert activation.evidence.refusal is not None

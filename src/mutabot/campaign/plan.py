@@ -9,6 +9,7 @@ from typing import Any
 
 from mutabot.errors import OperatorError
 from mutabot.model import Call, LeftOut, Mutant, Operation, Reply, Vocabulary
+from mutabot.model.quantity import is_reading_of
 from mutabot.operators import Operator, Subject, names, operator
 from mutabot.operators.driving import Passage, rehearse
 
@@ -40,6 +41,8 @@ def make_plan(baseline: Baseline, vocabulary: Vocabulary) -> Plan:
             mutant = _mutant(len(mutants) + 1, rule, subject, place)
             mutant = _distinct(mutant, taken)
             seen, reason = _foresee(rule, subject, hits)
+            if rule.asks_where and not _is_told(subject, vocabulary):
+                reason = f"{operation.current or 'no reading'} does not tell where it is"
             mutant = replace(mutant, description=_description(rule, subject, place, seen))
             if reason is None:
                 mutants.append(replace(mutant, idle=_idle(hits) if rule.name == "skip" else None))
@@ -108,6 +111,14 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, 
         if last.before is None:
             last = _Seen(before)
     return last, _reason(subject, last.before, len(hits))
+
+
+def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
+    """Whether the vocabulary names a reading that tells where the subject's quantity is."""
+    reading = vocabulary.operation(subject.operation.current or "")
+    if reading is None or subject.quantity is None:
+        return False
+    return any(is_reading_of(part, subject.quantity) for part in reading.result)
 
 
 def _rehearsal(rule: Operator, subject: Subject, hit: Hit) -> Passage:

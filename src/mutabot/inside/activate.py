@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from random import Random
@@ -14,6 +15,7 @@ from mutabot.operators.control import FatalFault
 from mutabot.operators.driving import Carried, Passage, passed, run
 
 from .door import Door
+from .intercept import NotFoundError, resolve
 
 
 @dataclass(slots=True)
@@ -160,8 +162,23 @@ class _Performer:
 
 
 def is_named(error: BaseException, names: Iterable[str]) -> bool:
-    """Whether the exception's class, or one it derives from, is among ``module:Name``."""
-    return any(f"{kind.__module__}:{kind.__qualname__}" in names for kind in type(error).__mro__)
+    """Whether the exception is of a class that ``module:Name`` means, also by a name it was re-exported as."""
+    kinds = type(error).__mro__
+    return any(f"{kind.__module__}:{kind.__qualname__}" in names for kind in kinds) or any(
+        named_class(name) in kinds for name in names
+    )
+
+
+def named_class(name: str) -> Any:
+    """What ``module:qualified.name`` is at the moment; None if its module is not loaded or has no such name."""
+    module, _, qualname = name.partition(":")
+    if module not in sys.modules:
+        return None
+    try:
+        owner, attribute, _ = resolve(sys.modules[module], qualname)
+        return getattr(owner, attribute)
+    except (NotFoundError, AttributeError):
+        return None
 
 
 def _raised_at_the_call(error: BaseException) -> bool:

@@ -17,7 +17,7 @@ from mutabot.errors import PathError
 from mutabot.model import Call, Operation, Pattern, Quantity, Reply
 from mutabot.model.notation import Notation
 from mutabot.model.path import Path, Step
-from mutabot.model.quantity import READING_OF, Value
+from mutabot.model.quantity import Value, is_reading_of
 from mutabot.operators.driving import same
 
 from .intercept import resolve
@@ -241,7 +241,7 @@ class Door:
         if inspect.isawaitable(value):
             value = await value
         for part in reading.result:
-            if part.kind is READING_OF.get(quantity.kind) and part.axis == quantity.axis:
+            if is_reading_of(part, quantity):
                 number = part.path.get(value)
                 return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
         raise LookupError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import inspect
 import sys
 from collections.abc import Callable
@@ -16,7 +17,7 @@ from mutabot.model import Acted, Budget, Call, Job, Operation, Problem, Reply, R
 
 from .activate import Activation
 from .door import Door
-from .intercept import Handler, Interception, NotFoundError
+from .intercept import Handler, Interception, NotFoundError, resolve
 from .limits import ClockReader, Meter
 from .pipe import Pipe
 from .record import Recorder
@@ -99,7 +100,7 @@ class Session:
         for target in sorted(self.interception.pending):
             module = target.partition(":")[0]
             try:
-                __import__(module)
+                importlib.import_module(module)
             except Exception as error:  # the user's module may fail in any way; say which and how
                 self._tell(
                     self._source_of(target),
@@ -109,6 +110,38 @@ class Session:
                 )
         for operation in self.job.vocabulary.operations:
             self._check_arguments(operation)
+        self._check_exceptions()
+        for probe in self.job.vocabulary.probes:
+            self._look_up(probe.source or probe.target, "call", probe.target)
+
+    def _check_exceptions(self) -> None:
+        """A misspelt refusal would turn refusals into kills; so each name must be an exception."""
+        vocabulary = self.job.vocabulary
+        named = [
+            (key, name) for key in ("refusals", "checks", "failures") for name in getattr(vocabulary, key)
+        ]
+        for key, name in named:
+            self._check_exception("vocabulary", key, name)
+        for operation in vocabulary.operations:
+            for name in operation.refusals:
+                self._check_exception(operation.source, "refusals", name)
+
+    def _check_exception(self, source: str, key: str, name: str) -> None:
+        found = self._look_up(source, f"{key} {name}", name)
+        if found is not None and not (isinstance(found, type) and issubclass(found, BaseException)):
+            self._tell(source, f"{key} {name}", f"{name} is no exception class")
+
+    def _look_up(self, source: str, key: str, target: str) -> Any:
+        """What a target names; None, and a problem, if there is no such thing."""
+        module, _, qualname = target.partition(":")
+        try:
+            owner, name, _ = resolve(importlib.import_module(module), qualname)
+            return getattr(owner, name)
+        except NotFoundError as error:
+            self._tell(source, key, str(error), error.name, error.known)
+        except Exception as error:  # the user's module may fail in any way; say which and how
+            self._tell(source, key, f"module {module!r} cannot be imported: {error!r}", module)
+        return None
 
     def _handler(self, door: Door) -> Handler:
         def handle(
@@ -239,7 +272,7 @@ class Session:
             return operation.source
         if vocabulary.clock is not None and vocabulary.clock.tick == target:
             return vocabulary.clock.source
-        return ""
+        return next((probe.source for probe in vocabulary.probes if probe.target == target), "")
 
     def _tell(
         self, source: str, key: str, text: str, name: str | None = None, known: tuple[str, ...] = ()

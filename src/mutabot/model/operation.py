@@ -17,7 +17,7 @@ class Pattern:
         arguments: the meaning of the fields.
         result: the meaning of what the call returns for this command.
         opposite: notation of the opposite command, or None if it has none.
-        source: where the vocabulary says so (``robot.toml · operation[3].patterns[0]``).
+        source: where the vocabulary says so (``robot.toml:12 · link:send · lift/{height}``).
     """
 
     text: str
@@ -46,7 +46,7 @@ class Operation:
         refusals: exceptions (``module:Name``) by which the robot refuses a command.
         message: argument that holds a text command; None for operations that are not text.
         patterns: the text commands, if ``message`` is given.
-        source: where the vocabulary says so (``robot.toml · operation[3]``).
+        source: where the vocabulary says so (``robot.toml:12 · robot:Arm.move_by``).
     """
 
     target: str

@@ -118,3 +118,14 @@ class Quantity:
             return str(value)
         number = f"{value:.6g}"
         return f"{number} {self.unit}" if self.unit not in (None, "fraction") else number
+
+
+def is_reading_of(reading: Quantity, written: Quantity) -> bool:
+    """Whether a reading tells where a commanded motion starts from: same axis, no other frame."""
+    frames = {reading.frame, written.frame} - {None}
+    if reading.axis != written.axis or len(frames) > 1:
+        return False
+    is_joint = written.axis is not None and written.axis.startswith("j")
+    return reading.kind is READING_OF.get(written.kind) or (
+        is_joint and written.kind is Kind.ROTATION and reading.kind is Kind.ANGLE
+    )

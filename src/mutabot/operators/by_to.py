@@ -24,6 +24,7 @@ class ByTo(Operator):
     """Confuses relative and absolute."""
 
     name = "by-to"
+    asks_where = True
     summary = "A relative amount is taken for an absolute target, and the other way round."
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

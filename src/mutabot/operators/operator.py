@@ -86,12 +86,15 @@ class Operator(ABC):
         family: ``robot``, ``classical``, ``text`` or ``physical``; ``control`` is mutabot's own.
         summary: one sentence for the documentation.
         examples: worked examples; they are tests and documentation at once.
+        asks_where: whether it asks where a written quantity is now; it is then used only where the
+            vocabulary names a reading that tells.
     """
 
     name: ClassVar[str]
     family: ClassVar[str] = "robot"
     summary: ClassVar[str]
     examples: ClassVar[tuple[Example, ...]] = ()
+    asks_where: ClassVar[bool] = False
 
     @abstractmethod
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:

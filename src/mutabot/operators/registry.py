@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from functools import cache
-from importlib import import_module, metadata
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from mutabot.errors import OperatorError, unknown_name_text
 
 from .operator import Operator
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 ENTRY_POINT = "mutabot.operators"
 
@@ -50,11 +54,13 @@ def operator(name: str) -> Operator:
     raise OperatorError(unknown_name_text("operator", name, names()), operator=name)
 
 
-def _plug_ins() -> tuple[metadata.EntryPoint, ...]:
+def _plug_ins() -> tuple[EntryPoint, ...]:
+    from importlib import metadata  # noqa: PLC0415  # slow, and workers need it for plug-ins only
+
     return tuple(metadata.entry_points(group=ENTRY_POINT))
 
 
-def _loaded(entry: metadata.EntryPoint) -> Operator:
+def _loaded(entry: EntryPoint) -> Operator:
     owner = entry.dist.name if entry.dist is not None else "?"
     where = f"operator {entry.name!r} of plug-in {owner!r} ({entry.value})"
     try:

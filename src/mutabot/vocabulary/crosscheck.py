@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mutabot.model import Kind, Operation, Quantity
-from mutabot.model.quantity import READING_OF
+from mutabot.model import Operation, Quantity
+from mutabot.model.quantity import READING_OF, is_reading_of
 
 from .explain import Check
 from .lines import Place
@@ -21,17 +21,6 @@ def check_operations(read: Mapping[str, Read]) -> None:
             _check_current(operation, check, (*place, "current"), read)
         if operation.opposite is not None:
             _check_opposite(operation, check, (*place, "opposite"), read)
-
-
-def is_reading_of(reading: Quantity, written: Quantity) -> bool:
-    """Whether a reading tells where a commanded motion starts from."""
-    frames = {reading.frame, written.frame} - {None}
-    if reading.axis != written.axis or len(frames) > 1:
-        return False
-    is_joint = written.axis is not None and written.axis.startswith("j")
-    return reading.kind is READING_OF[written.kind] or (
-        is_joint and written.kind is Kind.ROTATION and reading.kind is Kind.ANGLE
-    )
 
 
 def _check_current(operation: Operation, check: Check, place: Place, read: Mapping[str, Read]) -> None:

@@ -1,0 +1,128 @@
+"""Small projects on disk, and campaigns on them, for tests of the controller."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+from mutabot.campaign.configuration import load_configuration
+from mutabot.campaign.journal import Journal
+from mutabot.campaign.request import Request
+from mutabot.campaign.run import run_campaign
+from mutabot.model import Outcome
+from mutabot.vocabulary import load
+
+ROBOT = """
+    class Refused(Exception):
+        pass
+
+    class Diverged(Exception):
+        pass
+
+    class Broken(AssertionError):
+        pass
+
+    class Arm:
+        def __init__(self, x=0.0):
+            self.x = x
+
+        def move_by(self, dx):
+            if not -1.0 <= self.x + dx <= 1.0:
+                raise Refused(f"{self.x + dx} is out of reach")
+            self.x += dx
+
+        def position(self):
+            return self.x
+"""
+VOCABULARY = """
+    refusals = ["robot:Refused"]
+    checks = ["robot:Broken"]
+    failures = ["robot:Diverged"]
+
+    [[operation]]
+    call = "robot:Arm.move_by"
+    arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
+
+    [[operation]]
+    call = "robot:Arm.position"
+    result = { kind = "position", axis = "x", unit = "m", noise = 0.5 }
+"""
+CONFIGURATION = """
+    program = ["mission.py"]
+    vocabulary = ["robot.toml"]
+    pytest_args = ["-o", "pythonpath=."]
+"""
+
+
+@dataclass
+class Quiet:
+    """A progress that keeps what it is told."""
+
+    lines: list[str] = field(default_factory=list)
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        self.lines.append(f"== {text} {total}")
+
+    def advance(self, line: str | None = None) -> None:
+        self.lines.append(line or "")
+
+    def note(self, text: str) -> None:
+        self.lines.append(text)
+
+
+def write_project(
+    folder: Path,
+    mission: str,
+    tests: str,
+    *,
+    robot: str = ROBOT,
+    vocabulary: str = VOCABULARY,
+    configuration: str = CONFIGURATION,
+    more: Mapping[str, str] | None = None,
+) -> Path:
+    """A project with one program, one robot module and one test file."""
+    files = {
+        "mission.py": mission,
+        "robot.py": robot,
+        "robot.toml": vocabulary,
+        "mutabot.toml": configuration,
+        "tests/test_mission.py": tests,
+        **(more or {}),
+    }
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(dedent(text), encoding="utf-8")
+    return folder
+
+
+def request_for(folder: Path, **changes: Any) -> Request:
+    """The request that ``mutabot run`` would make in this folder."""
+    configuration = load_configuration(folder)
+    vocabulary = load(configuration.vocabulary, configuration.root)
+    values = {"rounds": configuration.rounds, "seed": configuration.seed, "jobs": 2, **changes}
+    return Request(configuration, vocabulary, **values)
+
+
+def run(folder: Path, **changes: Any) -> dict[str, Outcome]:
+    """A whole campaign; outcomes of the first round by mutant id."""
+    path = run_campaign(request_for(folder, **changes), Quiet())
+    return {outcome.mutant: outcome for outcome in outcomes(path) if outcome.round == 0}
+
+
+def outcomes(path: Path) -> list[Outcome]:
+    with Journal.open(path) as journal:
+        return journal.outcomes()
+
+
+def fingerprint(folder: Path) -> dict[str, str]:
+    """Every file of the project, bar mutabot's own folder, with a hash of its content."""
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and ".mutabot" not in path.parts
+    }
