@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -182,6 +183,26 @@ def test_after_a_protective_stop_motions_are_refused_until_it_is_acknowledged(ce
     cell.arm.acknowledge_stop()
     cell.arm.home()
     assert cell.truth.tool_pose().z == pytest.approx(0.4337, abs=0.002)
+
+
+def test_box_laid_down_softly_does_not_stop_the_arm(cell: Cell, grip: Callable[[Cell], None]) -> None:
+    grip(cell)
+    cell.arm.move_by(z=0.1)
+    cell.arm.move_by(z=-0.1)
+    assert cell.gripper.holding()
+    cell.gripper.command(0)
+    cell.wait(0.5)
+    assert cell.truth.box_position().z == pytest.approx(1.0, abs=0.002)
+
+
+def test_fingers_driven_onto_the_box_stop_the_arm(cell: Cell) -> None:
+    cell.arm.move_by(y=0.2)
+    cell.arm.move_by(theta_x=80)
+    cell.gripper.command(1, wait=True)
+    cell.arm.move_by(x=-0.027)
+    with pytest.raises(ProtectiveStop) as stop:
+        cell.arm.move_by(z=-0.29)
+    assert "box" in (stop.value.first, stop.value.second)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, "0.1", None, True])

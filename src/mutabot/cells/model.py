@@ -28,7 +28,7 @@ _DEFAULTS = """
 _OPTIONS = f"""
 <option timestep="{PHYSICS_STEP}" integrator="implicitfast" cone="elliptic" impratio="100" jacobian="dense"
         solver="Newton" iterations="20" tolerance="1e-8">
-  <flag autoreset="disable"/>
+  <flag autoreset="disable" island="disable"/>
 </option>
 <compiler angle="radian" autolimits="false" inertiafromgeom="true"/>
 """
