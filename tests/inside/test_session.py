@@ -208,10 +208,22 @@ def test_an_exception_that_does_not_exist_is_reported(make_stage: Make, name: st
     assert any(isinstance(line, Problem) and words in line.text for line in stage.pipe.lines)
 
 
+RE_EXPORTING = """
+    from decimal import InvalidOperation as Refused
+
+    def move(x):
+        if x < 0:
+            raise Refused(x)
+
+    def dance():
+        pass
+
+    def locate():
+        return 0.5
+"""
+
+
 def test_an_exception_is_known_by_the_name_it_was_re_exported_as(make_stage: Make) -> None:
-    robot = "from decimal import InvalidOperation as Refused\n\ndef move(x):\n    if x < 0:\n        raise Refused(x)\n"
-    program = HANDLES_REFUSAL.format(0.5)
-    vocabulary = VOCABULARY.split("[[operation]]")[0] + "[[operation]]" + VOCABULARY.split("[[operation]]")[1]
-    stage = make_stage(robot, program, vocabulary)
+    stage = make_stage(RE_EXPORTING, HANDLES_REFUSAL.format(0.5), VOCABULARY)
     _, activation = stage.mutated("reverse", "x")
     assert activation.evidence.refusal is not None

@@ -162,7 +162,7 @@ class _Performer:
 
 
 def is_named(error: BaseException, names: Iterable[str]) -> bool:
-    """Whether the exception is of a class that ``module:Name`` means, also by a name it was re-exported as."""
+    """Whether one of the names ``module:Name`` means the exception's class, re-exported names included."""
     kinds = type(error).__mro__
     return any(f"{kind.__module__}:{kind.__qualname__}" in names for kind in kinds) or any(
         named_class(name) in kinds for name in names
@@ -170,7 +170,7 @@ def is_named(error: BaseException, names: Iterable[str]) -> bool:
 
 
 def named_class(name: str) -> Any:
-    """What ``module:qualified.name`` is at the moment; None if its module is not loaded or has no such name."""
+    """What ``module:qualified.name`` is now; None if its module is not loaded or has no such name."""
     module, _, qualname = name.partition(":")
     if module not in sys.modules:
         return None
