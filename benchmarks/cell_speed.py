@@ -3,8 +3,8 @@
     python benchmarks/cell_speed.py [runs]
 
 Prints per run the simulated time of the program (planning included), the wall time, the processor time and
-the ratio to the latter, which other work on the machine does not disturb. Start-up is shown apart: from a fresh
-interpreter to a ready, homed cell (best and median of several processes).
+the ratio to the latter, which other work on the machine does not disturb. Start-up is shown apart: from a
+fresh interpreter to a ready, homed cell (best and median of several processes).
 """
 
 from __future__ import annotations
