@@ -1,0 +1,46 @@
+# The few commands of this project. `make demo` and `make test` set up everything they need.
+
+PYTHON ?= python3
+VENV   := .venv
+RUN    := $(VENV)/bin/python
+READY  := $(VENV)/.ready
+
+.PHONY: demo test check format docs bench clean
+
+## run the published experiment: 26 mutants, five rounds, in physics
+demo: $(READY)
+	$(VENV)/bin/mutabot -C examples/paper run --selection published.txt
+	$(RUN) benchmarks/paper_scores.py examples/paper
+
+## lint, types and the whole test suite
+test: check
+	$(RUN) -m pytest
+
+## lint and types only
+check: $(READY)
+	$(VENV)/bin/ruff check .
+	$(VENV)/bin/ruff format --check .
+	$(VENV)/bin/mypy
+
+## lay out the code as the project does
+format: $(READY)
+	$(VENV)/bin/ruff check --fix .
+	$(VENV)/bin/ruff format .
+
+## write the generated pages of docs/ again
+docs: $(READY)
+	$(RUN) tools/make_docs.py
+
+## measure: the cost of an intercepted call, start-up, simulation speed, 200 seeds of each example
+bench: $(READY)
+	$(RUN) benchmarks/interception.py
+	$(RUN) benchmarks/cell_speed.py
+	$(RUN) benchmarks/paper_seeds.py
+	$(RUN) benchmarks/pick_and_place_seeds.py
+
+$(READY): requirements.lock pyproject.toml tools/setup.sh
+	PYTHON=$(PYTHON) VENV=$(VENV) sh tools/setup.sh
+	@touch $@
+
+clean:
+	rm -rf $(VENV) examples/*/.mutabot .mypy_cache .ruff_cache .pytest_cache

@@ -1,0 +1,85 @@
+"""What an intercepted call costs, and what the part inside the program's process costs to import.
+
+Usage: python benchmarks/interception.py
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+import timeit
+from pathlib import Path
+
+from mutabot.inside.locate import Locator
+from mutabot.inside.session import Session
+from mutabot.model import Job
+from mutabot.model.job import Line
+from mutabot.vocabulary import load
+
+CALLS = 200_000
+ROBOT = "class Arm:\n    def move_by(self, dx):\n        return None\n"
+PROGRAM = "def run(arm):\n    arm.move_by(0.1)\n"
+VOCABULARY = """
+[[operation]]
+call = "bench_robot:Arm.move_by"
+arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
+"""
+IMPORT = """
+import pytest, time
+start = time.process_time()
+import mutabot.inside.conductor
+print((time.process_time() - start) * 1e3)
+"""
+
+
+class Nowhere:
+    """A pipe that leads nowhere."""
+
+    def send(self, line: Line) -> None:
+        """Forget the line."""
+
+
+def main() -> None:
+    """Print the costs in µs and ms, best of several."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "bench_robot.py").write_text(ROBOT, encoding="utf-8")
+        (folder / "bench_program.py").write_text(PROGRAM, encoding="utf-8")
+        (folder / "robot.toml").write_text(VOCABULARY, encoding="utf-8")
+        sys.path.insert(0, name)
+        _calls(folder)
+    _import()
+
+
+def _calls(folder: Path) -> None:
+    import bench_program  # noqa: PLC0415  # made above
+    import bench_robot  # noqa: PLC0415
+
+    arm = bench_robot.Arm()
+    plain = _per_call(lambda: bench_program.run(arm))
+    job = Job(str(folder), ("bench_program.py",), (), load(["robot.toml"], folder), 1, 0)
+    locate = Locator(job.root, job.program, job.oracle).locate
+    session = Session(job, Nowhere(), locate)  # type: ignore[arg-type]  # it has the one method that is used
+    session.install()
+    print(f"a plain call                        {plain:7.2f} µs")
+    print(f"intercepted, nothing active        +{_per_call(lambda: bench_program.run(arm)) - plain:7.2f} µs")
+    session.start_test("test")
+    print(f"intercepted and recorded           +{_per_call(lambda: bench_program.run(arm)) - plain:7.2f} µs")
+
+
+def _per_call(function: object) -> float:
+    """µs per call, the best of seven tries."""
+    return min(timeit.repeat(function, number=CALLS // 10, repeat=7)) / (CALLS // 10) * 1e6  # type: ignore[arg-type]
+
+
+def _import() -> None:
+    times = []
+    for _ in range(9):
+        done = subprocess.run([sys.executable, "-c", IMPORT], capture_output=True, text=True, check=True)
+        times.append(float(done.stdout))
+    print(f"importing the inside, beside pytest {min(times):7.1f} ms of processor time")
+
+
+if __name__ == "__main__":
+    main()
