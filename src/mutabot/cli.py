@@ -222,6 +222,8 @@ def _request(project: Path, *, selection: Path | None = None, engine: str = "aut
     configuration = load_configuration(project)
     if selection is None and configuration.selection is not None:
         selection = configuration.root / configuration.selection
+    elif selection is not None:
+        selection = _found(selection, configuration.root)
     return Request(
         configuration=configuration,
         vocabulary=load(configuration.vocabulary, configuration.root),
@@ -233,6 +235,14 @@ def _request(project: Path, *, selection: Path | None = None, engine: str = "aut
         selection=selection,
         engine=engine,
     )
+
+
+def _found(selection: Path, root: Path) -> Path:
+    """The selection file, looked for here and in the project; said now rather than after the baseline."""
+    for place in (selection, root / selection):
+        if place.is_file():
+            return place
+    raise UsageError(f"there is no selection file {selection}, neither here nor in {root}")
 
 
 def _journal_path(project: Path) -> Path:
