@@ -1,0 +1,229 @@
+"""Guessing what arguments and results mean from their names, annotations and docstrings."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+#: a quantity as a vocabulary writes it
+Table = dict[str, Any]
+
+_AXIS = re.compile(r"(?P<delta>d|delta_|offset_)?(?P<axis>[xyz])")
+_TURN = re.compile(r"(?:d|delta_)?(?:theta|rot|rotation|angle|euler|r|a|w)_?(?P<axis>[xyz])")
+_NAMED_TURNS = {"yaw": "z", "pitch": "y", "roll": "x", "heading": "z"}
+_TURNS = frozenset({"angle", "theta", "rotation", "degrees", "deg", "radians", "rad", "turn"})
+_JOINT = re.compile(r"(?:j|joint_?|q|axis_?|a)(?P<number>[1-9]|1[0-2])")
+_HEIGHTS = frozenset({"height", "depth", "lift", "drop"})
+_LENGTHS = frozenset({"distance", "length", "dist", "step", "amount", "travel"})
+_TIMES = frozenset(
+    {"seconds", "secs", "sec", "duration", "delay", "dwell", "pause", "milliseconds", "time", "t"}
+)
+_OPENINGS = frozenset(
+    {"position", "opening", "width", "pos", "fraction", "value", "state", "command", "percent"}
+)
+_SWITCHES = frozenset({"on", "state", "enabled", "value", "level", "active", "closed", "open", "grip"})
+_UNIT_WORDS = {
+    "mm": "mm", "millimetre": "mm", "millimeter": "mm", "cm": "cm", "centimetre": "cm", "centimeter": "cm",
+    "m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m",
+    "deg": "deg", "degree": "deg", "degrees": "deg", "°": "deg",
+    "rad": "rad", "radian": "rad", "radians": "rad",
+    "s": "s", "sec": "s", "second": "s", "seconds": "s",
+    "ms": "ms", "millisecond": "ms", "milliseconds": "ms",
+}  # fmt: skip
+_UNITS_OF = {"length": ("m", "cm", "mm"), "angle": ("deg", "rad"), "time": ("s", "ms")}
+_RELATIVE = re.compile(
+    r"(?:^|_)(?:by|relative|rel|offset|shift|jog|translate|rotate|turn|forward|back|lift|drop)"
+)
+_ABSOLUTE = re.compile(r"(?:^|_)(?:to|absolute|abs|goto|target|set)(?:_|$)")
+_GRIPPER = re.compile(r"grip|(?:^|_)hand(?:_|$)|finger|claw|jaw|vacuum|suction")
+_OUTPUT = re.compile(r"output|digital|signal|valve|relay|lamp|(?:^|_)io(?:_|$)|(?:^|_)do(?:_|$)")
+
+
+@dataclass
+class Guess:
+    """A quantity and how sure we are.
+
+    Attributes:
+        table: the quantity; empty if nothing could be guessed.
+        checks: what the user should look at.
+    """
+
+    table: Table = field(default_factory=dict)
+    checks: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Where a name stands.
+
+    Attributes:
+        words: names of the callable, its class and module, in lower case.
+        doc: docstrings of the callable and its class.
+        annotation: type as written, or empty.
+        constants: constants the program calls it with, or compares the result with.
+    """
+
+    words: str
+    doc: str = ""
+    annotation: str = ""
+    constants: Sequence[Any] = ()
+
+
+def guess_argument(name: str, setting: Setting) -> Guess:
+    """What an argument means; an empty guess if its name says nothing."""
+    stem, unit = _split_unit(name.lower())
+    if _GRIPPER.search(setting.words) and stem in _OPENINGS | _SWITCHES:
+        return _opening(stem, unit, setting)
+    if (_OUTPUT.search(setting.words) and stem in _SWITCHES) or _is_switch(stem, setting):
+        return _switch(setting)
+    motion = _motion(stem)
+    if motion is not None:
+        kind, axis, relative = motion
+        return _moved(kind, axis, relative, unit, setting)
+    if stem in _TIMES and "timeout" not in name:
+        unit = "ms" if "milli" in stem else unit
+        return _measured({"kind": "duration"}, "time", unit, setting)
+    return Guess()
+
+
+def guess_reading(name: str, setting: Setting) -> Guess:
+    """What a result, or the part of it with this name, means."""
+    stem, unit = _split_unit(name.lower())
+    motion = _motion(stem)
+    if motion is not None and stem not in _LENGTHS | _HEIGHTS:
+        kind, axis, _ = motion
+        if axis is not None and axis.startswith("j"):
+            return _measured({"kind": "angle", "axis": axis}, "angle", unit, setting)
+        turned = kind == "rotation"
+        table = {"kind": "orientation" if turned else "position", **({"axis": axis} if axis else {})}
+        return _measured(table, "angle" if turned else "length", unit, setting)
+    return _plain_reading(stem, unit, setting)
+
+
+def _plain_reading(stem: str, unit: str | None, setting: Setting) -> Guess:
+    words = set(re.split(r"[_\W]+", f"{stem} {setting.words}"))
+    if setting.annotation == "bool" or re.match(r"(is|has|can)_", stem):
+        return Guess({"kind": "flag"})
+    if setting.annotation.startswith("Literal") or words & {
+        "color",
+        "colour",
+        "label",
+        "kind",
+        "type",
+        "category",
+    }:
+        return _label(setting)
+    if setting.annotation == "str":
+        return _label(setting)
+    if words & {"angle", "joint", "heading"}:
+        return _measured({"kind": "angle"}, "angle", unit, setting)
+    if words & {"distance", "range", "gap", "height", "width", "length", "depth", "ultrasonic", "lidar"}:
+        return _measured({"kind": "distance"}, "length", unit, setting)
+    return Guess()
+
+
+def _motion(stem: str) -> tuple[str, str | None, bool | None] | None:
+    """Kind, axis and whether it is relative, where the name alone shows a motion."""
+    if match := _AXIS.fullmatch(stem):
+        return "translation", match["axis"], True if match["delta"] else None
+    if match := _TURN.fullmatch(stem):
+        return "rotation", match["axis"], None
+    if match := _JOINT.fullmatch(stem):
+        return "rotation", f"j{match['number']}", False
+    if stem in _NAMED_TURNS or stem.removeprefix("d") in _NAMED_TURNS:
+        return "rotation", _NAMED_TURNS.get(stem) or _NAMED_TURNS[stem[1:]], None
+    if stem in _TURNS:
+        return "rotation", None, None
+    if stem in _HEIGHTS:
+        return "translation", "z", None
+    return ("translation", None, True) if stem in _LENGTHS else None
+
+
+def _moved(kind: str, axis: str | None, relative: bool | None, unit: str | None, setting: Setting) -> Guess:
+    table: Table = {"kind": kind, **({"axis": axis} if axis else {})}
+    guess = _measured(table, "angle" if kind == "rotation" else "length", unit, setting)
+    mode = {True: "by", False: "to", None: None}[relative]
+    if mode is None and _ABSOLUTE.search(setting.words) and not re.search(r"_by(?:_|$)", setting.words):
+        mode = "to"
+    elif mode is None and (_RELATIVE.search(setting.words) or "relative" in setting.doc.lower()):
+        mode = "by"
+    if mode is None:
+        guess.checks.append("mode")
+    guess.table["mode"] = mode or "to"
+    return guess
+
+
+def _measured(table: Table, dimension: str, unit: str | None, setting: Setting) -> Guess:
+    fitting = _UNITS_OF[dimension]
+    if unit not in fitting:
+        said = [_UNIT_WORDS.get(word) for word in re.findall(r"[^\W\d_]+|°", setting.doc.lower())]
+        unit = next((one for one in said if one in fitting), None)
+    if unit is not None:
+        return Guess({**table, "unit": unit})
+    return Guess({**table, "unit": fitting[0]}, ["unit"])
+
+
+def _opening(stem: str, unit: str | None, setting: Setting) -> Guess:
+    if setting.annotation == "bool":
+        return Guess({"kind": "opening", "values": [False, True]})
+    values = _distinct(setting.constants)
+    if len(values) >= 2:
+        table: Table = {"kind": "opening", "values": values}
+        if _are_numbers(values) and any(value > 1 for value in values):
+            return Guess({**table, "unit": unit if unit in ("mm", "cm", "m") else "percent"}, ["unit"])
+        return Guess(table)
+    if unit is not None or stem == "width":
+        return Guess(
+            {"kind": "opening", "unit": unit or "m", "range": [0.0, _stroke(unit or "m")]}, ["range"]
+        )
+    return Guess({"kind": "opening", "range": [0.0, 1.0], "unit": "fraction"}, ["range"])
+
+
+def _stroke(unit: str) -> float:
+    return {"m": 0.1, "cm": 10.0, "mm": 100.0}.get(unit, 1.0)
+
+
+def _is_switch(stem: str, setting: Setting) -> bool:
+    return setting.annotation == "bool" and stem in _SWITCHES
+
+
+def _switch(setting: Setting) -> Guess:
+    values = _distinct(setting.constants)
+    if setting.annotation == "bool" or len(values) < 2:
+        return Guess(
+            {"kind": "output", "values": [False, True]}, [] if setting.annotation == "bool" else ["values"]
+        )
+    return Guess({"kind": "output", "values": values})
+
+
+def _label(setting: Setting) -> Guess:
+    literal = re.fullmatch(r"Literal\[(.*)\]", setting.annotation)
+    values = _distinct(re.findall(r"'([^']*)'", literal[1])) if literal else _distinct(setting.constants)
+    if len(values) >= 2:
+        return Guess({"kind": "label", "values": values}, [] if literal else ["values"])
+    return Guess({"kind": "label"}, ["values"])
+
+
+def _split_unit(name: str) -> tuple[str, str | None]:
+    stem, _, last = name.rpartition("_")
+    if stem and last in _UNIT_WORDS:
+        return stem, _UNIT_WORDS[last]
+    return name, _UNIT_WORDS.get(name) if name in (
+        "seconds",
+        "milliseconds",
+        "degrees",
+        "radians",
+        "deg",
+    ) else None
+
+
+def _distinct(values: Sequence[Any]) -> list[Any]:
+    kinds = {type(value) for value in values}
+    same = values if len(kinds) <= 1 or kinds == {int, float} else []
+    return list(dict.fromkeys(same))
+
+
+def _are_numbers(values: Sequence[Any]) -> bool:
+    return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
