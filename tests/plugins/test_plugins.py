@@ -1,0 +1,193 @@
+"""Operators of third parties: a real package, installed with pip, and packages that break the contract."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+PACKAGE = Path(__file__).parent / "package"
+USAGE = 2
+
+#: approaches a wall until a laser says 10 cm; the test allows 2 cm either way
+PROJECT = {
+    "pyproject.toml": """
+        [tool.mutabot]
+        program = ["approach.py"]
+        vocabulary = ["robot.toml"]
+        """,
+    "robot.toml": """
+        [[operation]]
+        call = "robot:distance"
+        result = { kind = "distance", unit = "m" }
+        """,
+    "robot.py": """
+        gap = 0.0
+
+        def distance():
+            return gap
+
+        def forward(amount):
+            global gap
+            gap -= amount
+        """,
+    "approach.py": """
+        import robot
+
+        def run():
+            while robot.distance() > 0.101:
+                robot.forward(0.01)
+        """,
+    "tests/test_approach.py": """
+        import approach
+        import robot
+
+        def test_it_stops_before_the_wall():
+            robot.gap = 0.15
+            approach.run()
+            assert abs(robot.gap - 0.10) <= 0.02
+        """,
+    "conftest.py": "",
+}
+
+#: the one that is only found when it is used
+ON_USE = "fails on an operation"
+#: how a plug-in can break the contract: (name in the entry point, its code, what the error must tell)
+BROKEN = {
+    "raises at import": ("late", "raise RuntimeError('no licence')", "RuntimeError('no licence')"),
+    "imports what is not there": ("late", "import not_there_at_all", "not_there_at_all"),
+    "has no such class": ("late", "", "Rule"),
+    "is no operator": ("late", "class Rule: name = 'late'", "not a subclass"),
+    "cannot be made": (
+        "late",
+        "from mutabot.operators import Operator\nclass Rule(Operator):\n    name = 'late'",
+        "abstract",
+    ),
+    "has another name": (
+        "late",
+        "from mutabot.operators.skip import Skip\nclass Rule(Skip):\n    name = 'early'",
+        "'early'",
+    ),
+    ON_USE: (
+        "late",
+        "from mutabot.operators.skip import Skip\nclass Rule(Skip):\n    name = 'late'\n"
+        "    def subjects(self, operation, pattern):\n        raise KeyError('frame')",
+        "KeyError('frame')",
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder into which pip has installed the plug-in."""
+    copy = tmp_path_factory.mktemp("source") / "package"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    target = tmp_path_factory.mktemp("installed")
+    options = ["--no-build-isolation", "--no-deps", "--no-index", "--disable-pip-version-check", "--quiet"]
+    done = subprocess.run(
+        [sys.executable, "-m", "pip", "install", *options, "--target", str(target), str(copy)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return target
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A tiny project with one reading."""
+    root = tmp_path / "project"
+    for name, text in PROJECT.items():
+        lines = text.strip("\n").splitlines()
+        indent = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
+        file = root / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("\n".join(line[indent:] for line in lines) + "\n", encoding="utf-8")
+    return root
+
+
+def python(path: Path | None, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run Python with ``path`` among the places where packages are found."""
+    environment = {**os.environ, "PYTHONPATH": str(path) if path is not None else ""}
+    return subprocess.run(
+        [sys.executable, *arguments], env=environment, capture_output=True, text=True, check=False
+    )
+
+
+def mutabot(path: Path | None, project: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run mutabot's command line on a project."""
+    code = "import sys; from mutabot.cli import main; sys.exit(main())"
+    return python(path, "-c", code, "-C", str(project), *arguments)
+
+
+def broken_plug_in(folder: Path, name: str, code: str) -> Path:
+    """A folder as an installer leaves it, with a plug-in of this code."""
+    details = folder / "broken_plug_in-1.0.dist-info"
+    details.mkdir(parents=True)
+    (details / "METADATA").write_text("Metadata-Version: 2.1\nName: broken-plug-in\nVersion: 1.0\n")
+    (details / "entry_points.txt").write_text(f"[mutabot.operators]\n{name} = broken_plug_in:Rule\n")
+    (folder / "broken_plug_in.py").write_text(code)
+    return folder
+
+
+def mutants(done: subprocess.CompletedProcess[str]) -> dict[str, dict[str, Any]]:
+    """The campaign's mutants by operator."""
+    assert done.returncode == 0, done.stderr
+    return {mutant["operator"]: mutant for mutant in json.loads(done.stdout)["mutants"]}
+
+
+def test_the_operator_of_an_installed_plug_in_gets_a_verdict(installed: Path, project: Path) -> None:
+    drift = mutants(mutabot(installed, project, "run", "--json"))["drift"]
+    # Each reading is 5 mm farther off, half of what the robot drives in between: it drives too far.
+    assert drift["id"] == "approach.py:run:robot.distance#1:result:drift"
+    assert (drift["rounds"][0]["verdict"], drift["rounds"][0]["by"]) == ("killed", "check")
+    assert drift["description"] == "robot.distance: reads 0.15 m and drifts"
+
+
+def test_without_the_plug_in_its_operator_is_not_there(project: Path) -> None:
+    assert set(mutants(mutabot(None, project, "list", "--json"))) == {"negate", "noise"}
+
+
+def test_the_plug_ins_examples_do_what_they_say(installed: Path) -> None:
+    code = (
+        "import sys; sys.path.insert(0, sys.argv[1])\n"
+        "from operators.test_examples import *\n"
+        "assert 'drift' in names()\n"
+        "for index in range(len(operator('drift').examples)):\n"
+        "    test_the_example_does_what_it_says('drift', index)\n"
+        "    test_the_example_is_a_place_where_the_operator_acts('drift', index)\n"
+    )
+    done = python(installed, "-c", code, str(Path(__file__).parents[1]))
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("how", [how for how in BROKEN if how != ON_USE])
+def test_a_broken_plug_in_raises_an_operator_error_that_names_it(how: str, tmp_path: Path) -> None:
+    name, code, told = BROKEN[how]
+    ask = (
+        "from mutabot.errors import OperatorError\n"
+        "from mutabot.operators import operator\n"
+        "try:\n    operator('late')\n"
+        "except OperatorError as error:\n    print(error.operator, '|', error)\n"
+    )
+    done = python(broken_plug_in(tmp_path, name, code), "-c", ask)
+    named = f"{name} | operator {name!r} of plug-in 'broken-plug-in' (broken_plug_in:Rule)"
+    assert done.stdout.startswith(named), done.stderr
+    assert told in done.stdout
+
+
+@pytest.mark.parametrize("how", ["raises at import", ON_USE])
+def test_the_command_line_tells_which_plug_in_is_broken(how: str, project: Path, tmp_path: Path) -> None:
+    name, code, told = BROKEN[how]
+    done = mutabot(broken_plug_in(tmp_path / "site", name, code), project, "list")
+    assert done.returncode == USAGE, done.stderr
+    assert "Traceback" not in done.stderr
+    assert f"operator {name!r}" in done.stderr
+    assert told in done.stderr
