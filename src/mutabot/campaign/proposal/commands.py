@@ -13,7 +13,8 @@ _NUMBER = re.compile(r"(?<![\w{])[-+]?\d+(?:\.\d+)?(?!\w)")
 _FIELD = re.compile(r"\{(\w+):g\}")
 _OPPOSITES = (
     ("lift", "drop"), ("raise", "lower"), ("up", "down"), ("pick", "release"), ("grip", "release"),
-    ("grasp", "release"), ("open", "close"), ("on", "off"), ("forward", "back"), ("left", "right"), ("start", "stop"),
+    ("grasp", "release"), ("open", "close"), ("on", "off"), ("forward", "back"), ("left", "right"),
+    ("start", "stop"),
 )  # fmt: skip
 _MEANINGS = (
     (

@@ -36,7 +36,7 @@ class Proposal:
         current, opposite: targets of other operations, or None.
         refusals: exceptions it raises that look like a refusal.
         certain: whether the program really uses this callable, or only the names suggest it.
-        is_reading: whether it only reads.
+        reads_by_name: whether the text only says what to read.
     """
 
     definition: Definition
@@ -48,6 +48,7 @@ class Proposal:
     opposite: str | None = None
     refusals: list[str] = field(default_factory=list)
     certain: bool = True
+    reads_by_name: bool = False
 
     @property
     def target(self) -> str:
@@ -82,6 +83,7 @@ def _proposal(use: Use, resolver: Resolver) -> Proposal:
     proposal = Proposal(definition, certain=use.certain)
     proposal.refusals = list(dict.fromkeys(_refusals(definition, resolver)))
     proposal.message = _message(use)
+    proposal.reads_by_name = proposal.message is not None and _reads(use)
     for argument in parameters(definition):
         if argument.arg != proposal.message:
             proposal.arguments.update(_argument(argument, use, resolver))
@@ -97,22 +99,24 @@ def _says_something(proposal: Proposal) -> bool:
 
 
 def _is_command(use: Use) -> bool:
-    returns = use.definition.node
-    answers = not isinstance(returns, ast.ClassDef) and returns.returns is not None
-    plain = not answers or getattr(returns.returns, "value", 0) is None
-    return (
-        plain and not is_property(use.definition) and bool(_COMMANDS.search(_snake(use.definition.node.name)))
-    )
+    node = use.definition.node
+    assert not isinstance(node, ast.ClassDef)
+    answers = node.returns is not None and ast.unparse(node.returns) not in ("None", "bool")
+    return not answers and not is_property(use.definition) and bool(_COMMANDS.search(_snake(node.name)))
 
 
 def _message(use: Use) -> str | None:
     """The argument that holds a text command."""
-    reads = _READERS.search(_snake(use.definition.node.name))
+    reads = _reads(use)
     for argument in parameters(use.definition):
         texts = [one for one in use.constants.get(argument.arg, []) if isinstance(one, str)]
         if texts and (argument.arg in MESSAGES or (reads and argument.arg == "name")):
             return argument.arg
     return None
+
+
+def _reads(use: Use) -> bool:
+    return _READERS.search(_snake(use.definition.node.name)) is not None
 
 
 def _argument(argument: ast.arg, use: Use, resolver: Resolver) -> Iterator[tuple[str, Guess]]:

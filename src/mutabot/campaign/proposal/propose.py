@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -55,11 +55,10 @@ def propose(root: Path, program: Sequence[Path] = ()) -> list[str]:
     root = root.resolve()
     _refuse_existing(root)
     project = _look(root, program)
-    uses = _uses_of(project, project.program)
+    uses = Uses(project.resolver, [project.sources.at(path) for path in project.program])
     oracle = _oracle(project)
-    readings = _uses_of(project, oracle)
-    merged = {**readings.found, **uses.found}
-    found, others = proposals(list(merged.values()), project.resolver)
+    found, others = proposals([*uses.found.values(), *_only_new(oracle, uses)], project.resolver)
+    others = [use for use in others if project.sources.is_local(use.definition.module)]
     names = [_relative(root, path) for path in project.program]
     if not found:
         raise UsageError(
@@ -154,25 +153,31 @@ def _classes(sources: Sources, path: Path) -> dict[str, Definition]:
     return {name: Definition(module, name, node) for name, node in nodes if isinstance(node, ast.ClassDef)}
 
 
-def _uses_of(project: _Project, files: Sequence[Path]) -> Uses:
-    return Uses(project.resolver, [project.sources.at(path) for path in files])
-
-
-def _oracle(project: _Project) -> list[Path]:
-    """Files on the tests' side that read from the robot or the cell."""
-    found = []
+def _oracle(project: _Project) -> dict[Path, list[Use]]:
+    """Files on the tests' side that read from the robot or the cell, with those readings."""
+    found = {}
+    inside = {path.resolve() for path in (*project.program, *project.tests)}
     for path in project.tests:
         module = _read(project.sources, path)
         if module is None:
             continue
-        uses = Uses(project.resolver, [module]).found.values()
-        outside = [
-            use for use in uses if use.definition.module.path not in (*project.program, *project.tests)
+        uses = [
+            use
+            for use in Uses(project.resolver, [module]).found.values()
+            if use.certain
+            and project.sources.is_local(use.definition.module)
+            and use.definition.module.path.resolve() not in inside
         ]
-        proposed, _ = proposals([use for use in outside if use.certain], project.resolver)
-        if any(proposal.is_reading for proposal in proposed):
-            found.append(path)
+        proposed, _ = proposals(uses, project.resolver)
+        targets = {proposal.target for proposal in proposed if proposal.is_reading}
+        if targets:
+            found[path] = [use for use in uses if use.definition.target in targets]
     return found
+
+
+def _only_new(oracle: Mapping[Path, Sequence[Use]], uses: Uses) -> list[Use]:
+    new = {use.definition.target: use for readings in oracle.values() for use in readings}
+    return [use for target, use in new.items() if target not in uses.found]
 
 
 def _loadable(found: list[Proposal], others: list[Use], names: Sequence[str]) -> str:
@@ -222,7 +227,7 @@ def _next_steps(root: Path, names: Sequence[str], found: Sequence[Proposal], *, 
     how = " (guessed; name the files if that is wrong: mutabot init FILE…)" if guessed else ""
     hint = ""
     if (root / "pyproject.toml").exists():
-        hint = f"; its lines may as well stand in pyproject.toml, under [tool.mutabot], in place of {CONFIGURATION}"
+        hint = "; its lines may as well stand in pyproject.toml, under [tool.mutabot]"
     return [
         f"program: {', '.join(names)}{how}",
         f"wrote {CONFIGURATION}{hint}",
