@@ -109,7 +109,7 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, 
         if passage.acted:
             return _Seen(before, _changed(subject, passage)), None
         if last.before is None:
-            last = _Seen(before)
+            last = _Seen(before, before)
     return last, _reason(subject, last.before, len(hits))
 
 

@@ -33,6 +33,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
 
     Raises ConfigurationError, BaselineError, NothingToDoError, ControlError.
     """
+    started = time.monotonic()
     with _workers(request) as workers:
         baseline, results = take_baseline(request, workers, progress)
         plan = selected(request, make_plan(baseline, request.vocabulary), baseline)
@@ -46,6 +47,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
             except BaseException as error:
                 journal.finish(_reason(error))
                 raise
+            journal.set_meta("seconds", time.monotonic() - started)
             journal.finish("complete")
     return request.journal_path
 
