@@ -1,0 +1,173 @@
+"""Write docs/operators.md from the operators' own examples.
+
+Use: ``python tools/make_docs.py``; with ``--check`` nothing is written, and the exit code is 1 if the page
+is out of date.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from mutabot.model import Quantity
+from mutabot.model.notation import Notation
+from mutabot.operators import Example, Operator, Subject, operator
+from mutabot.operators.registry import BUILT_IN
+
+PAGE = Path(__file__).parents[1] / "docs" / "operators.md"
+
+#: the published operators: original, mutant, the operator that makes it
+PUBLISHED = (
+    ("rotate left by θ", "rotate right by θ", "reverse"),
+    ("rotate right by θ", "rotate left by θ", "reverse"),
+    ("translate forward by δ", "translate backwards by δ", "reverse"),
+    ("translate backwards by δ", "translate forward by δ", "reverse"),
+    ("translate forward by δ", "translate forward *to* δ", "by-to"),
+    ("translate backwards by δ", "translate backwards *to* δ", "by-to"),
+    ("do command x", "do nothing", "skip"),
+    ("do command x", "do command x twice", "repeat"),
+    ("distance value is x", "distance value is −x", "negate"),
+    ("distance value is x", "distance value is x + noise", "noise"),
+    ("do command x", "do the opposite, such as release for grasp", "opposite"),
+    ("a colour is classified", "an incorrect colour is returned", "misread"),
+    ("a position or angle is read", "the reading has Gaussian noise", "noise"),
+)
+
+HEAD = """\
+# Which faults does mutabot plant?
+
+<!-- Written by tools/make_docs.py from the operators' own examples, which are tests as well. Do not edit. -->
+
+An *operator* is a rule that plants one small fault in what the program tells the robot or hears from it.
+It sees what the [vocabulary](vocabulary.md) describes: operations and quantities, never program text.
+A changed value stays one that the robot takes: where it would leave the range or the values that the
+vocabulary gives, the operator stays away.
+"""
+
+TAIL = """\
+## Your own operators
+
+An operator is a class with a name, a summary, examples and three methods. The contract is
+`src/mutabot/operators/operator.py`, the shortest example `src/mutabot/operators/skip.py`. Name the class
+under the entry point `mutabot.operators` of any installed package, and every campaign uses it:
+
+```toml
+[project.entry-points."mutabot.operators"]
+drift = "mutabot_drift:Drift"
+```
+
+The whole package stands in `tests/plugins/package`.
+"""
+
+
+def page() -> str:
+    """The text of the page."""
+    operators = [operator(name) for name in BUILT_IN]
+    lines = [HEAD, *_overview(operators), *_published()]
+    for each in operators:
+        lines += _section(each)
+    return "\n".join([*lines, TAIL])
+
+
+def _overview(operators: list[Operator]) -> Iterator[str]:
+    yield from _table("operator", "the fault")
+    yield from (_row(f"[{each.name}](#{each.name})", each.summary) for each in operators)
+    yield ""
+
+
+def _published() -> Iterator[str]:
+    yield "The published operators, and what makes them here:\n"
+    yield from _table("original", "mutant", "operator")
+    yield from (_row(original, mutant, f"[{name}](#{name})") for original, mutant, name in PUBLISHED)
+    yield ""
+
+
+def _section(each: Operator) -> Iterator[str]:
+    yield f"## {each.name}\n"
+    yield f"{each.summary}\n"
+    acting = [example for example in each.examples if not example.away]
+    noted = any(example.note for example in acting)
+    yield from _table("original", "mutant", *(["note"] if noted else []))
+    for example in acting:
+        yield _row(_before(example), _after(example), *([example.note] if noted else []))
+    yield ""
+    staying = [example for example in each.examples if example.away]
+    if staying:
+        yield "It stays away where it would change nothing, or nothing the robot takes:\n"
+        yield from (f"- {_before(example)}: {example.away}" for example in staying)
+        yield ""
+
+
+def _before(example: Example) -> str:
+    subject = example.subject
+    text = _call(subject, example.values)
+    if subject.read:
+        text = f"{text} reads {_reading(subject, example.replied)}"
+    if example.current:
+        text = f"{text}, from {_values(subject.written, example.current)}"
+    return text
+
+
+def _after(example: Example) -> str:
+    subject = example.subject
+    if example.received is not None:
+        return f"reads {_reading(subject, example.received)}"
+    return ", then ".join(_call(subject, values) for values in example.performed) or "nothing"
+
+
+def _call(subject: Subject, values: Mapping[str, Any]) -> str:
+    operation, pattern = subject.operation, subject.pattern
+    opposite = bool(values.get("reversed"))
+    values = {name: value for name, value in values.items() if name != "reversed"}
+    if pattern is not None:
+        text = Notation.compile((opposite and pattern.opposite) or pattern.text).write(values)
+        return f'`{operation.name}("{text}")`'
+    target = (opposite and operation.opposite) or operation.target
+    return f"`{target.partition(':')[2]}({_values(subject.written, values)})`"
+
+
+def _reading(subject: Subject, values: Mapping[str, Any]) -> str:
+    present = {name: value for name, value in values.items() if value is not None}
+    return f"`{_values(subject.read, present)}`" if present else "nothing"
+
+
+def _values(quantities: tuple[Quantity, ...], values: Mapping[str, Any]) -> str:
+    texts = []
+    for quantity in quantities:
+        if quantity.name in values:
+            text = _value(quantity, values[quantity.name])
+            texts.append(text if quantity.name == "result" else f"{quantity.name.lstrip('.')} = {text}")
+    return ", ".join(texts)
+
+
+def _value(quantity: Quantity, value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(f'{item:g}' for item in value)}] {quantity.unit}".replace("-", "−")
+    if isinstance(value, str):
+        return f'"{value}"'
+    rounded = round(value, 3) if isinstance(value, float) else value
+    return quantity.text(rounded).replace("-", "−")
+
+
+def _table(*heads: str) -> Iterator[str]:
+    yield _row(*heads)
+    yield f"|{'---|' * len(heads)}"
+
+
+def _row(*cells: str) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def main(arguments: list[str]) -> int:
+    """Write the page, or check it; returns the exit code."""
+    text = page()
+    if arguments == ["--check"]:
+        return 0 if PAGE.is_file() and PAGE.read_text(encoding="utf-8") == text else 1
+    PAGE.write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
