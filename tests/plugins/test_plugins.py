@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 PACKAGE = Path(__file__).parent / "package"
-USAGE = 2
+USAGE, NOTHING_VALID = 2, 3
 
 #: approaches a wall until a laser says 10 cm; the test allows 2 cm either way
 PROJECT = {
@@ -82,6 +82,28 @@ BROKEN = {
     ),
 }
 
+#: repeats a call; breaks on a real answer, which the plan's rehearsal does not have
+BREAKS_LATE = """
+from mutabot.operators.repeat import Repeat
+from mutabot.operators import Subject
+
+class Rule(Repeat):
+    name = "late"
+
+    def subjects(self, operation, pattern):
+        return [Subject(operation, pattern)]
+
+    def middleware(self, subject, random):
+        async def mutated(call, proceed):
+            await proceed(call)
+            reply = await proceed(call)
+            if reply.payload is not None:
+                raise ValueError("broken while at work")
+            return reply
+
+        return mutated
+"""
+
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -137,9 +159,9 @@ def broken_plug_in(folder: Path, name: str, code: str) -> Path:
     return folder
 
 
-def mutants(done: subprocess.CompletedProcess[str]) -> dict[str, dict[str, Any]]:
+def mutants(done: subprocess.CompletedProcess[str], *, code: int = 0) -> dict[str, dict[str, Any]]:
     """The campaign's mutants by operator."""
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == code, done.stderr
     return {mutant["operator"]: mutant for mutant in json.loads(done.stdout)["mutants"]}
 
 
@@ -191,3 +213,13 @@ def test_the_command_line_tells_which_plug_in_is_broken(how: str, project: Path,
     assert "Traceback" not in done.stderr
     assert f"operator {name!r}" in done.stderr
     assert told in done.stderr
+
+
+def test_an_operator_that_fails_while_at_work_is_an_error_and_never_a_kill(
+    project: Path, tmp_path: Path
+) -> None:
+    site = broken_plug_in(tmp_path / "site", "late", BREAKS_LATE)
+    done = mutabot(site, project, "run", "--json", "--only", "late")
+    end = mutants(done, code=NOTHING_VALID)["late"]["rounds"][0]
+    assert end["verdict"] == "error"
+    assert end["message"] == "operator late: ValueError: broken while at work"
