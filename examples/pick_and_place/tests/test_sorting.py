@@ -17,8 +17,8 @@ CellWith = Callable[..., Cell]
 HOME = Pose(0.5767, 0.0014, 0.4337, 90.0, 0.0, 90.0)
 """Base frame; the maker's figures."""
 HOME_WITHIN = 0.0015
-"""The arm has arrived when every joint is within 0.001 rad, which 0.9 m of arm turn into 0.9 mm; and five standard
-deviations of the encoders' noise (0.1 mm)."""
+"""The arm has arrived when every joint is within 0.001 rad: 0.9 mm at the end of 0.9 m. The rest is
+five times the encoders' noise, 0.1 mm."""
 HOME_WITHIN_DEGREES = 0.3
 """As above: 0.06° for each of the joints that can add up, and 0.02° of noise, five times."""
 
