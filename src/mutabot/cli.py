@@ -185,13 +185,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments = sys.argv[1:] if arguments is None else arguments
         code = app(list(arguments), prog_name="mutabot", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
-        typer.echo("interrupted; `mutabot results` shows what is there", err=True)
-        return INTERRUPTED
+        code = INTERRUPTED
     except MutabotError as error:
         typer.echo(f"mutabot: {error}", err=True)
         return error.exit_code
     except Exception as error:
         return _usage_or_crash(error)
+    if code == INTERRUPTED:  # also typer itself turns Ctrl-C into this code
+        typer.echo("interrupted; `mutabot results` shows what is there", err=True)
     return code if isinstance(code, int) else 0
 
 
@@ -279,3 +280,7 @@ def _progress() -> Reporter:
     from mutabot.report.progress import make_progress
 
     return make_progress(make_console(stderr=True))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

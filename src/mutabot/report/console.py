@@ -62,7 +62,7 @@ def short_place(file: str, line: int, *, width: int = 24) -> str:
     parts = place.split("/")
     while len(parts) > 1 and len("…/" + "/".join(parts)) > width:
         parts.pop(0)
-    return "…/" + "/".join(parts)
+    return place if "/".join(parts) == place else "…/" + "/".join(parts)
 
 
 def percent(share: float | None) -> str:

@@ -19,7 +19,8 @@ _COMMANDS = re.compile(
 )
 _READERS = re.compile(r"(?:^|_)(?:read|get|query|ask|measure)(?:_|$)")
 _REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision", re.IGNORECASE)
-_POSE = re.compile(r"pose|position|location|xyz|point")
+_TALK = re.compile(r"(?:^|_)(?:log|print|say|show|info|warn|warning|debug|error|display)(?:_|$)")
+_POSE = re.compile(r"pose|position|locat|where|xyz|point")
 _PAIRS = (("open", "close"), ("grip", "release"), ("grasp", "release"), ("attach", "detach"), ("on", "off"))
 _AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 
@@ -107,6 +108,8 @@ def _is_command(use: Use) -> bool:
 
 def _message(use: Use) -> str | None:
     """The argument that holds a text command."""
+    if _TALK.search(_snake(use.definition.node.name)):
+        return None
     reads = _reads(use)
     for argument in parameters(use.definition):
         texts = [one for one in use.constants.get(argument.arg, []) if isinstance(one, str)]

@@ -55,21 +55,27 @@ def propose(root: Path, program: Sequence[Path] = ()) -> list[str]:
     root = root.resolve()
     _refuse_existing(root)
     project = _look(root, program)
-    uses = Uses(project.resolver, [project.sources.at(path) for path in project.program])
-    oracle = _oracle(project)
-    found, others = proposals([*uses.found.values(), *_only_new(oracle, uses)], project.resolver)
-    others = [use for use in others if project.sources.is_local(use.definition.module)]
     names = [_relative(root, path) for path in project.program]
-    if not found:
+    uses = Uses(project.resolver, [project.sources.at(path) for path in project.program])
+    if not proposals(list(uses.found.values()), project.resolver)[0]:
         raise UsageError(
             f"{', '.join(names) or root}: no call that looks like a robot's was found; name the files of the "
             "robot program: mutabot init FILE…"
         )
-    text = _loadable(found, others, names)
-    (root / VOCABULARY).write_text(text, encoding="utf-8")
-    configuration = _configuration(project, names, [_relative(root, path) for path in oracle])
-    (root / CONFIGURATION).write_text(configuration, encoding="utf-8")
+    oracle = _oracle(project)
+    found, others = proposals([*uses.found.values(), *_only_new(oracle, uses)], project.resolver)
+    others = [use for use in others if project.sources.is_local(use.definition.module)]
+    _write(root / VOCABULARY, _loadable(found, others, names))
+    _write(root / CONFIGURATION, _configuration(project, names, [_relative(root, path) for path in oracle]))
     return _next_steps(root, names, found, guessed=not program)
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror or error}") from error
 
 
 def _refuse_existing(root: Path) -> None:
@@ -89,10 +95,12 @@ def _refuse_existing(root: Path) -> None:
 def _look(root: Path, given: Sequence[Path]) -> _Project:
     files = python_files(root)
     tests = [path for path in files if _is_test_side(path.relative_to(root))]
+    chosen = _named(root, given) if given else []
+    tests = [path for path in tests if path.resolve() not in chosen]
     code = [path for path in files if path not in tests and path.name not in ("setup.py", "noxfile.py")]
     test_folders = list(dict.fromkeys(path.parent for path in tests))
     sources = Sources([root, root / "src", *test_folders])
-    program = _named(root, given) if given else _guess_program(sources, code)
+    program = chosen or _guess_program(sources, code)
     own = {path.resolve() for path in program}
     known: dict[str, Definition] = {}
     for path in code:

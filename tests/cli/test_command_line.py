@@ -1,0 +1,305 @@
+"""The command line: exit codes, plain messages, and output a machine can read."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import mutabot
+from analysis import samples
+from mutabot.campaign import run as campaign
+from mutabot.cli import main
+from mutabot.errors import BaselineError, ControlError, MutabotError
+from mutabot.model import Outcome, Verdict
+
+COMMANDS = ("init", "check", "list", "run", "results", "show")
+
+
+@pytest.fixture
+def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A project with a configuration, in which no command really starts a campaign."""
+    (tmp_path / "mission.py").write_text(samples.PROGRAM)
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests" / "sensors.py").write_text(samples.SENSORS)
+    (tmp_path / "mutabot.toml").write_text(
+        'program = ["mission.py"]\nvocabulary = ["robot.toml"]\nseed = 7\n'
+    )
+    (tmp_path / "robot.toml").write_text('[[operation]]\ncall = "robot:Arm.home"\n')
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+class Campaign:
+    """Takes the place of the campaign: writes a journal, or fails as it is told."""
+
+    def __init__(self, project: Path) -> None:
+        self.project = project
+        self.request: Any = None
+        self.error: BaseException | None = None
+        self.journal: dict[str, Any] = {}
+
+    def run(self, request: Any, progress: Any) -> Path:
+        self.request = request
+        progress.stage("mutants", 1)
+        if self.error is not None:
+            raise self.error
+        progress.advance("done")
+        return samples.write_journal(self.project / ".mutabot" / "journal.sqlite", **self.journal)
+
+
+@pytest.fixture
+def fake(project: Path, monkeypatch: pytest.MonkeyPatch) -> Campaign:
+    fake = Campaign(project)
+    monkeypatch.setattr(campaign, "run_campaign", fake.run)
+    return fake
+
+
+def test_help_works_in_any_folder_and_names_every_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    for command in COMMANDS:
+        assert command in text
+        assert main([command, "--help"]) == 0
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_help_imports_nothing_heavy() -> None:
+    script = (
+        "import sys; from mutabot.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    loaded = set(done.stderr.split())
+    assert not loaded & {"pydantic", "sqlite3", "pytest", "numpy", "mujoco", "mutabot.campaign.run"}
+
+
+def test_the_version_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"mutabot {mutabot.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["bogus"],
+        ["run", "--rounds", "none"],
+        ["run", "--rounds", "0"],
+        ["run", "--nonsense"],
+        ["show"],
+        ["run", "--min-score", "101"],
+    ],
+)
+def test_a_wrong_command_line_is_2_without_a_traceback(
+    arguments: list[str], project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    assert "Traceback" not in capsys.readouterr().err
+    assert not (project / ".mutabot").exists()
+
+
+def test_an_unknown_engine_names_the_nearest(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "--engine", "replai"]) == 2
+    assert "did you mean 'replay'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["check", "list", "run"])
+def test_a_folder_without_configuration_is_2_and_names_init(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([command]) == 2
+    assert "mutabot init" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", [["results"], ["show", "1"]])
+def test_results_without_a_journal_are_2_and_name_run(
+    command: list[str], project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(command) == 2
+    assert "mutabot run" in capsys.readouterr().err
+
+
+def test_a_run_prints_the_results(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run"]) == 0
+    out, err = capsys.readouterr()
+    assert "5 mutants × 2 rounds: complete" in out
+    assert "mutants" in err
+
+
+def test_options_of_a_run_reach_the_campaign(fake: Campaign) -> None:
+    (fake.project / "s.txt").write_text("")
+    words = "--only reverse --only skip --skip 3 --rounds 4 --seed 0 -j 3 --engine replay --selection s.txt"
+    assert main(["run", *words.split()]) == 0
+    request = fake.request
+    assert (request.only, request.skip) == (("reverse", "skip"), ("3",))
+    assert (request.rounds, request.seed, request.jobs) == (4, 0, 3)
+    assert (request.engine, request.selection) == ("replay", Path("s.txt"))
+
+
+def test_without_options_a_run_does_what_the_configuration_says(fake: Campaign) -> None:
+    main(["run"])
+    assert (fake.request.rounds, fake.request.seed) == (1, 7)
+    assert fake.request.jobs == len(os.sched_getaffinity(0))
+    assert fake.request.selection is None
+
+
+def test_the_configured_selection_lies_in_the_project(fake: Campaign) -> None:
+    (fake.project / "chosen.txt").write_text("")
+    with (fake.project / "mutabot.toml").open("a") as file:
+        file.write('selection = "chosen.txt"\n')
+    main(["run"])
+    assert fake.request.selection == fake.project / "chosen.txt"
+
+
+def test_a_selection_file_is_looked_for_here_and_in_the_project(
+    fake: Campaign, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "--selection", "nowhere.txt"]) == 2
+    assert "no selection file nowhere.txt" in capsys.readouterr().err
+    assert fake.request is None
+
+
+def test_a_project_elsewhere_can_be_named(
+    fake: Campaign, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
+    assert main(["-C", str(fake.project), "run"]) == 0
+    assert main(["-C", str(fake.project), "results"]) == 0
+
+
+def test_json_goes_alone_to_standard_output(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["state"] == "complete"
+
+
+@pytest.mark.parametrize(("limit", "code"), [("25", 0), ("50", 1)])
+def test_a_score_under_the_limit_is_1(
+    fake: Campaign, limit: str, code: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "--min-score", limit]) == code
+    assert ("under the limit" in capsys.readouterr().err) == bool(code)
+
+
+def test_the_limit_of_the_configuration_holds_unless_the_command_line_says_otherwise(fake: Campaign) -> None:
+    with (fake.project / "mutabot.toml").open("a") as file:
+        file.write("min_score = 90\n")
+    assert main(["run"]) == 1
+    assert main(["run", "--min-score", "0"]) == 0
+
+
+def test_a_run_in_which_everything_is_refused_is_3(
+    fake: Campaign, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake.journal = {"outcomes": tuple(Outcome(one.id, 0, Verdict.REFUSED) for one in samples.MUTANTS)}
+    assert main(["run"]) == 3
+    assert "refused every mutant" in capsys.readouterr().err
+
+
+def test_time_outs_beyond_the_limit_are_5(fake: Campaign) -> None:
+    fake.journal = {"outcomes": tuple(Outcome(one.id, 0, Verdict.TIMEOUT) for one in samples.MUTANTS)}
+    assert main(["run"]) == 0
+    with (fake.project / "mutabot.toml").open("a") as file:
+        file.write("timeout_limit = 0.5\n")
+    assert main(["run"]) == 5
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [
+        (BaselineError("the tests fail: test_a"), 3),
+        (ControlError("a control ended wrongly", control="fatal", test_file="t.py"), 4),
+        (MutabotError("something of ours"), 70),
+    ],
+)
+def test_errors_of_ours_become_their_exit_code_and_a_plain_line(
+    fake: Campaign, error: MutabotError, code: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake.error = error
+    assert main(["run"]) == code
+    err = capsys.readouterr().err
+    assert f"mutabot: {error}" in err
+    assert "Traceback" not in err
+
+
+def test_an_interrupted_run_is_130_and_says_where_to_look(
+    fake: Campaign, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake.error = KeyboardInterrupt()
+    assert main(["run"]) == 130
+    assert "mutabot results" in capsys.readouterr().err
+
+
+def test_an_internal_error_is_70_with_its_traceback_in_a_file(
+    fake: Campaign, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake.error = ZeroDivisionError("oops")
+    assert main(["run"]) == 70
+    err = capsys.readouterr().err
+    assert "ZeroDivisionError: oops" in err
+    assert "Traceback" not in err
+    assert "Traceback" in (fake.project / ".mutabot" / "crash.txt").read_text()
+
+
+def test_results_and_show_work_from_a_folder_inside_the_project(
+    fake: Campaign, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(["run"])
+    monkeypatch.chdir(fake.project / "tests")
+    assert main(["results"]) == 0
+    assert main(["show", "2"]) == 0
+    assert "gripper.command(0)" in capsys.readouterr().out
+
+
+def test_results_need_no_configuration(fake: Campaign) -> None:
+    main(["run"])
+    (fake.project / "mutabot.toml").unlink()
+    assert main(["results"]) == 0
+
+
+def test_show_takes_an_id_and_prints_json(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:
+    main(["run"])
+    capsys.readouterr()
+    assert main(["show", samples.SKIP.id, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["number"] == 2
+
+
+def test_show_of_an_unknown_mutant_names_the_nearest(
+    fake: Campaign, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(["run"])
+    assert main(["show", samples.SKIP.id[:-1]]) == 2
+    assert samples.SKIP.id in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])
+def test_results_can_be_piped_in_any_encoding(fake: Campaign, encoding: str) -> None:
+    main(["run"])
+    done = subprocess.run(
+        [sys.executable, "-m", "mutabot.cli", "results"],
+        capture_output=True, check=False, env={**os.environ, "PYTHONIOENCODING": encoding, "COLUMNS": "80"},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert b"Scores" in done.stdout
+
+
+def test_a_pipe_that_closes_early_is_no_crash(fake: Campaign) -> None:
+    main(["run"])
+    command = f"{sys.executable} -m mutabot.cli results | head -1"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+    assert "Traceback" not in done.stderr
+    assert not (fake.project / ".mutabot" / "crash.txt").exists()
+
+
+def test_help_is_quick() -> None:
+    began = time.perf_counter()
+    subprocess.run([sys.executable, "-m", "mutabot.cli", "--help"], capture_output=True, check=True)
+    assert time.perf_counter() - began < 2.0  # 0.1 s alone; leave room for a busy machine

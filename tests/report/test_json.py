@@ -1,0 +1,92 @@
+"""The JSON report: valid JSON with what docs/json.md says."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from analysis import samples
+from mutabot.analysis.results import read_results
+from mutabot.campaign.journal import Journal
+from mutabot.model import Outcome, Verdict
+from mutabot.report.as_json import dumps, results_data
+from mutabot.report.listing import plan_data
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "json.md"
+
+
+def data(path: Path, **changes: Any) -> Any:
+    with Journal.open(samples.write_journal(path / "journal.sqlite", **changes)) as journal:
+        return json.loads(dumps(results_data(read_results(journal))))
+
+
+def test_a_mutant_has_everything_a_machine_needs(tmp_path: Path) -> None:
+    mutant = data(tmp_path)["mutants"][0]
+    assert mutant["id"] == samples.REVERSE.id
+    assert (mutant["number"], mutant["operator"], mutant["family"]) == (1, "reverse", "robot")
+    assert (mutant["role"], mutant["file"], mutant["quantity"]) == ("program", "mission.py", "dx")
+    assert mutant["span"] == {"line": 3, "column": 5, "end_line": 3, "end_column": 25}
+    assert mutant["description"] == samples.REVERSE.description
+    assert mutant["meaning"]["unit"] == "m"
+    assert mutant["kill_rate"] == {"killed": 2, "valid": 2, "rate": 1.0}
+    first = mutant["rounds"][0]
+    assert (first["round"], first["verdict"], first["by"]) == (1, "killed", "check")
+    assert first["test"] == samples.TEST
+    assert first["message"].startswith("box is at")
+
+
+def test_groups_and_rounds_carry_scores_and_counts(tmp_path: Path) -> None:
+    found = data(tmp_path)
+    program = next(group for group in found["groups"] if group["role"] == "program")
+    assert (program["killed"], program["valid"], program["by_check"]) == (3, 5, 1)
+    assert program["score"] == pytest.approx(7 / 12)
+    assert program["check_score"] == pytest.approx(0.25)
+    assert program["counts"]["refused"] == 1
+    assert [one["round"] for one in program["rounds"]] == [1, 2]
+    assert [(one["round"], one["killed"], one["valid"]) for one in found["rounds"]] == [(1, 1, 3), (2, 3, 5)]
+
+
+def test_meta_says_with_what_and_how_it_ended(tmp_path: Path) -> None:
+    found = data(tmp_path, finish="interrupted")
+    assert found["format"] == 1
+    assert (found["state"], found["finished"]) == ("interrupted", False)
+    assert {"mutabot", "versions", "seed", "rounds", "engine"} <= set(found["meta"])
+    assert "vocabulary" not in found["meta"]
+
+
+def test_rounds_that_were_not_run_are_there_without_a_verdict(tmp_path: Path) -> None:
+    found = data(tmp_path, outcomes=())
+    assert found["mutants"][0]["rounds"][1] == {"round": 2, "verdict": None}
+    assert found["groups"][0]["score"] is None
+
+
+def test_numbers_that_json_cannot_hold_become_null(tmp_path: Path) -> None:
+    odd = Outcome(samples.SKIP.id, 0, Verdict.SURVIVED, example=(math.nan, math.inf), distance=math.inf)
+    path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=(odd,))
+    with Journal.open(path) as journal:
+        text = dumps(results_data(read_results(journal)))
+    assert json.loads(text, parse_constant=pytest.fail)
+
+
+def test_the_plan_has_the_same_keys_for_a_mutant(tmp_path: Path) -> None:
+    planned = plan_data(samples.MUTANTS, samples.LEFT_OUT)
+    result = data(tmp_path)["mutants"][0]
+    assert planned["mutants"][0].items() <= result.items()
+    assert planned["left_out"][0]["reason"] == "it is always 0"
+
+
+def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
+    documented = set(re.findall(r"^\| `(\w+)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE))
+    found = data(tmp_path)
+    parts = [found, *found["mutants"], *found["groups"], *found["rounds"], *found["left_out"]]
+    parts += [
+        *found["controls"],
+        *found["baseline"],
+        *(one for mutant in found["mutants"] for one in mutant["rounds"]),
+    ]
+    assert {key for part in parts for key in part} == documented

@@ -1,0 +1,178 @@
+"""The report on the terminal: everything is there, at any width, without colour, whatever texts hold."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+from rich.cells import cell_len
+from rich.console import Console
+
+from analysis import samples
+from mutabot.analysis.results import Results, find_mutant, read_results
+from mutabot.campaign.journal import Journal
+from mutabot.model import By, Outcome, Verdict
+from mutabot.report.console import make_console, plain, short_place
+from mutabot.report.detail import print_mutant
+from mutabot.report.listing import print_plan
+from mutabot.report.marks import mark_of
+from mutabot.report.terminal import print_results
+
+WIDTHS = pytest.mark.parametrize("width", [60, 80, 120, 200])
+
+
+@pytest.fixture
+def results(tmp_path: Path) -> Results:
+    with Journal.open(samples.write_journal(tmp_path / "journal.sqlite")) as journal:
+        return read_results(journal)
+
+
+def console(width: int) -> Console:
+    return make_console(io.StringIO(), width=width)
+
+
+def written(on: Console) -> str:
+    assert isinstance(on.file, io.StringIO)
+    return on.file.getvalue()
+
+
+def report(results: Results, width: int = 120, *, everything: bool = False) -> str:
+    on = console(width)
+    print_results(on, results, everything=everything)
+    return written(on)
+
+
+def row(text: str, *words: str) -> str:
+    return next(line for line in text.splitlines() if all(word in line for word in words))
+
+
+@WIDTHS
+def test_no_line_is_wider_than_the_terminal_and_none_is_coloured_on_a_pipe(
+    results: Results, width: int
+) -> None:
+    text = report(results, width, everything=True)
+    assert max(cell_len(line) for line in text.splitlines()) <= width
+    assert "\x1b" not in text
+
+
+@WIDTHS
+def test_every_mutant_has_one_letter_per_round(results: Results, width: int) -> None:
+    text = report(results, width)
+    for words, letters in {
+        ("reverse",): "C X", ("skip",): "S S", ("by-to",): "R T", ("negate",): "S C", ("noise",): "E N",
+    }.items():  # fmt: skip
+        assert row(text, *words).rstrip().endswith(letters)
+
+
+def test_the_legend_explains_exactly_the_letters_that_occur(results: Results) -> None:
+    text = report(results).replace("\N{NO-BREAK SPACE}", " ")
+    for words in ("C killed by a check", "X killed by an exception", "N not covered", "E error"):
+        assert words in text
+    assert "unstable" not in text
+
+
+def test_every_verdict_has_a_letter_of_its_own() -> None:
+    outcomes = [Outcome("m", 0, verdict, By.CHECK) for verdict in Verdict]
+    outcomes.append(Outcome("m", 0, Verdict.KILLED, By.EXCEPTION))
+    assert len({mark_of(outcome).letter for outcome in [*outcomes, None]}) == len(outcomes) + 1
+
+
+def test_scores_carry_their_counts_per_round_and_per_role(results: Results) -> None:
+    text = report(results)
+    assert row(text, "robot · program", "1/2", "2/3", "58.3 %")
+    assert row(text, "robot · oracle", "0/1", "1/2", "25.0 %")
+    assert row(text, "all together", "1/3", "3/5", "46.7 %")
+    assert row(text, "robot · program", "58.3 %", "25.0 %", "1 killed by a check", "1 timeout")
+
+
+def test_survivors_come_with_a_reason_the_farthest_first(results: Results) -> None:
+    text = report(results)
+    section = text[text.index("survivors") :]
+    assert section.index("0.8 instead of 0.488") < section.index("read -0.0014 m instead of 0.0014 m")
+    assert row(section, "tests/sensors.py:2", "negate", "1 of 2")
+
+
+def test_what_stands_outside_the_score_is_listed_with_its_reason(results: Results) -> None:
+    text = report(results)
+    assert "1 mutant outside the score: refused" in text
+    assert "x = −0.3 m is out of reach by 0.1 m" in text
+    assert "[bold]not markup[/bold]" in text
+
+
+def test_what_the_plan_leaves_out_is_counted_and_listed_on_demand(results: Results) -> None:
+    assert row(report(results), "2  it is always 0")
+    assert samples.LEFT_OUT[0].id not in report(results)
+    assert samples.LEFT_OUT[0].id in report(results, everything=True)
+
+
+def test_an_interrupted_campaign_says_how_much_is_known(tmp_path: Path) -> None:
+    path = samples.write_journal(
+        tmp_path / "journal.sqlite", outcomes=samples.OUTCOMES[:3], finish="interrupted"
+    )
+    with Journal.open(path) as journal:
+        text = report(read_results(journal))
+    assert "interrupted, 3 of 10 outcomes are known" in text
+    assert "· not run" in text.replace("\N{NO-BREAK SPACE}", " ")
+
+
+def test_a_journal_without_a_plan_can_be_shown(tmp_path: Path) -> None:
+    with Journal.create(tmp_path / "journal.sqlite", meta={}) as journal:
+        assert "0 mutants × 0 rounds" in report(read_results(journal))
+
+
+def test_many_rounds_are_counted_and_split_over_several_tables(tmp_path: Path) -> None:
+    outcomes = tuple(
+        Outcome(samples.SKIP.id, round, Verdict.SURVIVED if round % 3 else Verdict.TIMEOUT)
+        for round in range(20)
+    )
+    path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=outcomes, rounds=20)
+    with Journal.open(path) as journal:
+        text = report(read_results(journal), 80)
+    assert row(text, "skip").rstrip().endswith("S13 T7")
+    assert text.count(" round ") >= 3
+    assert max(cell_len(line) for line in text.splitlines()) <= 80
+
+
+def test_show_underlines_the_call_in_its_source(results: Results) -> None:
+    on = console(80)
+    print_mutant(on, find_mutant(results, "3"), samples.PROGRAM)
+    lines = written(on).splitlines()
+    source = next(index for index, line in enumerate(lines) if "größe" in line)
+    assert lines[source + 1].index("^") == lines[source].index("arm.move_by")
+
+
+def test_show_tells_what_changed_and_how_each_round_ended(results: Results) -> None:
+    on = console(100)
+    print_mutant(on, find_mutant(results, "1"), None)
+    text = written(on)
+    for words in (
+        samples.REVERSE.id,
+        "dx: translation, along x, in m",
+        "the program sent -0.2 m instead of 0.2 m",
+        "killed by a check in tests/test_mission.py::test_box_arrives",
+        "AssertionError: box is at x = 0.55 m",
+        "at tests/test_mission.py:9",
+        "Stop: hit",
+    ):
+        assert words in text
+
+
+@WIDTHS
+def test_the_plan_names_place_operator_and_quantity(width: int) -> None:
+    on = console(width)
+    print_plan(on, samples.MUTANTS, samples.LEFT_OUT)
+    text = written(on)
+    assert row(text, "program", "mission.py:3", "reverse", "dx")
+    assert "5 mutants" in text
+    assert max(cell_len(line) for line in text.splitlines()) <= width
+
+
+def test_texts_of_programs_cannot_play_with_the_terminal() -> None:
+    assert plain("\x1b[31mred\x1b[0m \x07\x1b]0;title\x07\tx") == "red     x"
+
+
+def test_a_long_path_keeps_its_end() -> None:
+    assert short_place("src/a.py", 3) == "src/a.py:3"
+    assert short_place("packages/robot/src/robot/cell/mission.py", 12) == "…/cell/mission.py:12"
+    assert short_place("a_very_long_name_of_a_single_file.py", 1) == "a_very_long_name_of_a_single_file.py:1"
