@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import Enum
 
@@ -25,6 +26,8 @@ APPROACH = 0.15
 """How far above a box, or above its place, the gripper waits, m."""
 CLEARANCE = 0.0015
 """Left below a box when it is let go, m: three standard deviations of the camera."""
+TRIAL_LIFT = 0.02
+"""How far a box is lifted to see whether it comes along, m."""
 GRIP_HEIGHT = 0.03
 """Where the fingers hold the box, above its bottom, m."""
 PALM = 0.035
@@ -91,16 +94,16 @@ def pick(cell: Cell) -> tuple[str, int, bool]:
     find(cell)
     cell.arm.move_joints(OVER_CONVEYOR)
     for grips, force in enumerate((GENTLE, FIRM), start=1):
-        colour = grip(cell, force)
-        if holds_box(cell):
+        colour, held = grip(cell, force)
+        if held:
             return colour, grips, True
-        cell.gripper.command(OPEN)
-        cell.wait(0.8)
     return colour, grips, False
 
 
-def grip(cell: Cell, force: float) -> str:
-    """Close the gripper on the box, go up again, and return the box's colour.
+def grip(cell: Cell, force: float) -> tuple[str, bool]:
+    """Grip the box where it lies, and lift it if it comes along; else let it go. The gripper ends high above.
+
+    Returns the box's colour, and whether it came along.
 
     Args:
         force: at each finger, N.
@@ -115,8 +118,14 @@ def grip(cell: Cell, force: float) -> str:
     cell.gripper.set_force(force)
     cell.gripper.command(CLOSED)
     cell.wait(0.8)
-    cell.arm.move_by(z=APPROACH)
-    return colour
+    cell.arm.move_by(z=TRIAL_LIFT)
+    lifted = Position(box.x, box.y, box.z + TRIAL_LIFT)
+    held = holds_box(cell) and is_near(cell.sensors.box_position(), lifted)
+    if not held:
+        cell.gripper.command(OPEN)
+        cell.wait(0.8)
+    cell.arm.move_by(z=APPROACH - TRIAL_LIFT)
+    return colour, held
 
 
 def find(cell: Cell) -> Position:
@@ -148,18 +157,22 @@ def holds_box(cell: Cell) -> bool:
     return cell.gripper.holding() and abs(cell.gripper.opening() - EDGE) < 0.003
 
 
+def is_near(seen: Position, expected: Position) -> bool:
+    """Whether the camera sees the box where the arm should have taken it."""
+    return math.dist((seen.x, seen.y, seen.z), (expected.x, expected.y, expected.z)) < 0.01
+
+
 def place(cell: Cell, colour: str) -> bool:
     """Carry the box over and set it down; False if it got lost on the way."""
     cell.arm.move_joints(OVER_TABLE)
     x, y = PLACES[colour]
-    over = TABLE_TOP - BASE_HEIGHT + GRIP_HEIGHT + APPROACH
-    cell.arm.move_to(Pose(x, y, over, *DOWN_TO_THE_BACK))
-    if not holds_box(cell):
+    tool_height = TABLE_TOP + APPROACH + GRIP_HEIGHT - BASE_HEIGHT
+    cell.arm.move_to(Pose(x, y, tool_height, *DOWN_TO_THE_BACK))
+    box = cell.sensors.box_position()
+    if not (holds_box(cell) and is_near(box, Position(x, y, TABLE_TOP + APPROACH))):
         cell.gripper.command(OPEN)
         return False
-    # the fingers have centred the box in y; in x and z it is where it was gripped, or has crept to
-    box = cell.sensors.box_position()
-    cell.arm.move_by(x=x - box.x)
+    cell.arm.move_by(x=x - box.x)  # the fingers have centred the box in y, not in x
     cell.arm.move_by(z=TABLE_TOP + CLEARANCE - box.z)
     cell.gripper.command(OPEN)
     cell.wait(0.8)

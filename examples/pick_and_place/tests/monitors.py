@@ -35,7 +35,7 @@ def watch_fingers(cell: Cell) -> None:
 
 
 def watch_box(cell: Cell) -> None:
-    """For test cases in which the box is held well: it is lifted, carried and set down gently."""
+    """For test cases in which no box gets lost: it is gripped, lifted, carried and set down gently."""
     motion = Motion(cell)
     cell.always(lambda: height(cell) > -SINKING, "the box is not pressed into conveyor or table")
     cell.always(lambda: cell.truth.box_tilt() < LARGEST_TILT, "the box stays upright")
