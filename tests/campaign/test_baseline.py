@@ -184,3 +184,48 @@ def test_the_robots_state_is_its_own_in_every_process(tmp_path: Path) -> None:
     write_project(tmp_path, mission, tests, robot=robot)
     found = run(tmp_path)
     assert {outcome.verdict for outcome in found.values()} == {Verdict.KILLED}
+
+
+def test_a_test_that_passes_only_after_another_is_judged_by_the_whole_suite(tmp_path: Path) -> None:
+    """Run alone it would fail, and every mutant it reaches would count as killed."""
+    mission = "def prepare(arm):\n    arm.move_by(0.25)\n\ndef finish(arm):\n    arm.position()\n"
+    tests = """
+        import mission
+        from robot import Arm
+
+        ARM = Arm()
+
+        def test_a_prepares():
+            mission.prepare(ARM)
+            for _ in range(3):
+                ARM.position()
+            assert ARM.x == 0.25
+
+        def test_b_finishes():
+            mission.finish(ARM)
+            assert ARM.x == 0.25
+    """
+    write_project(tmp_path, mission, tests)
+    progress = Quiet()
+    path = run_campaign(request_for(tmp_path), progress)
+    verdicts = {outcome.mutant.split(":")[1]: outcome.verdict for outcome in outcomes(path)}
+    assert verdicts == {"prepare": Verdict.KILLED, "finish": Verdict.SURVIVED}
+    assert any("whole suite" in line for line in progress.lines)
+
+
+def test_a_plain_function_that_returns_a_coroutine_is_refused(tmp_path: Path) -> None:
+    """Nothing has happened when it returns, so skipping or repeating it would mean something else."""
+    robot = (
+        ROBOT
+        + """
+    async def later():
+        pass
+
+    def start():
+        return later()
+    """
+    )
+    mission = "import asyncio, robot\n\ndef run(arm):\n    asyncio.run(robot.start())\n    arm.move_by(0.5)\n"
+    vocabulary = VOCABULARY + '\n    [[operation]]\n    call = "robot:start"\n'
+    write_project(tmp_path, mission, TESTS, robot=robot, vocabulary=vocabulary)
+    stopped(tmp_path, ConfigurationError, "returns a coroutine but is no coroutine function")

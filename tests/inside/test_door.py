@@ -241,6 +241,7 @@ SEND = """
         ("'lift/5'", "reverse", "height", ["lift/-5"]),
         ("'lift/5.00'", "reverse", "height", ["lift/-5.00"]),
         ("'lift/5'", "opposite", None, ["drop/5"]),
+        ("'lift/5.00'", "opposite", None, ["drop/5.00"]),
         ("'pick'", "skip", None, []),
         ("'pick'", "repeat", None, ["pick", "pick"]),
         ("b'lift/5\\n'", "reverse", "height", [b"lift/-5\n"]),
@@ -263,3 +264,25 @@ def test_text_commands_are_mutated_in_their_own_notation(
     assert stage.mutated(operator, quantity)[0] == received
     if operator == "negate":
         assert stage.load_robot().last == -12.0
+
+
+def test_a_skipped_text_command_answers_as_that_command_did(make_stage: Make) -> None:
+    """Not as the command before it, which the program would take for nonsense."""
+    robot = "def send(text):\n    return {'pick': 'ok', 'weight': 12.0}[text]\n"
+    program = """
+        import robot
+
+        def run():
+            robot.send("weight")
+            return robot.send("pick")
+    """
+    stage = make_stage(robot, program, SEND)
+    assert stage.mutated("skip", index=1, idle="ok")[0] == "ok"
+
+
+def test_keyword_only_defaults_are_intercepted_too(make_stage: Make) -> None:
+    robot = "def move(x):\n    return x\n"
+    program = "import robot\n\ndef run(*, go=robot.move):\n    return go(1.0)\n"
+    stage = make_stage(robot, program, f'[[operation]]\ncall = "robot:move"\narguments.x = {X}\n')
+    stage.load_program()
+    assert stage.mutated("reverse", "x")[0] == -1.0

@@ -12,6 +12,7 @@ from typing import Any
 
 from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.model import Budget, Site, SiteSeen, TestEnd
+from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 
 from .comparison import Event, Observation, compare
@@ -68,6 +69,7 @@ class Baseline:
         reaching: (round, place) to the tests that reach it, fastest first.
         observations: (round, test) to what is compared with a mutant's.
         unstable: tests set aside as flaky, with the reason, by (round, test).
+        dependent: selections of tests that pass only together with others; filled in by the controls.
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
         skipped: number of tests that skipped themselves.
         startup: seconds from a worker's start to the end, less the tests; the longest.
@@ -80,6 +82,7 @@ class Baseline:
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
     restless: set[tuple[int, str]] = field(default_factory=set)
+    dependent: set[tuple[str, ...]] = field(default_factory=set)
     skipped: int = 0
     startup: float = 0.0
 
@@ -87,6 +90,14 @@ class Baseline:
     def places(self) -> list[Place]:
         """All places that any test reaches in any round."""
         return list(self.hits)
+
+    def selection(self, round: int, place: Place) -> tuple[str, ...]:
+        """The tests that judge a mutant at this place, in the order in which to run them.
+
+        Those that reach it, quickest first; the whole suite in its own order where these do not pass alone.
+        """
+        tests = tuple(self.reaching.get((round, place), ()))
+        return tuple(self.tests[round]) if tests in self.dependent else tests
 
     def budget(self, round: int, test: str, factor: float) -> Budget:
         """What a mutant may use in this test."""
@@ -105,6 +116,7 @@ def take_baseline(request: Request, workers: Workers, progress: Progress) -> tup
     Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
     tests, BaselineError when tests fail.
     """
+    load_all()  # a broken plug-in is told now rather than after the baseline
     progress.stage("baseline", request.rounds * REPETITIONS)
     results: dict[tuple[int, int], Result] = {}
     for result in workers.run(_tasks(request)):
@@ -246,7 +258,12 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
             if end.test not in tests:
                 tests.append(end.test)
     for place, tests in reaching.items():
-        baseline.reaching[round, place] = sorted(tests, key=lambda test: baseline.ends[round, test].wall)
+        baseline.reaching[round, place] = sorted(tests, key=lambda test: _cost(baseline.ends[round, test]))
+
+
+def _cost(end: TestEnd) -> tuple[float, int]:
+    """What a test costs, in a measure that is the same in every run: wall clocks are not."""
+    return (end.simulated or 0.0, end.operations)
 
 
 def places_of(result: Result, sources: Sources) -> dict[int, Place]:

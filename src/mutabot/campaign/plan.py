@@ -10,7 +10,7 @@ from typing import Any
 from mutabot.errors import OperatorError
 from mutabot.model import Call, LeftOut, Mutant, Operation, Reply, Vocabulary
 from mutabot.model.quantity import is_reading_of
-from mutabot.operators import Operator, Subject, names, operator
+from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.driving import Passage, rehearse
 
 from .baseline import Baseline, Hit, Place
@@ -32,7 +32,7 @@ def make_plan(baseline: Baseline, vocabulary: Vocabulary) -> Plan:
     mutants: list[Mutant] = []
     left_out: list[LeftOut] = []
     taken: set[str] = set()
-    operators = [operator(name) for name in names()]
+    operators = load_all()
     for place, hits in baseline.hits.items():
         operation = vocabulary.operation(place.operation)
         if operation is None:
@@ -151,7 +151,9 @@ def _reason(subject: Subject, value: Any, hits: int) -> str:
     if value is None:
         return "the call gives no such value" if hits == 1 else f"none of {hits} calls gives such a value"
     shown = subject.quantity.text(value) if subject.quantity is not None else str(value)
-    return f"would change nothing in {calls} (value {shown})"
+    limited = subject.quantity is not None and (subject.quantity.range or subject.quantity.values)
+    within = " within the values that the vocabulary allows" if limited else ""
+    return f"would change nothing in {calls}{within} (value {shown})"
 
 
 def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen) -> str:

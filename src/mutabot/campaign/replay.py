@@ -40,9 +40,9 @@ def _tasks(
     for mutant in mutants:
         place = Place(mutant.site, mutant.operation, mutant.pattern)
         for round in range(request.rounds):
-            tests = baseline.reaching.get((round, place), [])
+            tests = baseline.selection(round, place)
             if tests:
-                yield task(request, baseline, mutant, round, tuple(tests))
+                yield task(request, baseline, mutant, round, tests)
             else:
                 uncovered.append(_not_covered(mutant, round))
 

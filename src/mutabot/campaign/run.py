@@ -41,8 +41,8 @@ def run_campaign(request: Request, progress: Progress) -> Path:
             try:
                 _write_beginning(journal, request, results, plan)
                 _note_unstable(baseline, progress)
-                for control in run_controls(request, baseline, workers, progress):
-                    journal.add_control(control.test_file, control.control, True, control.detail)
+                for control in run_controls(request, baseline, workers, progress, plan.mutants):
+                    journal.add_control(control.test_file, control.control, control.ok, control.detail)
                 _run_mutants(request, baseline, workers, progress, plan, journal)
             except BaseException as error:
                 journal.finish(_reason(error))
@@ -65,8 +65,8 @@ def check(request: Request, progress: Progress) -> CheckReport:
     with _workers(request) as workers:
         baseline, _ = take_baseline(request, workers, progress)
         plan = make_plan(baseline, request.vocabulary)
-        controls = [control.detail for control in run_controls(request, baseline, workers, progress)]
-    mutants = selected(request, plan, baseline).mutants
+        mutants = selected(request, plan, baseline).mutants
+        controls = list(run_controls(request, baseline, workers, progress, mutants))
     return _report(request, baseline, plan, mutants, len(controls))
 
 

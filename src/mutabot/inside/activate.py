@@ -102,12 +102,13 @@ class Activation:
         return replace(subject, quantity=named)
 
     def _with_idle(self, call: Call) -> Call:
+        """The call with what the command answered in the baseline, if that is a plain value.
+
+        Otherwise what it answered last in this test is the best that can be given; the first time there is
+        nothing to give, and the command is carried out.
+        """
         recorded = self.mutant.idle
-        if call.idle is not None and call.idle.payload is not None:
-            return call
-        if isinstance(recorded, dict):
-            return replace(call, idle=None)
-        return replace(call, idle=Reply({}, recorded)) if recorded is not None else call
+        return call if isinstance(recorded, dict) else replace(call, idle=Reply({}, recorded))
 
     def _note(self, passage: Passage) -> None:
         if not passage.acted:

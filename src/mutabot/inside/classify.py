@@ -16,7 +16,7 @@ from .activate import Evidence, is_named
 from .limits import BudgetExceeded
 from .locate import Locator
 
-_INSIDE = os.path.dirname(os.path.realpath(__file__))  # noqa: PTH120  # pathlib is slow to import
+_INSIDE = os.path.dirname(os.path.realpath(__file__))
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
         return False
     # An assertion is a check if the tests made it. Code of helper libraries says nothing, so the frame
     # nearest to the raise decides that is the tests', the program's or an operation's.
-    folder = os.path.dirname(os.path.realpath(test_file)) + os.sep  # noqa: PTH120
+    folder = os.path.dirname(os.path.realpath(test_file)) + os.sep
     for filename in _files_from_the_raise(error.__traceback__):
         if filename.startswith(_INSIDE):
             return False

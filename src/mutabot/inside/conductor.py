@@ -44,7 +44,7 @@ class Conductor:
     def from_files(cls, job_file: str, descriptor: int) -> Conductor:
         """Read the job, set the limits of the process and put the interception in place."""
         die_with_parent()
-        with open(job_file, encoding="utf-8") as file:  # noqa: PTH123  # pathlib is slow to import
+        with open(job_file, encoding="utf-8") as file:
             job = from_data(Job, json.load(file))
         if job.memory is not None:
             limit_memory(job.memory)

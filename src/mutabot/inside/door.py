@@ -63,11 +63,11 @@ class Door:
         self._on_problem = on_problem
         self._signature: inspect.Signature | None = None
         self._paths: dict[str, Path] = {}
-        self._last_reply: Any = None
+        self._last_replies: dict[str | None, Any] = {}
 
     def reset(self) -> None:
         """Forget earlier answers: a new test begins."""
-        self._last_reply = None
+        self._last_replies.clear()
 
     def call(
         self, wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
@@ -79,7 +79,9 @@ class Door:
         async def current(quantity: Quantity) -> float:
             return await self._where(quantity, invocation)
 
-        return Call(self.operation, pattern, values, current=current, idle=self._idle(), payload=invocation)
+        return Call(
+            self.operation, pattern, values, current=current, idle=self._idle(pattern), payload=invocation
+        )
 
     def perform(self, call: Call, original: Call) -> Any:
         """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
@@ -100,6 +102,7 @@ class Door:
 
     def reply(self, call: Call, result: Any) -> Reply:
         """The reply as operators see it."""
+        self._refuse_coroutine(result)
         values: dict[str, Value] = {}
         for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
             try:
@@ -109,7 +112,7 @@ class Door:
                 continue
             if value is not None:
                 values[quantity.name] = value
-        self._last_reply = result
+        self._last_replies[_text_of(call.pattern)] = result
         return Reply(values, result)
 
     def result(self, call: Call, reply: Reply, original: Reply | None) -> Any:
@@ -122,6 +125,15 @@ class Door:
                 if not same(value, before.get(quantity.name)):
                     result = quantity.path.put(result, _typed_like(value, before.get(quantity.name)))
         return result
+
+    def _refuse_coroutine(self, result: Any) -> None:
+        """A plain function that hands out a coroutine has done nothing yet: it cannot be mutated in place."""
+        if inspect.iscoroutine(result):
+            text = f"{self.operation.target} returns a coroutine but is no coroutine function"
+            error = PathError(
+                f"{text}; name the coroutine function behind it", path="", step="call", found="coroutine"
+            )
+            self._on_problem("call", error)
 
     def _bind(
         self, wrapped: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]
@@ -174,7 +186,7 @@ class Door:
         notation = Notation.compile(pattern.text)
         values = {**(notation.read(text) or {}), **call.values}
         if call.reversed and pattern.opposite is not None:
-            written = Notation.compile(pattern.opposite).write(values) + ending
+            written = Notation.compile(pattern.opposite).write(values, looks=notation.looks(text)) + ending
         else:
             written = notation.write(values, like=text) + ending
         changed = copy.copy(bound)
@@ -246,16 +258,19 @@ class Door:
                 return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
         raise LookupError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
 
-    def _idle(self) -> Reply | None:
-        """What the operation would answer if the robot did nothing: what it answered last."""
-        last = self._last_reply
-        if self.operation.result and last is None:
+    def _idle(self, pattern: Pattern | None) -> Reply | None:
+        """What this command would answer if the robot did nothing: what it answered last."""
+        if _text_of(pattern) not in self._last_replies:
             return None
+        last = self._last_replies[_text_of(pattern)]
         try:
-            copied = copy.copy(last)
+            return Reply({}, copy.copy(last))
         except Exception:  # a result that cannot be copied: better the object itself than a broken program
-            copied = last
-        return Reply({}, copied)
+            return Reply({}, last)
+
+
+def _text_of(pattern: Pattern | None) -> str | None:
+    return pattern.text if pattern is not None else None
 
 
 def _body(message: str | bytes) -> tuple[str, str]:

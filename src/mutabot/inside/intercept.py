@@ -186,6 +186,10 @@ def _rebind_class(owner: type, original: Any, wrapper: Any) -> Iterator[Undo]:
 
 
 def _rebind_defaults(function: FunctionType, original: Any, wrapper: Any) -> Iterator[Undo]:
+    keyword_only = function.__kwdefaults__ or {}
+    for name in [name for name, value in keyword_only.items() if value is original]:
+        keyword_only[name] = wrapper
+        yield functools.partial(keyword_only.__setitem__, name, original)
     defaults = function.__defaults__
     if defaults and any(value is original for value in defaults):
         function.__defaults__ = tuple(wrapper if value is original else value for value in defaults)

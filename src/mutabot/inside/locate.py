@@ -62,7 +62,7 @@ class Locator:
         return None
 
     def _absolute(self, path: str) -> str:
-        return os.path.realpath(os.path.join(self._root, path))  # noqa: PTH118  # pathlib is slow to import
+        return os.path.realpath(os.path.join(self._root, path))
 
     def _span(self, code: CodeType, instruction: int) -> Span:
         key = (code, instruction)

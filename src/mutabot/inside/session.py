@@ -245,7 +245,9 @@ class Session:
         self._tell(self._source_of(target), "call", str(error), name, known)
 
     def _path_is_wrong(self, operation: Operation, key: str, error: PathError) -> None:
-        self._tell(operation.source, key, str(error), error.step, error.known)
+        # only a path has names to choose from
+        name = error.step if error.path else None
+        self._tell(operation.source, key, str(error), name, error.known)
 
     def _check_arguments(self, operation: Operation) -> None:
         original = self.interception.found.get(operation.target)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, get_args
 
 from .codec import from_data, to_data
 from .mutant import Mutant
@@ -36,6 +36,25 @@ class Budget:
 
 
 @dataclass(frozen=True, slots=True)
+class Branching:
+    """How a trunk branches: which mutants, with how many processes, for how long.
+
+    Attributes:
+        mutants: the mutants that are alive in this round.
+        tests: per mutant id, the tests in which it is to be branched, in the order of the job's tests.
+        tokens: descriptors of the token pool: reading end, writing end.
+        walls: wall-clock seconds that a branch may take, by test.
+        wall: the same for tests that are missing there.
+    """
+
+    mutants: tuple[Mutant, ...]
+    tests: Mapping[str, tuple[str, ...]]
+    tokens: tuple[int, int]
+    walls: Mapping[str, float] = field(default_factory=dict)
+    wall: float = 600.0
+
+
+@dataclass(frozen=True, slots=True)
 class Job:
     """One session inside: which tests to run, as which mutant.
 
@@ -53,6 +72,7 @@ class Job:
         memory: address space limit in bytes; None for no limit.
         inspect: whether to check every callable of the vocabulary at the end, also those that no test
             imported.
+        branching: set for a trunk: fork a branch for each live mutant at its site.
     """
 
     root: str
@@ -68,6 +88,7 @@ class Job:
     budgets: Mapping[str, Budget] = field(default_factory=dict)
     memory: int | None = None
     inspect: bool = False
+    branching: Branching | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +113,72 @@ class TestStart:
 
 @dataclass(frozen=True, slots=True)
 class Acted:
-    """The mutant changed something for the first time in this test: proof that mutated code ran."""
+    """The mutant changed something for the first time in this test: proof that mutated code ran.
+
+    ``mutant`` is the branch that says so; None in a session that is one mutant altogether.
+    """
 
     test: str
+    mutant: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class MutatedCall:
+    """A mutated call begins or has ended: tells whether a process died in it."""
+
+    test: str
+    began: bool
+    mutant: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BranchEnd:
+    """A branch has finished its test.
+
+    Attributes:
+        mutant: id of the mutant it was.
+        end: what the test ended like.
+        sites: the sites that the trace refers to.
+        shared: simulated seconds it inherited from the trunk, or None without a clock.
+    """
+
+    mutant: str
+    end: TestEnd
+    sites: tuple[SiteSeen, ...] = ()
+    shared: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BranchDied:
+    """A branch ended without saying how its test ended.
+
+    Attributes:
+        mutant: id of the mutant it was.
+        test: the test it was in.
+        exit_code: its exit code, negative for a signal.
+        overdue: which wall-clock limit it exceeded, in words, or None.
+    """
+
+    mutant: str
+    test: str
+    exit_code: int
+    overdue: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Unbranched:
+    """A test in which it was not safe to fork: these mutants need a process of their own there."""
+
+    test: str
+    mutants: tuple[str, ...]
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class TokensHeld:
+    """How many tokens a trunk and its branches hold: what the pool gets back if the trunk dies."""
+
+    held: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,10 +268,20 @@ class SessionEnd:
     errors: tuple[str, ...] = ()
 
 
-Line = SiteSeen | TestStart | Acted | TestEnd | Problem | SessionEnd
-_LINES: dict[str, type[Any]] = {
-    kind.__name__: kind for kind in (SiteSeen, TestStart, Acted, TestEnd, Problem, SessionEnd)
-}
+Line = (
+    SiteSeen
+    | TestStart
+    | Acted
+    | MutatedCall
+    | TestEnd
+    | BranchEnd
+    | BranchDied
+    | Unbranched
+    | TokensHeld
+    | Problem
+    | SessionEnd
+)
+_LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Line)}
 
 
 def line_to_data(line: Line) -> dict[str, Any]:

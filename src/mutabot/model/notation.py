@@ -74,11 +74,22 @@ class Notation:
             return None
         return {field.name: _value(field, match[field.name]) for field in self.fields}
 
-    def write(self, values: Mapping[str, Any], *, like: str | None = None) -> str:
-        """The command with these values; ``like`` is the command whose look is kept."""
-        match = _expression(self).fullmatch(like) if like is not None else None
+    def looks(self, message: str) -> dict[str, str]:
+        """The fields as the message writes them; nothing if the message is another command."""
+        match = _expression(self).fullmatch(message)
+        return match.groupdict() if match is not None else {}
+
+    def write(
+        self, values: Mapping[str, Any], *, like: str | None = None, looks: Mapping[str, str] | None = None
+    ) -> str:
+        """The command with these values.
+
+        ``like`` is a message of this notation whose look is kept; ``looks`` gives the looks of the fields
+        where they come from a message of another notation, such as the opposite one.
+        """
+        looks = looks if looks is not None else self.looks(like) if like is not None else {}
         return "".join(
-            part if isinstance(part, str) else _print(part, values[part.name], match and match[part.name])
+            part if isinstance(part, str) else _print(part, values[part.name], looks.get(part.name))
             for part in self.parts
         )
 

@@ -3,5 +3,6 @@
 from .operator import Example as Example
 from .operator import Operator as Operator
 from .operator import Subject as Subject
+from .registry import load_all as load_all
 from .registry import names as names
 from .registry import operator as operator

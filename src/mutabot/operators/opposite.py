@@ -7,6 +7,7 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.model import Call, Kind, Middleware, Operation, Path, Pattern, Proceed, Quantity, Reply
+from mutabot.model.notation import Notation
 from mutabot.model.quantity import Value
 
 from .operator import Example, Operator, Subject
@@ -79,8 +80,9 @@ class Opposite(Operator):
         if subject.quantity is not None:
             quantity = subject.quantity
             return f"{quantity.name} {quantity.text(before)} → {quantity.text(after)}"
-        opposite = subject.pattern.opposite if subject.pattern is not None else subject.operation.opposite
-        return f"{opposite} instead"
+        if subject.pattern is not None and subject.pattern.opposite is not None:
+            return f"{Notation.compile(subject.pattern.opposite).short} instead"
+        return f"{subject.operation.opposite} instead"
 
 
 def _ends(quantity: Quantity) -> tuple[Value, Value] | None:

@@ -33,8 +33,27 @@ CONTROLS: dict[str, tuple[str, str]] = {
 
 
 def names() -> list[str]:
-    """Names of all operators that make mutants, built-in ones first."""
-    return [*BUILT_IN, *sorted(entry.name for entry in _plug_ins() if entry.name not in BUILT_IN)]
+    """Names of all operators that make mutants, built-in ones first.
+
+    Raises OperatorError when two operators want the same name: it would not be clear whose mutants are whose.
+    """
+    owners: dict[str, str] = dict.fromkeys([*BUILT_IN, *CONTROLS], "mutabot")
+    found = [*BUILT_IN]
+    for entry in sorted(_plug_ins(), key=lambda entry: entry.name):
+        owner = _owner(entry)
+        if entry.name in owners:
+            raise OperatorError(
+                f"operator {entry.name!r} of plug-in {owner!r} has the name of one of {owners[entry.name]!r}",
+                operator=entry.name,
+            )
+        owners[entry.name] = owner
+        found.append(entry.name)
+    return found
+
+
+def load_all() -> list[Operator]:
+    """All operators that make mutants. Raises OperatorError for a plug-in that is of no use."""
+    return [operator(name) for name in names()]
 
 
 @cache
@@ -60,9 +79,12 @@ def _plug_ins() -> tuple[EntryPoint, ...]:
     return tuple(metadata.entry_points(group=ENTRY_POINT))
 
 
+def _owner(entry: EntryPoint) -> str:
+    return entry.dist.name if entry.dist is not None else entry.value
+
+
 def _loaded(entry: EntryPoint) -> Operator:
-    owner = entry.dist.name if entry.dist is not None else "?"
-    where = f"operator {entry.name!r} of plug-in {owner!r} ({entry.value})"
+    where = f"operator {entry.name!r} of plug-in {_owner(entry)!r} ({entry.value})"
     try:
         made = entry.load()()
     except Exception as error:  # a plug-in may fail in any way; the user needs to know which one it was

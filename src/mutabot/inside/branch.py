@@ -1,0 +1,194 @@
+"""Trunk and branches: run each test once as the original, and fork at the first moment a mutant differs.
+
+At a site with live mutants the trunk forks one child per mutant. The child inherits everything that came
+before, takes on its mutant, finishes the test it is in, reports, and leaves without taking down what it
+shares with the trunk. The trunk goes on as the original.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from mutabot.model import BranchDied, Branching, Mutant, Span, TokensHeld, Unbranched
+
+from .forkable import open_sockets, why_not
+from .isolate import Foot, isolate_files
+from .pipe import Pipe
+from .tokens import Tokens
+
+#: exit code of a branch whose test decides about its mutant: no other test needs to run
+DECIDED = 10
+#: exit code of a branch whose test leaves its mutant alive
+ALIVE = 0
+
+Key = tuple[Span, str, str | None]
+
+
+@dataclass(slots=True)
+class Child:
+    """A branch that runs.
+
+    Attributes:
+        mutant: id of its mutant.
+        test: the test it is in.
+        pid, pidfd: its process.
+        until: moment (``time.monotonic``) at which its time is up.
+        limit: the seconds it was given.
+    """
+
+    mutant: str
+    test: str
+    pid: int
+    pidfd: int
+    until: float
+    limit: float
+    overdue: bool = False
+
+
+@dataclass(slots=True)
+class Trunk:
+    """The trunk's side of branching.
+
+    Attributes:
+        branching: what to branch.
+        pipe: where reports go.
+        log: device and inode of this process's log.
+        on_child: called first of all in every branch.
+    """
+
+    branching: Branching
+    pipe: Pipe
+    log: tuple[int, int] | None
+    on_child: Callable[[], None]
+    _tokens: Tokens = field(init=False)
+    _live: dict[Key, list[Mutant]] = field(default_factory=dict)
+    _tests: dict[str, frozenset[str]] = field(default_factory=dict)
+    _decided: set[str] = field(default_factory=set)
+    _branched: set[str] = field(default_factory=set)
+    _children: dict[int, Child] = field(default_factory=dict)
+    _sockets: frozenset[int] = frozenset()
+    _test: str = ""
+
+    def __post_init__(self) -> None:
+        reading, writing = self.branching.tokens
+        self._tokens = Tokens(reading, writing, lambda held: self.pipe.send(TokensHeld(held)))
+        self._tests = {mutant: frozenset(tests) for mutant, tests in self.branching.tests.items()}
+        self._sockets = open_sockets()
+        for mutant in self.branching.mutants:
+            key = (mutant.site.span, mutant.operation, mutant.pattern)
+            self._live.setdefault(key, []).append(mutant)
+
+    def start_test(self, test: str) -> None:
+        """A test begins."""
+        self._test = test
+        self._branched.clear()
+
+    def branch(self, span: Span, operation: str, pattern: str | None) -> Mutant | None:
+        """Fork for every live mutant here that has no branch in this test yet.
+
+        Returns the mutant to become, in a branch; None in the trunk.
+        """
+        mutants = self._live.get((span, operation, pattern))
+        if not mutants:
+            return None
+        due = [mutant for mutant in mutants if self._is_due(mutant)]
+        self._live[span, operation, pattern] = [one for one in mutants if one.id not in self._decided]
+        if not due:
+            return None
+        reason = why_not((child.pid for child in self._children.values()), self._sockets)
+        if reason is not None:
+            self._branched.update(mutant.id for mutant in due)
+            self.pipe.send(Unbranched(self._test, tuple(mutant.id for mutant in due), reason))
+            return None
+        return self._fork_each(due)
+
+    def finish(self) -> None:
+        """All tests are over: wait for the branches that still run, holding no token meanwhile."""
+        self._tokens.give_back()
+        while self._children:
+            if self._reap(self._wait()):
+                self._tokens.give_back()
+
+    def _is_due(self, mutant: Mutant) -> bool:
+        if mutant.id in self._branched or self._test not in self._tests.get(mutant.id, ()):
+            return False
+        while mutant.id not in self._decided and self._is_running(mutant.id):
+            # its branch in an earlier test decides whether it needs another one
+            if self._reap(self._wait()):
+                self._tokens.give_back()
+        return mutant.id not in self._decided
+
+    def _is_running(self, mutant: str) -> bool:
+        return any(child.mutant == mutant for child in self._children.values())
+
+    def _fork_each(self, mutants: list[Mutant]) -> Mutant | None:
+        for mutant in mutants:
+            self._branched.add(mutant.id)
+            foot = Foot()
+            pid = os.fork()
+            if pid == 0:
+                self._become_branch(foot)
+                return mutant
+            limit = self.branching.walls.get(self._test, self.branching.wall)
+            pidfd = os.pidfd_open(pid)
+            child = Child(mutant.id, self._test, pid, pidfd, time.monotonic() + limit, limit)
+            self._children[pidfd] = child
+            self._take_token()
+        return None
+
+    def _become_branch(self, foot: Foot) -> None:
+        self.on_child()
+        for child in self._children.values():
+            os.close(child.pidfd)
+        self._children.clear()
+        isolate_files(self.log)
+        foot.restore()
+
+    def _take_token(self) -> None:
+        """The trunk's token went to the branch: wait for another, from the pool or from a branch's end."""
+        while not self._tokens.take():
+            if self._reap(self._wait(pool=True)):
+                return
+
+    def _wait(self, *, pool: bool = False) -> list[int]:
+        """Sleep until a branch ends, its time is up or (``pool``) there is a free token."""
+        poll = select.poll()
+        for pidfd in self._children:
+            poll.register(pidfd, select.POLLIN)
+        if pool:
+            poll.register(self._tokens.reading, select.POLLIN)
+        until = min((child.until for child in self._children.values()), default=None)
+        timeout = None if until is None else max(0.0, until - time.monotonic()) * 1e3 + 1.0
+        return [descriptor for descriptor, _ in poll.poll(timeout)]
+
+    def _reap(self, ready: list[int]) -> bool:
+        """Look after branches that ended or whose time is up. True if the trunk now has a token to spare.
+
+        One branch at a time: each brings one token.
+        """
+        now = time.monotonic()
+        for child in self._children.values():
+            if now >= child.until and not child.overdue:
+                child.overdue = True
+                os.kill(child.pid, signal.SIGKILL)
+        for descriptor in ready:
+            child_ended = self._children.pop(descriptor, None)
+            if child_ended is not None:
+                self._bury(child_ended)
+                return True
+        return False
+
+    def _bury(self, child: Child) -> None:
+        _, status = os.waitpid(child.pid, 0)
+        os.close(child.pidfd)
+        code = os.waitstatus_to_exitcode(status)
+        if code != ALIVE:
+            self._decided.add(child.mutant)
+        if code not in (ALIVE, DECIDED):
+            overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None
+            self.pipe.send(BranchDied(child.mutant, child.test, code, overdue))
