@@ -71,16 +71,20 @@ class NoBoxError(Exception):
 def run(cell: Cell) -> Report:
     """Sort one box. The robot may start anywhere; it ends at home, the gripper open."""
     cell.gripper.command(OPEN)
+    report = sort(cell)
+    cell.arm.home()
+    return report
+
+
+def sort(cell: Cell) -> Report:
+    """Pick the box and place it, as far as that goes."""
     try:
         colour, grips, held = pick(cell)
     except NoBoxError:
-        cell.arm.home()
         return Report(Outcome.NO_BOX)
     if not held:
-        cell.arm.home()
         return Report(Outcome.SLIPPED, colour, grips)
     placed = place(cell, colour)
-    cell.arm.home()
     return Report(Outcome.PLACED if placed else Outcome.LOST, colour, grips)
 
 

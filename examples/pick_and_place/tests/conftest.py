@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from monitors import watch_box, watch_fingers
+from monitors import watch_box, watch_fingers, watch_tilt
 
 from mutabot.cells import Box, Cell, Scene
 from mutabot.cells.fixtures import *  # noqa: F403  (new_cell; fails a test whose condition broke in silence)
@@ -13,13 +13,15 @@ from mutabot.cells.fixtures import *  # noqa: F403  (new_cell; fails a test whos
 
 @pytest.fixture
 def cell_with(new_cell: Callable[..., Cell], mutabot_seed: int) -> Callable[..., Cell]:
-    """Makes the test's cell, with at most one box; one that gets lost may fall and tumble."""
+    """Makes the test's cell, with at most one box; one that slips may lean, one that gets lost may fall."""
 
-    def make(*boxes: Box, gets_lost: bool = False) -> Cell:
+    def make(*boxes: Box, slips: bool = False, gets_lost: bool = False) -> Cell:
         cell = new_cell(mutabot_seed, scene=Scene(boxes=boxes))
         watch_fingers(cell)
         if boxes and not gets_lost:
             watch_box(cell)
+        if boxes and not gets_lost and not slips:
+            watch_tilt(cell)
         return cell
 
     return make

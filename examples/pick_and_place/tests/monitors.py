@@ -38,9 +38,13 @@ def watch_box(cell: Cell) -> None:
     """For test cases in which no box gets lost: it is gripped, lifted, carried and set down gently."""
     motion = Motion(cell)
     cell.always(lambda: height(cell) > -SINKING, "the box is not pressed into conveyor or table")
-    cell.always(lambda: cell.truth.box_tilt() < LARGEST_TILT, "the box stays upright")
     cell.always(lambda: cell.truth.opening() < OPEN or height(cell) < LOW, "the box is never dropped")
     cell.always(lambda: motion.sideways() < PUSHING_SPEED or height(cell) > CARRYING_HEIGHT, "carried high")
+
+
+def watch_tilt(cell: Cell) -> None:
+    """For test cases in which the fingers hold the box at once."""
+    cell.always(lambda: cell.truth.box_tilt() < LARGEST_TILT, "the box stays upright")
 
 
 def height(cell: Cell) -> float:

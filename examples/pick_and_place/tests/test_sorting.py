@@ -33,14 +33,18 @@ FULLY_OPEN = 0.085
 OPEN_WITHIN = 0.001
 
 
-@pytest.mark.parametrize("colour", ["red", "blue"])
-def test_a_box_is_set_down_at_the_place_of_its_colour(cell_with: CellWith, colour: str) -> None:
+@pytest.mark.parametrize(("colour", "cycle_time"), [("red", 13.3), ("blue", 12.9)])
+def test_a_box_is_set_down_at_the_place_of_its_colour(
+    cell_with: CellWith, colour: str, cycle_time: float
+) -> None:
+    """The line's cycle time is what the program needs, and 0.3 s."""
     cell = cell_with(Box(colour=colour))
     check_at_home(cell)
     check_found(cell, *ON_CONVEYOR)
 
     assert sorting.run(cell) == Report(Outcome.PLACED, colour, grips=1)
 
+    assert cell.time <= cycle_time
     check_placed(cell, colour)
     check_at_home(cell)
 
@@ -95,7 +99,7 @@ def test_something_smaller_than_a_box_is_left_alone(cell_with: CellWith) -> None
 
 
 def test_a_box_that_slips_is_gripped_again_and_firmer(cell_with: CellWith) -> None:
-    cell = cell_with(Box(colour="red", mass=0.4, friction=0.04))
+    cell = cell_with(Box(colour="red", mass=0.4, friction=0.04), slips=True)
 
     assert sorting.run(cell) == Report(Outcome.PLACED, "red", grips=2)
 
@@ -104,7 +108,7 @@ def test_a_box_that_slips_is_gripped_again_and_firmer(cell_with: CellWith) -> No
 
 
 def test_a_box_that_slips_twice_is_left_on_the_conveyor(cell_with: CellWith) -> None:
-    cell = cell_with(Box(colour="blue", mass=0.4, friction=0.01))
+    cell = cell_with(Box(colour="blue", mass=0.4, friction=0.01), slips=True)
 
     assert sorting.run(cell) == Report(Outcome.SLIPPED, "blue", grips=2)
 
