@@ -9,7 +9,7 @@ import typer
 
 from mutabot import __version__
 
-ENGINES = ("auto", "replay")
+ENGINES = ("auto", "branch", "replay")
 
 
 def _print_version(wanted: bool) -> None:

@@ -69,6 +69,7 @@ class Baseline:
         reaching: (round, place) to the tests that reach it, fastest first.
         observations: (round, test) to what is compared with a mutant's.
         unstable: tests set aside as flaky, with the reason, by (round, test).
+        flaky_reaching: (round, place) to the tests that reached it but were set aside later on.
         dependent: selections of tests that pass only together with others; filled in by the controls.
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
         skipped: number of tests that skipped themselves.
@@ -82,6 +83,7 @@ class Baseline:
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
     restless: set[tuple[int, str]] = field(default_factory=set)
+    flaky_reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     dependent: set[tuple[str, ...]] = field(default_factory=set)
     skipped: int = 0
     startup: float = 0.0
@@ -99,6 +101,19 @@ class Baseline:
         tests = tuple(self.reaching.get((round, place), ()))
         return tuple(self.tests[round]) if tests in self.dependent else tests
 
+    def set_aside(self, round: int, test: str, reason: str) -> None:
+        """A test turned out to be flaky: from now on no mutant is judged by it in this round."""
+        self.unstable[round, test] = reason
+        self.tests[round] = [other for other in self.tests[round] if other != test]
+        for (where, place), tests in self.reaching.items():
+            if where == round and test in tests:
+                tests.remove(test)
+                self.flaky_reaching.setdefault((where, place), []).append(test)
+
+    def by_cost(self, round: int) -> list[str]:
+        """All tests of a round, quickest first: the order of every selection."""
+        return sorted(self.tests[round], key=lambda test: _cost(self.ends[round, test]))
+
     def budget(self, round: int, test: str, factor: float) -> Budget:
         """What a mutant may use in this test."""
         end = self.ends[round, test]
@@ -108,8 +123,12 @@ class Baseline:
         )
 
 
-def take_baseline(request: Request, workers: Workers, progress: Progress) -> tuple[Baseline, list[Result]]:
+def take_baseline(
+    request: Request, workers: Workers, progress: Progress, *, repetitions: int = REPETITIONS
+) -> tuple[Baseline, list[Result]]:
     """Run the suite on the original and look at what it does.
+
+    With one repetition the second run is left to the trunks of the branch engine.
 
     Returns the baseline and the raw results, first repetitions first.
 
@@ -117,9 +136,9 @@ def take_baseline(request: Request, workers: Workers, progress: Progress) -> tup
     tests, BaselineError when tests fail.
     """
     load_all()  # a broken plug-in is told now rather than after the baseline
-    progress.stage("baseline", request.rounds * REPETITIONS)
+    progress.stage("baseline", request.rounds * repetitions)
     results: dict[tuple[int, int], Result] = {}
-    for result in workers.run(_tasks(request)):
+    for result in workers.run(_tasks(request, repetitions)):
         run: _Run = result.task.key
         results[run.round, run.repetition] = result
         _refuse(result)
@@ -127,15 +146,15 @@ def take_baseline(request: Request, workers: Workers, progress: Progress) -> tup
     baseline = Baseline()
     sources = Sources(request.root)
     for round in range(request.rounds):
-        repetitions = [results[round, repetition] for repetition in range(REPETITIONS)]
-        _add_round(baseline, request, sources, round, repetitions)
+        runs = [results[round, repetition] for repetition in range(repetitions)]
+        _add_round(baseline, request, sources, round, runs)
     if not any(baseline.tests):
         raise NothingToDoError(_no_tests(baseline))
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
 
 
-def _tasks(request: Request) -> Iterator[Task]:
-    for repetition in range(REPETITIONS):
+def _tasks(request: Request, repetitions: int) -> Iterator[Task]:
+    for repetition in range(repetitions):
         for round in range(request.rounds):
             inspect = (round, repetition) == (0, 0)
             yield Task(
@@ -216,7 +235,7 @@ def _add_round(
             baseline.skipped += 1
         else:
             good.append(test)
-            baseline.ends[round, test] = replace(end, wall=max(end.wall, *(o.wall for o in others if o)))
+            baseline.ends[round, test] = replace(end, wall=max([end.wall, *(o.wall for o in others if o)]))
             baseline.observations[round, test] = observed[0][test]
             probes = request.vocabulary.probes
             if not all(
@@ -227,7 +246,7 @@ def _add_round(
         raise BaselineError(_failures(round, failed), tests=[end.test for end in failed])
     baseline.tests.append(good)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
-    baseline.startup = max(baseline.startup, *spent)
+    baseline.startup = max([baseline.startup, *spent])
     _add_hits(baseline, sources, round, repetitions[0], good)
 
 

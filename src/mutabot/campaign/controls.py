@@ -1,11 +1,12 @@
 """Controls: mutants that must survive, and mutants that must die.
 
-The identity mutant goes through all the machinery and changes nothing, so it must survive. It is run with
-every selection of tests that a mutant will be judged by, which also finds tests that pass only after
-others: their mutants are then judged by the whole suite. The fatal mutant raises, so it must die; it is run
-once per test file and proves that turning a mutant on changes anything at all.
+The identity mutant goes through all the machinery and changes nothing, so it must survive. The fatal mutant
+raises, so it must die; it is run once per test file and proves that turning a mutant on changes anything at
+all. A control that ends wrongly stops the campaign: its verdicts could not be believed.
 
-A control that ends wrongly stops the campaign: its verdicts could not be believed.
+For the replay engine the identity mutant is run with every selection of tests that a mutant will be judged
+by, which also finds tests that pass only after others: their mutants are then judged by the whole suite. For
+the branch engine, whose trunk runs the whole suite anyway, it is run in every test.
 """
 
 from __future__ import annotations
@@ -14,13 +15,17 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from mutabot.errors import ControlError
-from mutabot.model import Mutant
+from mutabot.model import Mutant, Outcome, Verdict
 
-from .baseline import Baseline, Place, death
+from .baseline import Baseline, Place
 from .journal import ControlEnd
-from .replay import task
+from .judge import judge
+from .replay import run_of, task
 from .request import Progress, Request
-from .workers import Result, Task, Workers
+from .sites import Sources
+from .workers import Task, Workers
+
+IDENTITY, FATAL = "identity", "fatal"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,52 +46,98 @@ class Control:
     tests: tuple[str, ...]
     subject: str
 
-    def task(self, request: Request, baseline: Baseline) -> Task:
-        """The task that runs it."""
+    @property
+    def mutant(self) -> Mutant:
+        """The control as a mutant; what it is run for is part of its id."""
         place = self.place
-        mutant = Mutant(
-            0, "control", self.name, place.site, place.operation, place.pattern, None, "", self.name
+        return Mutant(
+            0, "control", self.name, place.site, place.operation, place.pattern, None, self.subject, self.name
         )
-        made = task(request, baseline, mutant, self.round, self.tests, stop=False)
+
+    def task(self, request: Request, baseline: Baseline) -> Task:
+        """The task that runs it by replay."""
+        made = task(request, baseline, self.mutant, self.round, self.tests, stop=False)
         return Task(self, made.job, made.deadlines, made.deadline, made.startup)
+
+    def end(self, outcome: Outcome) -> ControlEnd:
+        """How it ended, judged by its outcome."""
+        wrong = self._what_is_wrong(outcome)
+        return ControlEnd(self.subject, self.name, wrong is None, wrong or f"{outcome.hits} hits")
+
+    def _what_is_wrong(self, outcome: Outcome) -> str | None:
+        expected = Verdict.NO_EFFECT if self.name == IDENTITY else Verdict.KILLED
+        if outcome.verdict is expected:
+            return None
+        if self.name == FATAL and outcome.verdict is Verdict.SURVIVED:
+            return "the test passes although the operation raises"
+        return f"{outcome.verdict}: {outcome.message or 'it changed something'}"
+
+    def error(self, wrong: str) -> ControlError:
+        """The error that stops the campaign."""
+        return ControlError(
+            f"the {self.name} control of {self.subject} at {self.place.site.place} ended wrongly: "
+            f"{wrong}; no verdict of this campaign could be believed",
+            control=self.name,
+            test_file=self.tests[0].partition("::")[0],
+        )
 
 
 def run_controls(
     request: Request, baseline: Baseline, workers: Workers, progress: Progress, mutants: Iterable[Mutant]
 ) -> Iterator[ControlEnd]:
-    """Run the controls for these mutants; marks in the baseline which tests need the whole suite.
+    """Run by replay the controls for these mutants; marks in the baseline which tests need the whole suite.
 
     Raises ControlError for a control that ends wrongly, after it was yielded.
     """
     mutants = list(mutants)
-    identities = _identities(baseline, mutants)
-    fatals = list(_fatals(baseline, mutants))
+    identities = _identities_by_selection(baseline, mutants)
+    fatals = _fatals(baseline, mutants)
     progress.stage("controls", len(identities) + len(fatals))
     together: list[Control] = []
-    for control, wrong, result in _run(request, baseline, workers, identities):
-        progress.advance(f"identity, {control.subject}: {wrong or 'survives, as it must'}")
-        if wrong is None:
-            yield _end(control, result)
-        elif _is_whole(control, baseline):
-            yield from _stop(control, wrong)
+    for control, outcome in _replayed(request, baseline, workers, identities):
+        end = control.end(outcome)
+        progress.advance(f"identity, {control.subject}: {'survives, as it must' if end.ok else end.detail}")
+        if end.ok:
+            yield end
+        elif set(control.tests) == set(baseline.tests[control.round]):
+            yield end
+            raise control.error(end.detail)
         else:
             baseline.dependent.add(control.tests)
-            together.append(_whole(control, baseline))
+            together.append(_with_whole_suite(control, baseline))
             progress.note(f"{control.subject} pass only after other tests: judged by the whole suite")
-    for control, wrong, result in _run(request, baseline, workers, [*together, *fatals]):
-        progress.advance(f"{control.name}, {control.subject}: {wrong or 'as it must'}")
-        yield from (_stop(control, wrong) if wrong is not None else [_end(control, result)])
+    for control, outcome in _replayed(request, baseline, workers, [*together, *fatals]):
+        end = control.end(outcome)
+        progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
+        yield end
+        if not end.ok:
+            raise control.error(end.detail)
 
 
-def _run(
+def controls_in_branches(baseline: Baseline, mutants: Iterable[Mutant]) -> list[Control]:
+    """The controls to run as branches: identity in every test of the first round, fatal once per file."""
+    mutants = list(mutants)
+    planned = {Place(mutant.site, mutant.operation, mutant.pattern) for mutant in mutants}
+    uncovered = set(baseline.tests[0])
+    found: list[Control] = []
+    for (round, place), tests in baseline.reaching.items():
+        here = tuple(test for test in tests if test in uncovered)
+        if round == 0 and here and place in planned:
+            uncovered -= set(here)
+            found.append(Control(IDENTITY, place, 0, here, _subject(here)))
+    return [*found, *_fatals(baseline, mutants)]
+
+
+def _replayed(
     request: Request, baseline: Baseline, workers: Workers, controls: Iterable[Control]
-) -> Iterator[tuple[Control, str | None, Result]]:
+) -> Iterator[tuple[Control, Outcome]]:
+    sources = Sources(request.root)
     for result in workers.run(control.task(request, baseline) for control in controls):
         control: Control = result.task.key
-        yield control, _wrong(control, result), result
+        yield control, judge(run_of(result, sources), request, baseline)
 
 
-def _identities(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
+def _identities_by_selection(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
     """One identity control per selection of tests that mutants are judged by."""
     chosen: dict[tuple[str, ...], Control] = {}
     for round in range(len(baseline.tests)):
@@ -94,7 +145,7 @@ def _identities(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
             place = Place(mutant.site, mutant.operation, mutant.pattern)
             tests = baseline.selection(round, place)
             if tests and tests not in chosen:
-                chosen[tests] = Control("identity", place, round, tests, _subject(tests))
+                chosen[tests] = Control(IDENTITY, place, round, tests, _subject(tests))
     return list(chosen.values())
 
 
@@ -102,55 +153,20 @@ def _subject(tests: tuple[str, ...]) -> str:
     return tests[0] if len(tests) == 1 else f"{tests[0]} and {len(tests) - 1} more"
 
 
-def _fatals(baseline: Baseline, mutants: list[Mutant]) -> Iterator[Control]:
+def _fatals(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
     """One fatal control per test file: its quickest test, at a site where a mutant is planned."""
     planned = {Place(mutant.site, mutant.operation, mutant.pattern) for mutant in mutants}
     chosen: dict[str, Control] = {}
-    costs: dict[str, float] = {}
+    costs: dict[str, tuple[int, float]] = {}
     for (round, place), tests in baseline.reaching.items():
         for test in tests if place in planned else ():
-            test_file, cost = test.partition("::")[0], baseline.ends[round, test].wall
-            if cost < costs.get(test_file, float("inf")):
+            test_file, cost = test.partition("::")[0], (round, baseline.ends[round, test].wall)
+            if test_file not in costs or cost < costs[test_file]:
                 costs[test_file] = cost
-                chosen[test_file] = Control("fatal", place, round, (test,), test_file)
-    yield from chosen.values()
+                chosen[test_file] = Control(FATAL, place, round, (test,), test_file)
+    return list(chosen.values())
 
 
-def _is_whole(control: Control, baseline: Baseline) -> bool:
-    return set(control.tests) == set(baseline.tests[control.round])
-
-
-def _whole(control: Control, baseline: Baseline) -> Control:
+def _with_whole_suite(control: Control, baseline: Baseline) -> Control:
     tests = tuple(baseline.tests[control.round])
     return Control(control.name, control.place, control.round, tests, "the whole suite")
-
-
-def _wrong(control: Control, result: Result) -> str | None:
-    """What is wrong with how a control ended; None if all is well."""
-    if not result.ends:
-        return death(result) if result.end is None else "no test ran"
-    if not any(end.hits for end in result.ends):
-        return "the site was not reached"
-    failed = [end for end in result.ends if end.outcome == "failed"]
-    if control.name == "fatal":
-        return None if failed else "the test passes although the operation raises"
-    if failed:
-        return f"{failed[0].test} fails: {failed[0].message}"
-    if len(result.ends) < len(control.tests):
-        return death(result) if result.end is None else "not all tests ran"
-    return None
-
-
-def _end(control: Control, result: Result) -> ControlEnd:
-    hits = sum(end.hits for end in result.ends)
-    return ControlEnd(control.subject, control.name, True, f"{hits} hits")
-
-
-def _stop(control: Control, wrong: str) -> Iterator[ControlEnd]:
-    yield ControlEnd(control.subject, control.name, False, wrong)
-    raise ControlError(
-        f"the {control.name} control of {control.subject} at {control.place.site.place} ended wrongly: "
-        f"{wrong}; no verdict of this campaign could be believed",
-        control=control.name,
-        test_file=control.tests[0].partition("::")[0],
-    )

@@ -13,11 +13,11 @@ from mutabot import __version__
 from mutabot.errors import NothingToDoError
 from mutabot.model import LeftOut, Mutant, Vocabulary, to_data
 
-from .baseline import REPETITIONS, Baseline, take_baseline
-from .controls import run_controls
+from .baseline import Baseline, take_baseline
+from .branching import Remainder
+from .engine import engine_of, repetitions_for, run_mutants, try_controls
 from .journal import Journal
 from .plan import Plan, make_plan
-from .replay import replay
 from .request import CheckReport, Progress, Request
 from .selection import select
 from .workers import Result, Workers
@@ -35,15 +35,13 @@ def run_campaign(request: Request, progress: Progress) -> Path:
     """
     started = time.monotonic()
     with _workers(request) as workers:
-        baseline, results = take_baseline(request, workers, progress)
+        baseline, results = _baseline(request, workers, progress)
         plan = selected(request, make_plan(baseline, request.vocabulary), baseline)
         with Journal.create(request.journal_path, meta=_meta(request)) as journal:
             try:
                 _write_beginning(journal, request, results, plan)
                 _note_unstable(baseline, progress)
-                for control in run_controls(request, baseline, workers, progress, plan.mutants):
-                    journal.add_control(control.test_file, control.control, control.ok, control.detail)
-                _run_mutants(request, baseline, workers, progress, plan, journal)
+                run_mutants(request, baseline, workers, progress, plan.mutants, journal)
             except BaseException as error:
                 journal.finish(_reason(error))
                 raise
@@ -55,7 +53,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
 def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut]]:
     """Baseline and plan, without running a mutant."""
     with _workers(request) as workers:
-        baseline, _ = take_baseline(request, workers, progress)
+        baseline, _ = _baseline(request, workers, progress)
     plan = selected(request, make_plan(baseline, request.vocabulary), baseline)
     return plan.mutants, plan.left_out
 
@@ -63,11 +61,15 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
 def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running mutants."""
     with _workers(request) as workers:
-        baseline, _ = take_baseline(request, workers, progress)
+        baseline, _ = _baseline(request, workers, progress)
         plan = make_plan(baseline, request.vocabulary)
         mutants = selected(request, plan, baseline).mutants
-        controls = list(run_controls(request, baseline, workers, progress, mutants))
-    return _report(request, baseline, plan, mutants, len(controls))
+        controls, remainder = try_controls(request, baseline, workers, progress, mutants)
+    return _report(request, baseline, plan, mutants, controls, remainder)
+
+
+def _baseline(request: Request, workers: Workers, progress: Progress) -> tuple[Baseline, list[Result]]:
+    return take_baseline(request, workers, progress, repetitions=repetitions_for(request))
 
 
 def selected(request: Request, plan: Plan, baseline: Baseline) -> Plan:
@@ -92,17 +94,6 @@ def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
         files = ", ".join((*request.configuration.program, *request.configuration.oracle))
         return f"no mutants: no test reaches a call of the vocabulary's operations in {files}"
     return f"no mutants: all {len(plan.left_out)} would change nothing"
-
-
-def _run_mutants(
-    request: Request, baseline: Baseline, workers: Workers, progress: Progress, plan: Plan, journal: Journal
-) -> None:
-    progress.stage("mutants", len(plan.mutants) * request.rounds)
-    numbers = {mutant.id: mutant.number for mutant in plan.mutants}
-    for outcome in replay(request, baseline, workers, plan.mutants):
-        journal.add_outcome(outcome)
-        by = f" by {outcome.by}" if outcome.by is not None else ""
-        progress.advance(f"#{numbers[outcome.mutant]} round {outcome.round + 1}: {outcome.verdict}{by}")
 
 
 def _write_beginning(journal: Journal, request: Request, results: Sequence[Result], plan: Plan) -> None:
@@ -132,7 +123,7 @@ def _meta(request: Request) -> dict[str, Any]:
         "root": str(request.root),
         "seed": request.seed,
         "rounds": request.rounds,
-        "engine": "replay",
+        "engine": engine_of(request),
         "jobs": request.jobs,
         "started": time.time(),
         "vocabulary": to_data(request.vocabulary),
@@ -150,12 +141,17 @@ def _versions() -> dict[str, str]:
 
 
 def _report(
-    request: Request, baseline: Baseline, plan: Plan, mutants: list[Mutant], controls: int
+    request: Request,
+    baseline: Baseline,
+    plan: Plan,
+    mutants: list[Mutant],
+    controls: int,
+    remainder: Remainder,
 ) -> CheckReport:
     tests = sorted({test for tests in baseline.tests for test in tests})
     never = _never_called(request.vocabulary, baseline)
     lines = [
-        f"tests     {len(tests)} pass in {request.rounds} rounds × {REPETITIONS} runs"
+        f"tests     {len(tests)} pass in {request.rounds} rounds"
         + (f", {baseline.skipped} skipped" if baseline.skipped else ""),
         f"sites     {len({place.site for place in baseline.places})} reached",
         f"controls  {controls} ended as they must",
@@ -171,7 +167,9 @@ def _report(
         for round, test in sorted(baseline.restless)
     ]
     lines += [f"unused    {target}: no test reaches it from the program or the oracle" for target in never]
+    lines += [f"replay    {test}: {why}" for test, why in remainder.reasons.items()]
     data = {
+        "replay": dict(remainder.reasons),
         "tests": tests,
         "sites": [place.key for place in baseline.places],
         "mutants": len(mutants),

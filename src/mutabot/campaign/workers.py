@@ -23,8 +23,21 @@ from types import TracebackType
 from typing import Any
 
 from mutabot.errors import JournalError
-from mutabot.model import Job, Problem, SessionEnd, SiteSeen, TestEnd, TestStart, to_data
-from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, Acted, Line, line_from_data
+from mutabot.model import (
+    Acted,
+    Job,
+    MutatedCall,
+    Problem,
+    SessionEnd,
+    SiteSeen,
+    TestEnd,
+    TestStart,
+    TokensHeld,
+    to_data,
+)
+from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, Line, line_from_data
+
+from .tokens import TokenPool
 
 #: plug-ins that would run tests elsewhere, again, or in another order, and how to stop each
 _SWITCHED_OFF = {
@@ -49,6 +62,7 @@ class Task:
         deadlines: wall-clock seconds each test may take; tests that are missing get ``deadline``.
         deadline: wall-clock seconds for any other test.
         startup: wall-clock seconds until the first test begins.
+        is_trunk: whether it branches: it then runs on a token of the pool.
     """
 
     key: Any
@@ -56,6 +70,7 @@ class Task:
     deadlines: Mapping[str, float] = field(default_factory=dict)
     deadline: float = 600.0
     startup: float = STARTUP_SECONDS
+    is_trunk: bool = False
 
 
 @dataclass(slots=True)
@@ -66,6 +81,8 @@ class Result:
         task: its task.
         sites, ends, problems: what it reported.
         acted: tests in which its mutant did something.
+        in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
+        held: tokens that it and its branches held when it was last heard of.
         running: test that was under way when it ended, or None.
         end: its orderly end; None if there was none.
         exit_code: its exit code, negative for a signal.
@@ -79,6 +96,8 @@ class Result:
     ends: list[TestEnd] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     acted: list[str] = field(default_factory=list)
+    in_mutated_call: bool = False
+    held: int = 0
     running: str | None = None
     end: SessionEnd | None = None
     exit_code: int = 0
@@ -93,8 +112,12 @@ class Result:
                 self.sites.append(line)
             case TestStart():
                 self.running = line.test
-            case Acted():
+            case Acted() if line.mutant is None:
                 self.acted.append(line.test)
+            case MutatedCall() if line.mutant is None:
+                self.in_mutated_call = line.began
+            case TokensHeld():
+                self.held = line.held
             case TestEnd():
                 self.ends.append(line)
                 self.running = None
@@ -121,6 +144,7 @@ class Workers:
         self._jobs = max(1, jobs)
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
+        self.pool = TokenPool(self._jobs)
         home = root / ".mutabot"
         try:
             home.mkdir(exist_ok=True)
@@ -142,35 +166,56 @@ class Workers:
             worker.close(self._selector)
         self._workers.clear()
         self._selector.close()
+        self.pool.close()
         self._folder.cleanup()
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which they end. Tasks are taken from the iterable as places free up."""
+        for event in self.events(tasks):
+            if isinstance(event, Result):
+                yield event
+
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
+        """Report lines as they come, with their task, and results in the order in which they end."""
         waiting = iter(tasks)
-        exhausted = False
+        next_task = next(waiting, None)
         while True:
-            while not exhausted and len(self._workers) < self._jobs:
-                task = next(waiting, None)
-                if task is None:
-                    exhausted = True
-                else:
-                    self._start(task)
+            while next_task is not None and self._has_place(next_task):
+                self._start(next_task)
+                next_task = next(waiting, None)
             if not self._workers:
                 return
-            yield from self._wait()
+            yield from self._wait(for_token=next_task is not None and next_task.is_trunk)
+
+    def _has_place(self, task: Task) -> bool:
+        if len(self._workers) >= self._jobs:
+            return False
+        if not task.is_trunk:
+            return True
+        if not self._workers:
+            self.pool.refill()  # nobody is left who could hold one
+        return self.pool.take()
 
     def _start(self, task: Task) -> None:
-        worker = _Worker(task, self._root, self._arguments, Path(self._folder.name))
+        descriptors = self.pool.descriptors if task.is_trunk else ()
+        worker = _Worker(task, self._root, self._arguments, Path(self._folder.name), descriptors)
         worker.watch(self._selector)
         self._workers.append(worker)
 
-    def _wait(self) -> Iterator[Result]:
-        now = time.monotonic()
-        timeout = max(0.0, min(worker.until for worker in self._workers) - now)
-        for key, _ in self._selector.select(timeout):
-            worker: _Worker = key.data
+    def _wait(self, *, for_token: bool) -> Iterator[Result | tuple[Task, Line]]:
+        timeout = max(0.0, min(worker.until for worker in self._workers) - time.monotonic())
+        if for_token and len(self._workers) < self._jobs:
+            self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
+        ready = self._selector.select(timeout)
+        if self.pool.reading in self._selector.get_map():
+            self._selector.unregister(self.pool.reading)
+        for key, _ in ready:
+            worker: _Worker | None = key.data
+            if worker is None:
+                continue
             if key.fd == worker.pipe:
-                worker.read()
+                for line in worker.read():
+                    yield worker.task, line
             else:
                 worker.exited = True
         now = time.monotonic()
@@ -178,16 +223,26 @@ class Workers:
             if now >= worker.until and not worker.exited:
                 worker.expire()
             if worker.exited:
-                self._workers.remove(worker)
-                yield worker.finish(self._selector)
+                yield from self._finish(worker)
+
+    def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Line]]:
+        self._workers.remove(worker)
+        lines, result = worker.finish(self._selector)
+        for line in lines:
+            yield worker.task, line
+        if worker.task.is_trunk:
+            self.pool.give_back(result.held)  # what a trunk that died had not given back itself
+        yield result
 
 
 class _Worker:
     """One running worker process."""
 
-    def __init__(self, task: Task, root: Path, arguments: tuple[str, ...], folder: Path) -> None:
+    def __init__(
+        self, task: Task, root: Path, arguments: tuple[str, ...], folder: Path, descriptors: tuple[int, ...]
+    ) -> None:
         self.task = task
-        self.result = Result(task)
+        self.result = Result(task, held=1 if task.is_trunk else 0)
         self.exited = False
         self._buffer = b""
         self._started = time.monotonic()
@@ -207,7 +262,7 @@ class _Worker:
                     stdin=subprocess.DEVNULL,
                     stdout=log,
                     stderr=subprocess.STDOUT,
-                    pass_fds=(writing,),
+                    pass_fds=(writing, *descriptors),
                     start_new_session=True,
                 )
         finally:
@@ -218,25 +273,33 @@ class _Worker:
         selector.register(self.pipe, selectors.EVENT_READ, self)
         selector.register(self._pidfd, selectors.EVENT_READ, self)
 
-    def read(self) -> None:
+    def read(self) -> list[Line]:
         """Take what the pipe holds."""
+        taken: list[Line] = []
         while True:
             try:
                 data = os.read(self.pipe, 1 << 16)
             except BlockingIOError:
-                return
+                return taken
             if not data:
-                return
-            *lines, self._buffer = (self._buffer + data).split(b"\n")
-            for line in lines:
-                self._take(line_from_data(json.loads(line)))
+                return taken
+            *texts, self._buffer = (self._buffer + data).split(b"\n")
+            taken.extend(line for text in texts if (line := self._take(text)) is not None)
 
-    def _take(self, line: Line) -> None:
+    def _take(self, text: bytes) -> Line | None:
+        if not text:
+            return None
+        try:
+            line = line_from_data(json.loads(text))
+        except (ValueError, KeyError, TypeError):
+            return None  # cut off: its writer was killed while it wrote
         self.result.take(line)
-        if isinstance(line, TestStart):
-            self.until = time.monotonic() + self.task.deadlines.get(line.test, self.task.deadline)
-        elif isinstance(line, TestEnd):
+        if isinstance(line, TestEnd):
             self.until = time.monotonic() + self.task.startup
+        elif isinstance(line, TestStart) or self.task.is_trunk:
+            running = self.result.running or ""
+            self.until = time.monotonic() + self.task.deadlines.get(running, self.task.deadline)
+        return line
 
     def expire(self) -> None:
         """The wall clock ran out: end the process group."""
@@ -253,15 +316,15 @@ class _Worker:
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, signal.SIGKILL)
 
-    def finish(self, selector: selectors.BaseSelector) -> Result:
-        """Collect the rest of a process that has ended."""
+    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Line], Result]:
+        """Collect the rest of a process that has ended: its last lines, and what became of it."""
         self.result.exit_code = self._process.wait()
         self.kill()  # whatever it left behind
-        self.read()
+        lines = self.read()
         self.result.wall = time.monotonic() - self._started
         self.result.log = self._log.read_bytes()[-4000:].decode("utf-8", "replace")
         self.close(selector)
-        return self.result
+        return lines, self.result
 
     def close(self, selector: selectors.BaseSelector) -> None:
         for descriptor in (self.pipe, self._pidfd):

@@ -48,6 +48,7 @@ class Activation:
         operation: the operation it acts on.
         refusals: names of exceptions that are refusals.
         on_act: told when it changes something for the first time in a test.
+        on_call: told when a mutated call begins (True) and when it has returned or raised (False).
         evidence: what it did in the running test.
     """
 
@@ -55,6 +56,7 @@ class Activation:
     operation: Operation
     refusals: frozenset[str]
     on_act: Callable[[], None]
+    on_call: Callable[[bool], None]
     evidence: Evidence = field(default_factory=Evidence)
     _middleware: Middleware | None = None
 
@@ -89,7 +91,9 @@ class Activation:
             return door.result(call, reply, last), last
         except BaseException as error:
             self._note(passage)
-            if performer.raised is None and not isinstance(error, FatalFault):
+            if isinstance(error, FatalFault):
+                self.evidence.acted += 1
+            elif performer.raised is None:
                 # neither the robot nor the program: the operator or the vocabulary is at fault
                 self.evidence.failure = f"operator {self.mutant.operator}: {type(error).__name__}: {error}"
             raise
@@ -140,6 +144,9 @@ class _Performer:
     raised: BaseException | None = None
 
     async def proceed(self, call: Call) -> Reply:
+        mutated = self.passage.changed_command
+        if mutated:
+            self.activation.on_call(True)
         try:
             result = self.door.perform(call, self.passage.call)
             if self.awaits and inspect.isawaitable(result):
@@ -150,6 +157,9 @@ class _Performer:
             if isinstance(error, StopIteration):
                 raise Carried(error) from None
             raise
+        finally:
+            if mutated:
+                self.activation.on_call(False)
         return self.door.reply(call, result)
 
     def _judge(self, error: BaseException) -> None:

@@ -23,6 +23,8 @@ from .tokens import Tokens
 
 #: exit code of a branch whose test decides about its mutant: no other test needs to run
 DECIDED = 10
+#: exit code of a branch that could not report
+FAILED = 70
 #: exit code of a branch whose test leaves its mutant alive
 ALIVE = 0
 

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import ctypes
 import json
+import os
 import signal
 import time
 from collections.abc import Generator
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from mutabot.model import Job, SessionEnd, TestEnd, TestStart, from_data
+from mutabot.model import BranchEnd, Branching, Job, SessionEnd, TestEnd, TestStart, from_data
 
 from . import seeds
 from .activate import Evidence
+from .branch import ALIVE, DECIDED, FAILED, Trunk
 from .classify import Ending, classify
 from .limits import limit_memory
 from .locate import Locator
@@ -39,19 +42,33 @@ class Conductor:
         self._collected: tuple[str, ...] = ()
         self._errors: list[str] = []
         self._started = (0.0, 0.0)
+        self._pid = os.getpid()
+        self._shared: float | None = None
+        self._item: pytest.Item | None = None
 
     @classmethod
     def from_files(cls, job_file: str, descriptor: int) -> Conductor:
         """Read the job, set the limits of the process and put the interception in place."""
         die_with_parent()
+        home = os.path.dirname(job_file)
         with open(job_file, encoding="utf-8") as file:
             job = from_data(Job, json.load(file))
         if job.memory is not None:
             limit_memory(job.memory)
         seeds.seed_all(seeds.derive(job.seed, job.round, "session"))
-        conductor = cls(job, Pipe(descriptor))
+        lock = None
+        if job.branching is not None:
+            lock = os.open(os.path.join(home, "lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+        conductor = cls(job, Pipe(descriptor, lock))
         conductor.session.install()
+        if job.branching is not None:
+            conductor.grow(job.branching, os.path.join(home, "log.txt"))
         return conductor
+
+    def grow(self, branching: Branching, log_file: str) -> None:
+        """Be a trunk: fork a branch for every live mutant."""
+        log = os.stat(log_file)
+        self.session.trunk = Trunk(branching, self._pipe, (log.st_dev, log.st_ino), self._become_branch)
 
     def seed_of(self, name: str) -> int:
         """The seed of a test or shared fixture in this round."""
@@ -80,14 +97,20 @@ class Conductor:
         self._ending, self._outcome, self._probes = None, "passed", {}
         self._pipe.send(TestStart(item.nodeid))
         seeds.seed_all(self.seed_of(item.nodeid))
-        self._started = (time.perf_counter(), time.process_time())
+        self._item = item
+        self._start_clocks()
         self.session.start_test(item.nodeid)
-        result = yield
+        try:
+            result = yield
+        except BaseException as error:
+            self._leave_if_branch(error)
+            raise
+        self._leave_if_branch(None)
         end = self._test_end(item.nodeid)
         self.session.end_test()
         self._pipe.send(end)
-        if self.job.stop_at_kill and is_kill(end):
-            item.session.shouldstop = "the mutant is killed"
+        if self.job.stop_at_kill and end.is_decided:
+            item.session.shouldstop = "the mutant's verdict is known"
         return result
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -121,10 +144,47 @@ class Conductor:
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, exitstatus: int) -> None:
-        """Everything has run: check the vocabulary if asked to, and say goodbye."""
+        """Everything has run: check the vocabulary if asked to, wait for branches, and say goodbye."""
+        if self.session.trunk is not None:
+            self.session.trunk.finish()
         if self.job.inspect:
             self.session.inspect_targets()
         self._pipe.send(SessionEnd(int(exitstatus), self._collected, tuple(self._errors)))
+
+    def _start_clocks(self) -> None:
+        self._started = (time.perf_counter(), time.process_time())
+
+    def _become_branch(self) -> None:
+        """In a branch, right after the fork: it finishes its test and takes down nothing that is shared."""
+        die_with_parent()
+        if os.getppid() != self._pid:  # the trunk died before the kernel was asked
+            os._exit(FAILED)
+        self._start_clocks()
+        meter = self.session.meter
+        self._shared = meter.simulated if meter is not None else None
+        assert self._item is not None
+        keep_shared_fixtures(self._item)
+
+    def _leave_if_branch(self, error: BaseException | None) -> None:
+        """A branch has finished its test: report and go, without running anything of the trunk's."""
+        mutant = self.session.branch
+        if mutant is None:
+            return
+        code = FAILED
+        try:
+            if error is None:
+                code = self._report_branch(mutant)
+        finally:  # whatever happens, the trunk's code must not run on in this process
+            os._exit(code)
+
+    def _report_branch(self, mutant: str) -> int:
+        """Say how the test of this branch ended; returns the exit code that tells the trunk."""
+        end = self._test_end(self.session.test)
+        sites = self.session.recorder.sites_of_trace() if end.outcome == "passed" else ()
+        if end.outcome != "passed":
+            end = replace(end, trace=())  # only survivors are compared with the original
+        self._pipe.send(BranchEnd(mutant, end, sites, self._shared))
+        return DECIDED if end.is_decided else ALIVE
 
     @property
     def _evidence(self) -> Evidence:
@@ -163,11 +223,25 @@ class Conductor:
         )
 
 
-def is_kill(end: TestEnd) -> bool:
-    """Whether this test alone decides that the mutant is killed (or timed out)."""
-    if end.outcome != "failed" or end.failure is not None or end.invalid:
-        return False
-    return end.refused is None or end.caught
+class _Parent:
+    """Stands for a next test in the same place: nothing above the present test is taken down for it."""
+
+    def __init__(self, item: pytest.Item) -> None:
+        self._chain = item.listchain()[:-1]
+
+    def listchain(self) -> list[Any]:
+        return self._chain
+
+
+def keep_shared_fixtures(item: pytest.Item) -> None:
+    """Let the teardown of this test take down what is the test's own, and nothing that others share."""
+    state = item.session._setupstate
+    teardown = state.teardown_exact
+
+    def teardown_own(nextitem: pytest.Item | None) -> None:
+        teardown(_Parent(item))  # type: ignore[arg-type]  # only its chain is looked at
+
+    state.teardown_exact = teardown_own  # type: ignore[method-assign]  # in this process alone
 
 
 def die_with_parent() -> None:

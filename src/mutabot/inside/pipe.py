@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 from typing import Any
@@ -14,19 +15,36 @@ class Pipe:
 
     Every line is written whole and at once, so that a process that dies loses only what it had not
     said yet. When nobody listens any more the process has no purpose and ends.
+
+    Args:
+        descriptor: the writing end.
+        lock: descriptor of a file to lock while writing, where a trunk and its branches share the pipe.
     """
 
-    def __init__(self, descriptor: int) -> None:
+    def __init__(self, descriptor: int, lock: int | None = None) -> None:
         self.descriptor = descriptor
+        self._lock = lock
         os.set_inheritable(descriptor, False)
 
     def send(self, line: Line) -> None:
         """Write one line."""
         text = json.dumps(line_to_data(line), default=plain, separators=(",", ":"))
-        data = memoryview(text.encode() + b"\n")
+        # The line break before it ends what a process that was killed while writing left unfinished.
+        data = b"\n" + text.encode() + b"\n"
+        if self._lock is None:
+            self._write(data)
+            return
+        fcntl.lockf(self._lock, fcntl.LOCK_EX)
         try:
-            while data:
-                data = data[os.write(self.descriptor, data) :]
+            self._write(data)
+        finally:
+            fcntl.lockf(self._lock, fcntl.LOCK_UN)
+
+    def _write(self, data: bytes) -> None:
+        view = memoryview(data)
+        try:
+            while view:
+                view = view[os.write(self.descriptor, view) :]
         except BrokenPipeError:
             os._exit(70)
 

@@ -20,11 +20,13 @@ class Recorder:
         on_site: told about each site when it is first reached.
         trace: hits of the running test: site index, written values, read values, returned plain value.
         truncated: whether hits were left out of the trace.
+        sites: all sites reached so far, in the order of their indexes.
     """
 
     on_site: Callable[[SiteSeen], None]
     trace: list[tuple[Any, ...]] = field(default_factory=list)
     truncated: bool = False
+    sites: list[SiteSeen] = field(default_factory=list)
     _indexes: dict[tuple[Span, str, str | None], int] = field(default_factory=dict)
 
     def start(self) -> None:
@@ -50,8 +52,13 @@ class Recorder:
         index = self._indexes.get(key)
         if index is None:
             index = self._indexes[key] = len(self._indexes)
-            self.on_site(SiteSeen(index, span, operation, pattern, role is Role.ORACLE))
+            self.sites.append(SiteSeen(index, span, operation, pattern, role is Role.ORACLE))
+            self.on_site(self.sites[-1])
         self.trace.append((index, _frozen(written), _frozen(read), plain_result(returned)))
+
+    def sites_of_trace(self) -> tuple[SiteSeen, ...]:
+        """The sites that the running test's trace refers to."""
+        return tuple(self.sites[index] for index in sorted({hit[0] for hit in self.trace}))
 
 
 def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -13,9 +13,23 @@ from types import FrameType
 from typing import Any
 
 from mutabot.errors import PathError
-from mutabot.model import Acted, Budget, Call, Job, Operation, Problem, Reply, Role, Span
+from mutabot.model import (
+    Acted,
+    Budget,
+    Call,
+    Job,
+    Mutant,
+    MutatedCall,
+    Operation,
+    Problem,
+    Reply,
+    Role,
+    SiteSeen,
+    Span,
+)
 
 from .activate import Activation
+from .branch import Trunk
 from .door import Door
 from .intercept import Handler, Interception, NotFoundError, resolve
 from .limits import ClockReader, Meter
@@ -36,6 +50,8 @@ class Session:
         pipe: where reports go.
         locate: finds the site of a frame.
         recorder: traces; always kept, since survivors are compared with the original.
+        trunk: set while this process runs the original and forks a branch per mutant.
+        branch: id of the mutant that this process was forked to be; None in all others.
         activation: the mutant, or None for the original.
         meter: what the running test has used; None between tests.
         test: node id of the running test.
@@ -46,6 +62,8 @@ class Session:
     locate: Callable[[FrameType | None], tuple[Span, Role] | None]
     recorder: Recorder = field(init=False)
     interception: Interception = field(init=False)
+    trunk: Trunk | None = None
+    branch: str | None = None
     activation: Activation | None = None
     meter: Meter | None = None
     test: str = ""
@@ -53,7 +71,7 @@ class Session:
     _told: set[tuple[str, str]] = field(default_factory=set)
 
     def __post_init__(self) -> None:
-        self.recorder = Recorder(self.pipe.send)
+        self.recorder = Recorder(self._site_seen)
         self.interception = Interception(self._target_is_wrong)
 
     def install(self) -> None:
@@ -69,16 +87,14 @@ class Session:
                 vocabulary.clock.tick, self._clock_handler(ClockReader.of(vocabulary.clock))
             )
         if self.job.mutant is not None:
-            self.activate()
+            self.activate(self.job.mutant)
 
-    def activate(self) -> None:
-        """Take on the job's mutant."""
-        mutant = self.job.mutant
-        assert mutant is not None
+    def activate(self, mutant: Mutant) -> None:
+        """Take on a mutant."""
         operation = self.job.vocabulary.operation(mutant.operation)
         assert operation is not None
         refusals = frozenset((*operation.refusals, *self.job.vocabulary.refusals))
-        self.activation = Activation(mutant, operation, refusals, self._acted)
+        self.activation = Activation(mutant, operation, refusals, self._acted, self._in_mutated_call)
 
     def start_test(self, test: str) -> None:
         """A test begins, before its fixtures."""
@@ -87,9 +103,13 @@ class Session:
         self.recorder.start()
         for door in self._doors:
             door.reset()
+        if self.trunk is not None:
+            self.trunk.start_test(test)
         if self.activation is not None:
-            mutant = self.activation.mutant
-            self.activation.start(derive(self.job.seed, self.job.round, test, mutant.id))
+            self._start_activation(self.activation)
+
+    def _start_activation(self, activation: Activation) -> None:
+        activation.start(derive(self.job.seed, self.job.round, self.test, activation.mutant.id))
 
     def end_test(self) -> None:
         """The test and its fixtures are over."""
@@ -209,10 +229,26 @@ class Session:
             self._record(located, call, reply)
 
     def _mutant_for(self, span: Span, call: Call) -> Activation | None:
+        if self.trunk is not None:
+            self._let_branch(self.trunk, span, call)
         activation = self.activation
         if activation is None or not activation.is_here(span, call.operation.target):
             return None
         return activation if activation.fits(call) else None
+
+    def _site_seen(self, site: SiteSeen) -> None:
+        if self.branch is None:  # a branch sends its sites with its end
+            self.pipe.send(site)
+
+    def _let_branch(self, trunk: Trunk, span: Span, call: Call) -> None:
+        """Fork for the mutants of this call; a branch goes on from here as its mutant."""
+        pattern = call.pattern.text if call.pattern is not None else None
+        mutant = trunk.branch(span, call.operation.target, pattern)
+        if mutant is not None:
+            self.trunk, self.branch = None, mutant.id
+            self.activate(mutant)
+            assert self.activation is not None
+            self._start_activation(self.activation)
 
     def _record(self, located: tuple[Span, Role], call: Call, reply: Reply | None) -> None:
         span, role = located
@@ -237,7 +273,10 @@ class Session:
         return handle
 
     def _acted(self) -> None:
-        self.pipe.send(Acted(self.test))
+        self.pipe.send(Acted(self.test, self.branch))
+
+    def _in_mutated_call(self, began: bool) -> None:
+        self.pipe.send(MutatedCall(self.test, began, self.branch))
 
     def _target_is_wrong(self, target: str, error: Exception) -> None:
         known = error.known if isinstance(error, NotFoundError) else ()

@@ -234,6 +234,13 @@ class TestEnd:
     truncated: bool = False
     probes: Mapping[str, Any] = field(default_factory=dict)
 
+    @property
+    def is_decided(self) -> bool:
+        """Whether this test alone decides about its mutant, so that no other test needs to run."""
+        if self.failure is not None or self.invalid or self.timeout is not None:
+            return True
+        return self.outcome == "failed" and (self.refused is None or self.caught)
+
 
 @dataclass(frozen=True, slots=True)
 class Problem:

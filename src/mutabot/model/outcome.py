@@ -28,6 +28,7 @@ class Outcome:
         wall: seconds from the start of the process to its end.
         cpu: processor seconds of the tests.
         simulated: simulated seconds of the tests, or None without a clock.
+        shared: how many of these were inherited from the original's run; None if none could be.
         indistinguishable: whether trace and probes equal the original's; None if that was not compared
             (only survivors are).
         distance: greatest difference of a probe from the original's, in multiples of its tolerance;
@@ -51,6 +52,7 @@ class Outcome:
     wall: float = 0.0
     cpu: float = 0.0
     simulated: float | None = None
+    shared: float | None = None
     indistinguishable: bool | None = None
     distance: float | None = None
     divergence: tuple[str, ...] = ()

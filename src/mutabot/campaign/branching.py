@@ -1,0 +1,251 @@
+"""The branch engine, seen from the controller: one trunk per round, and what its branches report.
+
+A branch's report counts only once the trunk itself has passed the same test as in the baseline: the trunk is
+the second run of the original. What could not be branched, or got lost with a trunk, is left to replay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from mutabot.model import (
+    Acted,
+    BranchDied,
+    BranchEnd,
+    Branching,
+    Mutant,
+    MutatedCall,
+    Outcome,
+    SiteSeen,
+    TestEnd,
+    Unbranched,
+)
+from mutabot.model.job import Line
+
+from .baseline import Baseline, Place, death, observation, place_of
+from .comparison import Observation, compare
+from .judge import Death, Run, judge
+from .replay import Pair, wall_limit, without_tests
+from .request import Request
+from .sites import Sources
+from .workers import Result, Task, Workers
+
+#: seconds without any word from a trunk, beyond what its tests and branches may take
+_PATIENCE = 60.0
+
+
+@dataclass(slots=True)
+class Remainder:
+    """What the branch engine leaves to replay.
+
+    Attributes:
+        pairs: mutants and rounds.
+        reasons: test to why it was not safe to fork in it.
+        notes: what else went wrong, in words.
+    """
+
+    pairs: list[Pair] = field(default_factory=list)
+    reasons: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+
+def branch(
+    request: Request,
+    baseline: Baseline,
+    workers: Workers,
+    pairs: Iterable[Pair],
+    remainder: Remainder,
+    *,
+    only: Mapping[str, tuple[str, ...]] | None = None,
+) -> Iterator[Outcome]:
+    """Outcomes of mutants in rounds, as they come; ``remainder`` is filled with what is left to replay.
+
+    ``only`` names the tests that judge certain mutants, by id; all others are judged by every test that
+    reaches them.
+    """
+    trunks: dict[int, _Trunk] = {}
+    for mutant, round in pairs:
+        place = Place(mutant.site, mutant.operation, mutant.pattern)
+        tests = (only or {}).get(mutant.id) or baseline.selection(round, place)
+        if not tests:
+            yield without_tests(baseline, mutant, round)
+            continue
+        if round not in trunks:
+            trunks[round] = _Trunk(request, baseline, round)
+        trunks[round].add(mutant, tests)
+    tasks = (trunk.task(workers.pool.descriptors) for trunk in trunks.values())
+    for event in workers.events(tasks):
+        if isinstance(event, Result):
+            yield from trunks[event.task.job.round].finish(event, remainder)
+        else:
+            task, line = event
+            yield from trunks[task.job.round].take(line, remainder)
+
+
+@dataclass(slots=True)
+class _Branches:
+    """What is known of one mutant so far.
+
+    Attributes:
+        mutant: the mutant.
+        tests: the tests that judge it, in order.
+        ends, observations: its tests that have ended.
+        death: set if one of its branches died.
+        acted, in_mutated_call: what its last branch said.
+        shared: simulated seconds its branches inherited.
+    """
+
+    mutant: Mutant
+    tests: tuple[str, ...]
+    ends: dict[str, TestEnd] = field(default_factory=dict)
+    observations: dict[str, Observation] = field(default_factory=dict)
+    death: Death | None = None
+    acted: bool = False
+    in_mutated_call: bool = False
+    shared: float | None = None
+
+    def take(self, line: BranchEnd) -> None:
+        self.ends[line.end.test] = line.end
+        self.acted = self.in_mutated_call = False
+        if line.shared is not None:
+            self.shared = (self.shared or 0.0) + line.shared
+
+
+class _Trunk:
+    """The trunk of one round and its branches."""
+
+    def __init__(self, request: Request, baseline: Baseline, round: int) -> None:
+        self._request, self._baseline, self._round = request, baseline, round
+        self._sources = Sources(request.root)
+        self._open: dict[str, _Branches] = {}
+        self._needed: set[str] = set()
+        self._passed: set[str] = set()
+        self._failed: set[str] = set()
+        self._waiting: dict[str, set[str]] = {}
+        self._trunk_sites: dict[int, SiteSeen] = {}
+
+    def add(self, mutant: Mutant, tests: tuple[str, ...]) -> None:
+        """A mutant to branch in these tests."""
+        self._open[mutant.id] = _Branches(mutant, tests)
+        self._needed.update(tests)
+
+    def task(self, tokens: tuple[int, int]) -> Task:
+        """The task that runs the trunk."""
+        request, baseline, round = self._request, self._baseline, self._round
+        in_order = tuple(test for test in baseline.by_cost(round) if test in self._needed)
+        walls = {test: wall_limit(request, baseline, round, test) for test in in_order}
+        longest = max(walls.values(), default=0.0)
+        branching = Branching(
+            mutants=tuple(branches.mutant for branches in self._open.values()),
+            tests={mutant: branches.tests for mutant, branches in self._open.items()},
+            tokens=tokens,
+            walls=walls,
+            wall=longest,
+        )
+        factor = request.configuration.timeout_factor
+        budgets = {test: baseline.budget(round, test, factor) for test in in_order}
+        job = request.job(round, tests=in_order, record=True, budgets=budgets, branching=branching)
+        patience = 2.0 * longest + _PATIENCE
+        return Task(round, job, {}, patience, patience, is_trunk=True)
+
+    def take(self, line: Line, remainder: Remainder) -> Iterator[Outcome]:
+        """Sort in a report line; yields the outcomes that it settles."""
+        match line:
+            case BranchEnd() if line.mutant in self._open:
+                yield from self._branch_ended(line)
+            case BranchDied() if line.mutant in self._open:
+                yield from self._branch_died(line)
+            case Acted() | MutatedCall():
+                self._note(line)
+            case Unbranched():
+                remainder.reasons.setdefault(line.test, line.reason)
+            case SiteSeen():
+                self._trunk_sites[line.index] = line
+            case TestEnd():
+                yield from self._test_ended(line)
+
+    def finish(self, result: Result, remainder: Remainder) -> Iterator[Outcome]:
+        """The trunk is gone: settle what can be settled, and leave the rest to replay."""
+        if result.end is None:
+            remainder.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}")
+        for mutant in list(self._open):
+            yield from self._settle(mutant)
+        remainder.pairs.extend((branches.mutant, self._round) for branches in self._open.values())
+
+    def _branch_ended(self, line: BranchEnd) -> Iterator[Outcome]:
+        branches = self._open[line.mutant]
+        branches.take(line)
+        if line.end.outcome == "passed":
+            places = {seen.index: place_of(seen, self._sources) for seen in line.sites}
+            branches.observations[line.end.test] = observation(line.end, places)
+        yield from self._settle(line.mutant)
+
+    def _branch_died(self, line: BranchDied) -> Iterator[Outcome]:
+        branches = self._open[line.mutant]
+        code = line.exit_code
+        how = f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
+        branches.death = Death(
+            text=f"{line.overdue or how} during {line.test}",
+            test=line.test,
+            signal=-code if code < 0 and line.overdue is None else None,
+            overdue=line.overdue is not None,
+            acted=branches.acted,
+            in_mutated_call=branches.in_mutated_call,
+        )
+        yield from self._settle(line.mutant)
+
+    def _note(self, line: Acted | MutatedCall) -> None:
+        branches = self._open.get(line.mutant or "")
+        if branches is None:
+            return
+        if isinstance(line, Acted):
+            branches.acted = True
+        else:
+            branches.in_mutated_call = line.began
+
+    def _test_ended(self, end: TestEnd) -> Iterator[Outcome]:
+        """The trunk has run a test: the second opinion on the original."""
+        if end.outcome == "passed":
+            self._passed.add(end.test)
+            self._compare_with_baseline(end)
+        else:
+            self._failed.add(end.test)
+            reason = f"passed in the baseline and {end.outcome} in an equal run"
+            self._baseline.set_aside(self._round, end.test, reason)
+        for mutant in self._waiting.pop(end.test, set()):
+            if mutant in self._open:
+                yield from self._settle(mutant)
+
+    def _compare_with_baseline(self, end: TestEnd) -> None:
+        key = (self._round, end.test)
+        places = {index: place_of(seen, self._sources) for index, seen in self._trunk_sites.items()}
+        found = observation(end, places)
+        probes = self._request.vocabulary.probes
+        if not compare(self._baseline.observations[key], found, probes).indistinguishable:
+            self._baseline.restless.add(key)
+
+    def _settle(self, mutant: str) -> Iterator[Outcome]:
+        """Yield the mutant's outcome if all that it depends on is known."""
+        branches = self._open[mutant]
+        run = Run(branches.mutant, self._round, branches.tests, engine="branch", shared=branches.shared)
+        tests = [test for test in branches.tests if test not in self._failed]
+        for test in tests:
+            dead = branches.death is not None and branches.death.test == test
+            if test not in branches.ends and not dead:
+                return
+            if test not in self._passed:
+                self._waiting.setdefault(test, set()).add(mutant)
+                return
+            if dead:
+                run.death = branches.death
+                break
+            run.ends.append(branches.ends[test])
+            if branches.ends[test].is_decided:
+                break
+        if not tests:
+            return  # no test is left that can be relied on: replay says so
+        run.observations = {test: seen for test, seen in branches.observations.items() if test in tests}
+        run.wall = sum(end.wall for end in run.ends)
+        del self._open[mutant]
+        yield judge(run, self._request, self._baseline)

@@ -1,0 +1,152 @@
+"""The engines put to work: branch where it is safe to fork, replay where it is not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from mutabot.model import Mutant, Outcome, Verdict
+
+from .baseline import REPETITIONS, Baseline
+from .branching import Remainder, branch
+from .controls import Control, controls_in_branches, run_controls
+from .journal import ControlEnd, Journal
+from .replay import Pair, replay
+from .request import Progress, Request
+from .workers import Workers
+
+
+def engine_of(request: Request) -> str:
+    """The engine that ``auto`` means: branch."""
+    return "replay" if request.engine == "replay" else "branch"
+
+
+def repetitions_for(request: Request) -> int:
+    """How often the baseline runs each round; the trunks of the branch engine are its second run."""
+    return REPETITIONS if engine_of(request) == "replay" else REPETITIONS - 1
+
+
+def run_mutants(
+    request: Request,
+    baseline: Baseline,
+    workers: Workers,
+    progress: Progress,
+    mutants: Sequence[Mutant],
+    journal: Journal,
+) -> None:
+    """Run controls and mutants in all rounds; every outcome is in the journal as soon as it is known.
+
+    Raises ControlError for a control that ends wrongly.
+    """
+    pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
+    report = _Report(progress, journal, {mutant.id: mutant.number for mutant in mutants})
+    if engine_of(request) == "branch":
+        pairs = _branched(request, baseline, workers, report, pairs)
+    if not pairs:
+        return
+    needed = list({mutant.id: mutant for mutant, _ in pairs}.values())
+    for end in run_controls(request, baseline, workers, progress, needed):
+        report.control(end)
+    progress.stage("mutants" if engine_of(request) == "replay" else "mutants by replay", len(pairs))
+    for outcome in replay(request, baseline, workers, pairs):
+        report.outcome(outcome)
+
+
+def try_controls(
+    request: Request, baseline: Baseline, workers: Workers, progress: Progress, mutants: Sequence[Mutant]
+) -> tuple[int, Remainder]:
+    """Run the controls alone: how many ended as they must, and in which tests it is not safe to fork.
+
+    Raises ControlError for a control that ends wrongly.
+    """
+    remainder = Remainder()
+    ended = 0
+    if engine_of(request) == "branch":
+        controls = controls_in_branches(baseline, mutants)
+        progress.stage("controls", len(controls))
+        ended = sum(1 for _ in _controls(request, baseline, workers, controls, remainder, progress))
+    if engine_of(request) == "replay" or remainder.pairs:
+        ended += sum(1 for _ in run_controls(request, baseline, workers, progress, mutants))
+    return ended, remainder
+
+
+class _Report:
+    """Outcomes and controls on their way to the journal and the screen."""
+
+    def __init__(self, progress: Progress, journal: Journal, numbers: dict[str, int]) -> None:
+        self.progress, self._journal, self._numbers = progress, journal, numbers
+
+    def outcome(self, outcome: Outcome) -> None:
+        self._journal.add_outcome(outcome)
+        by = f" by {outcome.by}" if outcome.by is not None else ""
+        number = self._numbers[outcome.mutant]
+        self.progress.advance(f"#{number} round {outcome.round + 1}: {outcome.verdict}{by}")
+
+    def control(self, end: ControlEnd) -> None:
+        self._journal.add_control(end.test_file, end.control, end.ok, end.detail)
+
+
+def _branched(
+    request: Request, baseline: Baseline, workers: Workers, report: _Report, pairs: list[Pair]
+) -> list[Pair]:
+    """Run by branching what can be; returns what is left to replay."""
+    controls = controls_in_branches(baseline, [mutant for mutant, _ in pairs])
+    by_id = {control.mutant.id: control for control in controls}
+    only = {mutant: control.tests for mutant, control in by_id.items()}
+    first = [(control.mutant, control.round) for control in controls]
+    remainder = Remainder()
+    report.progress.stage("mutants", len(pairs))
+    for outcome in branch(request, baseline, workers, [*first, *pairs], remainder, only=only):
+        if outcome.mutant in by_id:
+            report.control(_checked(by_id[outcome.mutant], outcome, report))
+        else:
+            report.outcome(outcome)
+    _note(report.progress, remainder)
+    rest = [(mutant, round) for mutant, round in remainder.pairs if mutant.id not in by_id]
+    if request.engine == "branch":
+        for outcome in _refused(rest, remainder):
+            report.outcome(outcome)
+        return []
+    return rest
+
+
+def _checked(control: Control, outcome: Outcome, report: _Report) -> ControlEnd:
+    end = control.end(outcome)
+    if not end.ok:
+        report.control(end)
+        raise control.error(end.detail)
+    return end
+
+
+def _controls(
+    request: Request,
+    baseline: Baseline,
+    workers: Workers,
+    controls: list[Control],
+    remainder: Remainder,
+    progress: Progress,
+) -> Iterator[ControlEnd]:
+    by_id = {control.mutant.id: control for control in controls}
+    only = {mutant: control.tests for mutant, control in by_id.items()}
+    pairs = [(control.mutant, control.round) for control in controls]
+    for outcome in branch(request, baseline, workers, pairs, remainder, only=only):
+        control = by_id[outcome.mutant]
+        end = control.end(outcome)
+        progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
+        if not end.ok:
+            raise control.error(end.detail)
+        yield end
+
+
+def _note(progress: Progress, remainder: Remainder) -> None:
+    for test, reason in remainder.reasons.items():
+        progress.note(f"not safe to fork in {test}: {reason}; its mutants run in processes of their own")
+    for note in remainder.notes:
+        progress.note(note)
+
+
+def _refused(pairs: Iterable[Pair], remainder: Remainder) -> Iterator[Outcome]:
+    """With ``--engine branch`` nothing is replayed: what could not be branched is an error."""
+    reasons = "; ".join(dict.fromkeys([*remainder.reasons.values(), *remainder.notes]))
+    for mutant, round in pairs:
+        text = f"it could not be branched: {reasons or 'its branch gave no answer'}"
+        yield Outcome(mutant.id, round, Verdict.ERROR, message=text, engine="branch")

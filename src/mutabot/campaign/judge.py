@@ -1,0 +1,148 @@
+"""The verdict: the one named end of a mutant in a round, from what was seen of it by either engine."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from mutabot.model import By, Mutant, Outcome, TestEnd, Verdict
+
+from .baseline import Baseline
+from .comparison import Observation, compare, farthest
+from .request import Request
+
+#: signals by which a program dies of its own fault; others come from outside
+_OWN_FAULT = {signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL}
+
+Ruling = tuple[Verdict, TestEnd | None, str | None]
+
+
+@dataclass(slots=True)
+class Death:
+    """How a process ended that did not run its tests to their end.
+
+    Attributes:
+        text: in words.
+        test: the test it was in, or None.
+        signal: the signal that killed it, or None.
+        overdue: whether its wall-clock time was up.
+        acted: whether its mutant had changed anything by then.
+        in_mutated_call: whether it was in the midst of a mutated call.
+    """
+
+    text: str
+    test: str | None = None
+    signal: int | None = None
+    overdue: bool = False
+    acted: bool = False
+    in_mutated_call: bool = False
+
+
+@dataclass(slots=True)
+class Run:
+    """What was seen of a mutant in a round.
+
+    Attributes:
+        mutant, round: which.
+        tests: the tests that judge it, in order.
+        ends: how they ended, in this order, up to the one that decided.
+        observations: what is compared of each test that passed.
+        death: set if a process did not live to the end of its tests.
+        wall: seconds spent on it.
+        shared: simulated seconds that it did not have to spend, since the original had.
+        engine: ``replay`` or ``branch``.
+    """
+
+    mutant: Mutant
+    round: int
+    tests: tuple[str, ...]
+    ends: list[TestEnd] = field(default_factory=list)
+    observations: Mapping[str, Observation] = field(default_factory=dict)
+    death: Death | None = None
+    wall: float = 0.0
+    shared: float | None = None
+    engine: str = "replay"
+
+
+def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
+    """The outcome of a run."""
+    verdict, end, message = _ruling(run)
+    simulated = [end.simulated for end in run.ends if end.simulated is not None]
+    by = end.by if end is not None else By.EXCEPTION
+    outcome = Outcome(
+        mutant=run.mutant.id,
+        round=run.round,
+        verdict=verdict,
+        by=by if verdict is Verdict.KILLED else None,
+        test=end.test if end is not None else run.death.test if run.death is not None else None,
+        exception=end.exception if end is not None else None,
+        message=message,
+        place=end.place if end is not None else None,
+        hits=sum(end.hits for end in run.ends),
+        acted=sum(end.acted for end in run.ends),
+        example=next((end.example for end in run.ends if end.example is not None), None),
+        tests=len(run.ends),
+        wall=run.wall,
+        cpu=sum(end.cpu for end in run.ends),
+        simulated=sum(simulated) if simulated else None,
+        shared=run.shared,
+        engine=run.engine,
+    )
+    return _compared(outcome, run, request, baseline) if verdict is Verdict.SURVIVED else outcome
+
+
+def _ruling(run: Run) -> Ruling:
+    """Verdict, the test that decided it, and the reason in words."""
+    acted = False
+    refused: TestEnd | None = None
+    for end in run.ends:
+        acted = acted or end.acted > 0
+        if end.failure is not None:
+            return Verdict.ERROR, end, end.failure
+        if end.invalid:
+            return Verdict.INVALID, end, end.message
+        if end.timeout is not None:
+            return (Verdict.TIMEOUT if acted else Verdict.UNSTABLE), end, end.timeout
+        if end.refused is not None and not end.caught:
+            refused = refused or end
+        elif end.outcome == "failed":
+            if acted:
+                return Verdict.KILLED, end, end.message
+            return Verdict.UNSTABLE, end, f"failed before the mutant changed anything: {end.message}"
+    if run.death is not None:
+        return _ruling_on_death(run.death, acted)
+    if refused is not None:
+        return Verdict.REFUSED, refused, refused.refused
+    return _ruling_on_survivor(run, acted)
+
+
+def _ruling_on_death(death: Death, acted: bool) -> Ruling:
+    if death.overdue and (acted or death.acted):
+        return Verdict.TIMEOUT, None, death.text
+    if death.in_mutated_call and death.signal in _OWN_FAULT:
+        return Verdict.KILLED, None, f"the mutated call crashed: {death.text}"
+    return Verdict.ERROR, None, death.text
+
+
+def _ruling_on_survivor(run: Run, acted: bool) -> Ruling:
+    if acted:
+        return Verdict.SURVIVED, None, None
+    if any(end.hits for end in run.ends):
+        return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
+    return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"
+
+
+def _compared(outcome: Outcome, run: Run, request: Request, baseline: Baseline) -> Outcome:
+    """The outcome of a survivor with how far its world is from the original's."""
+    comparisons = []
+    for test, found in run.observations.items():
+        key = (run.round, test)
+        if key in baseline.restless:
+            return outcome
+        if key in baseline.observations:
+            comparisons.append(compare(baseline.observations[key], found, request.vocabulary.probes))
+    worst = farthest(comparisons)
+    # Without a probe, equal traces say only that the program did the same, not that the world ended so.
+    equal = worst.indistinguishable if worst.distance is not None or worst.divergence else None
+    return replace(outcome, indistinguishable=equal, distance=worst.distance, divergence=worst.divergence)
