@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from monitors import watch_box, watch_fingers, watch_tilt
+from monitors import watch_box, watch_gripper, watch_tilt
 
 from mutabot.cells import Box, Cell, Scene
 from mutabot.cells.fixtures import *  # noqa: F403  (new_cell; fails a test whose condition broke in silence)
@@ -17,7 +17,7 @@ def cell_with(new_cell: Callable[..., Cell], mutabot_seed: int) -> Callable[...,
 
     def make(*boxes: Box, slips: bool = False, gets_lost: bool = False) -> Cell:
         cell = new_cell(mutabot_seed, scene=Scene(boxes=boxes))
-        watch_fingers(cell)
+        watch_gripper(cell)
         if boxes and not gets_lost:
             watch_box(cell)
         if boxes and not gets_lost and not slips:

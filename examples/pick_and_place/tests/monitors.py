@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
-from mutabot.cells import Cell
+from mutabot.cells import Cell, Position
 
 CONVEYOR_TOP, CONVEYOR_EDGE = 1.0, 0.1
 """Height of the conveyor, and the x at which it begins."""
@@ -18,8 +19,11 @@ FINGER_CLEARANCE = 0.005
 """No nearer to conveyor and table; the program means to keep 0.009."""
 SINKING = 0.002
 """What lies or lands on a surface sinks in a little: contacts are soft. 0.001 is usual."""
-OPEN = 0.052
-"""Fingers further apart than this do not touch a box of 0.05."""
+LOOSE, OPEN = 0.052, 0.08
+"""Fingers further apart than this do not hold a box of 0.05; and are as good as open."""
+NEAR, STANDING = 0.1, 0.05
+"""Nearer to a surface than this the arm stands still, below this speed, while the fingers open or close. (A finger
+that meets the box makes the arm twitch at 0.01.)"""
 LOW = 0.005
 """A box may fall this deep when it is let go: the program means 0.0015; the noise of its camera is 0.0005."""
 LARGEST_TILT = 3.0
@@ -29,16 +33,23 @@ CARRYING_HEIGHT, PUSHING_SPEED = 0.1, 0.15
 and a little more at the moment they touch it."""
 
 
-def watch_fingers(cell: Cell) -> None:
-    """For every test case: no finger touches what the box lies on."""
-    cell.always(lambda: _fingers_are_clear(cell), "the fingers keep clear of conveyor and table")
+def watch_gripper(cell: Cell) -> None:
+    """For every test case: no finger touches what the box lies on, and the arm waits for the fingers."""
+    motion = Motion(cell, lambda: cell.truth.tool_pose().position)
+    cell.always(lambda: clearance(cell) > FINGER_CLEARANCE, "the fingers keep clear of conveyor and table")
+    cell.always(
+        lambda: (
+            motion.speed() < STANDING or clearance(cell) > NEAR or not LOOSE < cell.truth.opening() < OPEN
+        ),
+        "the arm waits for the fingers",
+    )
 
 
 def watch_box(cell: Cell) -> None:
     """For test cases in which no box gets lost: it is gripped, lifted, carried and set down gently."""
-    motion = Motion(cell)
+    motion = Motion(cell, cell.truth.box_position)
     cell.always(lambda: height(cell) > -SINKING, "the box is not pressed into conveyor or table")
-    cell.always(lambda: cell.truth.opening() < OPEN or height(cell) < LOW, "the box is never dropped")
+    cell.always(lambda: cell.truth.opening() < LOOSE or height(cell) < LOW, "the box is never dropped")
     cell.always(lambda: motion.sideways() < PUSHING_SPEED or height(cell) > CARRYING_HEIGHT, "carried high")
 
 
@@ -53,28 +64,38 @@ def height(cell: Cell) -> float:
     return box.z - _top(box.x)
 
 
+def clearance(cell: Cell) -> float:
+    """Of the fingers above conveyor, table or floor, when they point down."""
+    tool = cell.truth.tool_pose()
+    return tool.z + BASE_HEIGHT - FINGERS - _top(tool.x)
+
+
 def _top(x: float) -> float:
     if x > CONVEYOR_EDGE:
         return CONVEYOR_TOP
     return TABLE_TOP if x < TABLE_EDGE else 0.0
 
 
-def _fingers_are_clear(cell: Cell) -> bool:
-    tool = cell.truth.tool_pose()
-    return tool.z + BASE_HEIGHT - FINGERS > _top(tool.x) + FINGER_CLEARANCE
-
-
 class Motion:
-    """The box's speed, measured from tick to tick."""
+    """A speed, measured from tick to tick; 0 if no time has passed since it was last asked for."""
 
-    def __init__(self, cell: Cell) -> None:
+    def __init__(self, cell: Cell, position: Callable[[], Position]) -> None:
         self._cell = cell
-        self._time = cell.time
-        self._position = cell.truth.box_position()
+        self._position = position
+        self._time, self._place = cell.time, position()
+
+    def speed(self) -> float:
+        """In all directions."""
+        return math.hypot(*self._velocity())
 
     def sideways(self) -> float:
-        """Horizontal speed since the last call; 0 if no time has passed."""
-        before, self._position = self._position, self._cell.truth.box_position()
+        """In the horizontal directions."""
+        return math.hypot(*self._velocity()[:2])
+
+    def _velocity(self) -> tuple[float, float, float]:
+        before, self._place = self._place, self._position()
         passed, self._time = self._cell.time - self._time, self._cell.time
-        way = math.hypot(self._position.x - before.x, self._position.y - before.y)
-        return way / passed if passed > 0 else 0.0
+        if passed <= 0:
+            return (0.0, 0.0, 0.0)
+        now = self._place
+        return ((now.x - before.x) / passed, (now.y - before.y) / passed, (now.z - before.z) / passed)

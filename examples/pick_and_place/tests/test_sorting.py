@@ -31,20 +31,23 @@ RESTING_WITHIN = 0.0025
 """Of a box's height: five times the camera's noise."""
 FULLY_OPEN = 0.085
 OPEN_WITHIN = 0.001
+CYCLE_TIME = {"red": 13.1, "blue": 12.7}
+"""From home to home, s: what the program needs at most, rounded up; it varies with the box's place, by 0.1 s."""
+ANOTHER_START, ANOTHER_GRIP = 0.1, 3.5
+"""What it costs if the robot was left elsewhere, and if the box slips, s; rounded up as well."""
+BUMP = 0.006
+"""How far the box moves in the fingers of the robot that is bumped into, m."""
 
 
-@pytest.mark.parametrize(("colour", "cycle_time"), [("red", 13.3), ("blue", 12.9)])
-def test_a_box_is_set_down_at_the_place_of_its_colour(
-    cell_with: CellWith, colour: str, cycle_time: float
-) -> None:
-    """The line's cycle time is what the program needs, and 0.3 s."""
+@pytest.mark.parametrize("colour", ["red", "blue"])
+def test_a_box_is_set_down_at_the_place_of_its_colour(cell_with: CellWith, colour: str) -> None:
     cell = cell_with(Box(colour=colour))
     check_at_home(cell)
     check_found(cell, *ON_CONVEYOR)
 
     assert sorting.run(cell) == Report(Outcome.PLACED, colour, grips=1)
 
-    assert cell.time <= cycle_time
+    assert cell.time < CYCLE_TIME[colour]
     check_placed(cell, colour)
     check_at_home(cell)
 
@@ -64,9 +67,11 @@ def test_a_box_is_found_wherever_it_lies_on_the_conveyor(cell_with: CellWith, dx
 def test_the_robot_may_have_been_left_anywhere_with_a_closed_gripper(cell_with: CellWith) -> None:
     cell = cell_with(Box(colour="blue"))
     leave_elsewhere(cell)
+    start = cell.time
 
     assert sorting.run(cell) == Report(Outcome.PLACED, "blue", grips=1)
 
+    assert cell.time - start < CYCLE_TIME["blue"] + ANOTHER_START
     check_placed(cell, "blue")
     check_at_home(cell)
 
@@ -103,6 +108,7 @@ def test_a_box_that_slips_is_gripped_again_and_firmer(cell_with: CellWith) -> No
 
     assert sorting.run(cell) == Report(Outcome.PLACED, "red", grips=2)
 
+    assert cell.time < CYCLE_TIME["red"] + ANOTHER_GRIP
     check_placed(cell, "red")
     check_at_home(cell)
 
@@ -113,6 +119,23 @@ def test_a_box_that_slips_twice_is_left_on_the_conveyor(cell_with: CellWith) -> 
     assert sorting.run(cell) == Report(Outcome.SLIPPED, "blue", grips=2)
 
     check_rests(cell, *ON_CONVEYOR, CONVEYOR_TOP)
+    check_at_home(cell)
+
+
+def test_a_box_that_is_bumped_in_the_fingers_is_still_set_down_in_its_place(cell_with: CellWith) -> None:
+    cell = cell_with(Box(colour="blue"))
+    box = cell.simulation.data.joint("box")
+
+    def bump() -> None:
+        if cell.truth.box_position().z > CONVEYOR_TOP + 0.1:
+            box.qpos[0] += BUMP
+            cell.simulation.after_tick.remove(bump)
+
+    cell.simulation.after_tick.append(bump)
+
+    assert sorting.run(cell) == Report(Outcome.PLACED, "blue", grips=1)
+
+    check_placed(cell, "blue")
     check_at_home(cell)
 
 
