@@ -22,8 +22,8 @@ SINKING = 0.002
 LOOSE, OPEN = 0.052, 0.08
 """Fingers further apart than this do not hold a box of 0.05; and are as good as open."""
 NEAR, STANDING = 0.1, 0.05
-"""Nearer to a surface than this the arm stands still, below this speed, while the fingers open or close. (A finger
-that meets the box makes the arm twitch at 0.01.)"""
+"""Nearer to a surface than this, the arm stands still while the fingers open or close: below this speed.
+(A finger that meets the box makes the arm twitch at 0.01.)"""
 LOW = 0.005
 """A box may fall this deep when it is let go: the program means 0.0015; the noise of its camera is 0.0005."""
 LARGEST_TILT = 3.0

@@ -32,7 +32,7 @@ RESTING_WITHIN = 0.0025
 FULLY_OPEN = 0.085
 OPEN_WITHIN = 0.001
 CYCLE_TIME = {"red": 13.1, "blue": 12.7}
-"""From home to home, s: what the program needs at most, rounded up; it varies with the box's place, by 0.1 s."""
+"""From home to home, s: what the program needs at most, rounded up. The box's place makes 0.1 s of it."""
 ANOTHER_START, ANOTHER_GRIP = 0.1, 3.5
 """What it costs if the robot was left elsewhere, and if the box slips, s; rounded up as well."""
 BUMP = 0.006
