@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from statistics import fmean
 
 from mutabot.model import By, Mutant, Outcome, Verdict
+
+from .statistics import Interval, crossed, wilson
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +30,7 @@ class Score:
     def of(cls, outcomes: Iterable[Outcome]) -> Score:
         """The score of these outcomes."""
         outcomes = list(outcomes)
-        checked = (one for one in outcomes if one.verdict is Verdict.KILLED and one.by is By.CHECK)
-        return cls(Counter(one.verdict for one in outcomes), sum(1 for _ in checked))
+        return cls(Counter(one.verdict for one in outcomes), sum(map(_is_found, outcomes)))
 
     @property
     def valid(self) -> int:
@@ -68,17 +69,28 @@ class RoundScores:
 
     Attributes:
         rounds: one score per round.
+        interval, check_interval: of the mean score and of the mean check score, over rounds and mutants; None
+            with fewer than two rounds or two mutants that were valid.
     """
 
     rounds: tuple[Score, ...]
+    interval: Interval | None = None
+    check_interval: Interval | None = None
 
     @classmethod
     def of(cls, outcomes: Iterable[Outcome], rounds: int) -> RoundScores:
         """The scores of these outcomes in rounds 0 … ``rounds`` − 1."""
         by_round: list[list[Outcome]] = [[] for _ in range(rounds)]
+        by_mutant: dict[str, list[Outcome | None]] = {}
         for outcome in outcomes:
             by_round[outcome.round].append(outcome)
-        return cls(tuple(Score.of(one) for one in by_round))
+            by_mutant.setdefault(outcome.mutant, [None] * rounds)[outcome.round] = outcome
+        rows = by_mutant.values()
+        return cls(
+            tuple(Score.of(one) for one in by_round),
+            crossed([[_share(one, _is_killed) for one in row] for row in rows]),
+            crossed([[_share(one, _is_found) for one in row] for row in rows]),
+        )
 
     @property
     def total(self) -> Score:
@@ -122,6 +134,11 @@ class KillRate:
         """Killed / valid, or None when it was valid in no round."""
         return self.killed / self.valid if self.valid else None
 
+    @property
+    def interval(self) -> Interval | None:
+        """Wilson's interval of the rate, over rounds; None with fewer than two."""
+        return wilson(self.killed, self.valid) if self.valid > 1 else None
+
 
 @dataclass(frozen=True, slots=True)
 class Group:
@@ -156,3 +173,17 @@ def groups_of(mutants: Sequence[Mutant], outcomes: Iterable[Outcome], rounds: in
 def _mean(scores: Sequence[float | None]) -> float | None:
     known = [score for score in scores if score is not None]
     return fmean(known) if known else None
+
+
+def _is_killed(outcome: Outcome) -> bool:
+    return outcome.verdict.is_killed
+
+
+def _is_found(outcome: Outcome) -> bool:
+    """Whether a check killed it."""
+    return outcome.verdict is Verdict.KILLED and outcome.by is By.CHECK
+
+
+def _share(outcome: Outcome | None, counts: Callable[[Outcome], bool]) -> float | None:
+    """A cell of the table that an interval is made from: 1, 0, or None outside the score."""
+    return float(counts(outcome)) if outcome is not None and outcome.verdict.is_valid else None

@@ -1,0 +1,188 @@
+"""Intervals: how far a kill rate or a score would move with other rounds and other mutants like these.
+
+``wilson`` is for one mutant: its rounds are independent draws. ``crossed`` is for a score: every cell of the
+table mutants × rounds shares its mutant with a row and its round with a column, so cells are not independent
+and a plain binomial interval would be far too narrow (rounds of one mutant mostly agree).
+
+Both are tested by simulation, see ``benchmarks/interval_coverage.py`` and docs/statistics.md.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from statistics import NormalDist, fmean
+
+LEVEL = 0.95
+#: weight of the one killed and the one surviving mutant that are imagined when the spread of mutants is
+#: estimated; without them, a single odd outcome among equal ones makes the interval far too narrow
+_IMAGINED = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A confidence interval of a share.
+
+    Attributes:
+        low, high: its ends, 0 … 1.
+        level: how often such an interval holds the true share.
+    """
+
+    low: float
+    high: float
+    level: float = LEVEL
+
+
+def wilson(killed: float, valid: float, level: float = LEVEL) -> Interval | None:
+    """Wilson's score interval of a share; None without observations.
+
+    For a mutant's kill rate k/n. Assumes that its rounds are drawn independently and alike, and speaks about
+    further rounds of this one mutant.
+    """
+    if valid <= 0:
+        return None
+    return _wilson(killed / valid, valid, NormalDist().inv_cdf(0.5 + level / 2), level)
+
+
+def crossed(table: Sequence[Sequence[float | None]], level: float = LEVEL) -> Interval | None:
+    """The interval of a score over rounds and mutants, both taken as random samples.
+
+    The score is the mean over rounds of killed / valid. The interval is Wilson's, with the number of
+    independent observations that gives the score's estimated variance, and Student's t in place of the normal
+    quantile. With M mutants, R rounds and the mean squares of a two-way analysis of variance, that variance is
+
+        V = MSm / MR + max(0, MSr − MSe) / MR
+
+    (mutants; rounds beyond what chance within cells explains). The degrees of freedom are Satterthwaite's,
+    with M − 1 for the first term and those of MSr / MR on R − 1 for the second: a round effect that is
+    estimated from five rounds is uncertain, and t says so. V is also what the two-way ("pigeonhole") bootstrap
+    over rounds and mutants estimates, without its upward bias and its noise. Cells without a valid outcome
+    (None) are left out; V is then that of the linearised score.
+
+    Assumes that mutants are exchangeable among themselves, and rounds likewise. Speaks about a long series of
+    rounds with mutants of which these are a sample.
+
+    Args:
+        table: one row per mutant with one cell per round: 1 for killed, 0 for not killed, None for not valid.
+        level: nominal coverage.
+
+    Returns:
+        The interval, or None with fewer than two rounds or two mutants: then nothing tells how they differ.
+    """
+    cells = _Cells.of(table)
+    if cells is None:
+        return None
+    mutants, of_mutants, of_rounds = cells.mutants, cells.variance_of_mutants(), cells.mean_square_of_rounds()
+    excess = max(0.0, of_rounds - cells.variance_of_cells())
+    variance = of_mutants + excess
+    spread = of_mutants**2 / (mutants - 1) + (of_rounds**2 / (len(cells.rounds) - 1) if excess else 0.0)
+    normal = NormalDist().inv_cdf(0.5 + level / 2)
+    student = student_quantile(0.5 + level / 2, max(1.0, variance**2 / spread))
+    independent = cells.smoothed * (1 - cells.smoothed) / variance * (normal / student) ** 2
+    return _wilson(cells.score, min(independent, cells.count), normal, level)
+
+
+@dataclass(frozen=True, slots=True)
+class _Cells:
+    """The valid cells of a table of mutants by rounds.
+
+    Attributes:
+        rows: one mapping from round to 0 … 1 per mutant.
+        rounds: share killed per round.
+        sizes: number of valid mutants per round.
+    """
+
+    rows: Sequence[Mapping[int, float]]
+    rounds: Mapping[int, float]
+    sizes: Mapping[int, int]
+
+    @classmethod
+    def of(cls, table: Sequence[Sequence[float | None]]) -> _Cells | None:
+        rows = [
+            {number: value for number, value in enumerate(row) if value is not None}
+            for row in table
+            if any(value is not None for value in row)
+        ]
+        columns: dict[int, list[float]] = {}
+        for row in rows:
+            for number, value in row.items():
+                columns.setdefault(number, []).append(value)
+        if len(rows) < 2 or len(columns) < 2:
+            return None
+        means = {number: fmean(values) for number, values in columns.items()}
+        return cls(rows, means, {number: len(values) for number, values in columns.items()})
+
+    @property
+    def mutants(self) -> int:
+        return len(self.rows)
+
+    @property
+    def count(self) -> int:
+        return sum(self.sizes.values())
+
+    @property
+    def score(self) -> float:
+        return fmean(self.rounds.values())
+
+    @property
+    def smoothed(self) -> float:
+        """The score with the imagined mutants."""
+        return (self.score * self.mutants + _IMAGINED) / (self.mutants + 2 * _IMAGINED)
+
+    def weight(self, number: int) -> float:
+        """What one cell of this round counts in the score."""
+        return 1.0 / (len(self.rounds) * self.sizes[number])
+
+    def influence(self, row: Mapping[int, float]) -> float:
+        """What a mutant adds to the score beyond an average one."""
+        return math.fsum(self.weight(number) * (value - self.rounds[number]) for number, value in row.items())
+
+    def variance_of_mutants(self) -> float:
+        """MSm / MR, with the imagined mutants: that of the score if only the mutants were drawn anew."""
+        mutants, smoothed = self.mutants, self.smoothed
+        squares = mutants**2 * math.fsum(self.influence(row) ** 2 for row in self.rows)
+        squares += mutants * (self.score - smoothed) ** 2
+        squares += _IMAGINED * (smoothed**2 + (1 - smoothed) ** 2)
+        size = mutants + 2 * _IMAGINED
+        return squares / (size * (size - 1))
+
+    def mean_square_of_rounds(self) -> float:
+        """MSr / MR: that of the score if only the rounds were drawn anew."""
+        rounds, score = len(self.rounds), self.score
+        return math.fsum((share - score) ** 2 for share in self.rounds.values()) / (rounds * (rounds - 1))
+
+    def variance_of_cells(self) -> float:
+        """MSe / MR: what chance within cells alone gives."""
+        free = self.count - self.mutants - len(self.rounds) + 1
+        if free <= 0:
+            return 0.0
+        squares = 0.0
+        for row in self.rows:
+            shift = self.influence(row) / math.fsum(self.weight(number) for number in row)
+            for number, value in row.items():
+                squares += (self.weight(number) * (value - self.rounds[number] - shift)) ** 2
+        return squares * self.count / free
+
+
+def student_quantile(probability: float, freedom: float) -> float:
+    """Quantile of Student's t by the expansion of Cornish and Fisher.
+
+    Within 0.1 % from 4 degrees of freedom on at 95 %, 1 % at 2, and 11 % too small at 1.
+    """
+    z = NormalDist().inv_cdf(probability)
+    square = z * z
+    terms = (
+        (square + 1) / 4,
+        ((5 * square + 16) * square + 3) / 96,
+        (((3 * square + 19) * square + 17) * square - 15) / 384,
+        ((((79 * square + 776) * square + 1482) * square - 1920) * square - 945) / 92160,
+    )
+    return z * (1 + sum(term / freedom**power for power, term in enumerate(terms, start=1)))
+
+
+def _wilson(share: float, size: float, z: float, level: float) -> Interval:
+    square = z * z
+    middle = (share + square / (2 * size)) / (1 + square / size)
+    half = z / (1 + square / size) * math.sqrt(share * (1 - share) / size + square / (4 * size * size))
+    return Interval(max(0.0, middle - half), min(1.0, middle + half), level)
