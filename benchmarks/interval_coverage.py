@@ -2,9 +2,9 @@
 
     python benchmarks/interval_coverage.py [--campaigns 2000] [--compare]
 
-Each row is a setting: how likely mutants are killed, how rounds differ, how many there are of both. Each campaign
-draws its mutants and its rounds anew; the true score is the mean over all mutants and rounds of that kind.
-``--compare`` adds the plain percentile bootstrap over rounds and mutants, for a quarter of the campaigns.
+Each row is a setting: how likely mutants are killed, how rounds differ, how many there are of both. Each
+campaign draws its mutants and its rounds anew; the true score is the mean over all mutants and rounds of that
+kind. ``--compare`` adds the plain percentile bootstrap over rounds and mutants, for fewer campaigns.
 
 With 2000 campaigns the measured coverage has a standard error of 0.5 percentage points.
 """
@@ -113,7 +113,7 @@ def coverage(
     missing: float = 0.0,
 ) -> tuple[float, float, float]:
     """Share of intervals that hold the true score, that lie above it, and their mean width."""
-    generator = np.random.default_rng([seed, mutants, rounds])
+    generator = np.random.default_rng([1, mutants, rounds])
     draw, truth = MUTANTS[name], true_score(MUTANTS[name], effect)
     found = [
         interval_of(campaign(draw, effect, mutants, rounds, generator, missing)) for _ in range(campaigns)
@@ -157,9 +157,8 @@ def main() -> None:
                     line += f"  {bootstrap_coverage(name, effect, mutants, rounds, campaigns=count):9.1%}"
                 print(line, flush=True)
     inside = sum(0.93 <= share <= 0.97 for share in shares)
-    print(
-        f"{inside} of {len(shares)} settings between 93 % and 97 %; all: {min(shares):.1%} to {max(shares):.1%}"
-    )
+    print(f"{inside} of {len(shares)} settings lie between 93 % and 97 %")
+    print(f"all lie between {min(shares):.1%} and {max(shares):.1%}")
 
 
 if __name__ == "__main__":

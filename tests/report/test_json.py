@@ -33,7 +33,9 @@ def test_a_mutant_has_everything_a_machine_needs(tmp_path: Path) -> None:
     assert mutant["span"] == {"line": 3, "column": 5, "end_line": 3, "end_column": 25}
     assert mutant["description"] == samples.REVERSE.description
     assert mutant["meaning"]["unit"] == "m"
-    assert mutant["kill_rate"] == {"killed": 2, "valid": 2, "rate": 1.0}
+    rate = mutant["kill_rate"]
+    assert (rate["killed"], rate["valid"], rate["rate"]) == (2, 2, 1.0)
+    assert rate["interval"] == {"low": pytest.approx(0.3424, abs=1e-4), "high": 1.0, "level": 0.95}
     first = mutant["rounds"][0]
     assert (first["round"], first["verdict"], first["by"]) == (1, "killed", "check")
     assert first["test"] == samples.TEST

@@ -49,16 +49,17 @@ def crossed(table: Sequence[Sequence[float | None]], level: float = LEVEL) -> In
     """The interval of a score over rounds and mutants, both taken as random samples.
 
     The score is the mean over rounds of killed / valid. The interval is Wilson's, with the number of
-    independent observations that gives the score's estimated variance, and Student's t in place of the normal
-    quantile. With M mutants, R rounds and the mean squares of a two-way analysis of variance, that variance is
+    independent observations that gives the score's estimated variance, and Student's t in place of the
+    normal quantile. With M mutants, R rounds and the mean squares of a two-way analysis of variance, that
+    variance is
 
         V = MSm / MR + max(0, MSr − MSe) / MR
 
     (mutants; rounds beyond what chance within cells explains). The degrees of freedom are Satterthwaite's,
-    with M − 1 for the first term and those of MSr / MR on R − 1 for the second: a round effect that is
-    estimated from five rounds is uncertain, and t says so. V is also what the two-way ("pigeonhole") bootstrap
-    over rounds and mutants estimates, without its upward bias and its noise. Cells without a valid outcome
-    (None) are left out; V is then that of the linearised score.
+    with M − 1 for the first term, and for the second those of MSr / MR on R − 1: a round effect that is
+    estimated from five rounds is uncertain, and t says so. V is what the two-way ("pigeonhole") bootstrap
+    over rounds and mutants is after, without its bias and its noise. Cells without a valid outcome (None)
+    are left out; V is then that of the linearised score.
 
     Assumes that mutants are exchangeable among themselves, and rounds likewise. Speaks about a long series of
     rounds with mutants of which these are a sample.

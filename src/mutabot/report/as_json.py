@@ -8,6 +8,7 @@ from typing import Any
 
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import KillRate, RoundScores, Score
+from mutabot.analysis.statistics import Interval
 from mutabot.model import Mutant, Outcome, Quantity, Verdict
 
 #: raised when a key changes its meaning or goes away; new keys do not raise it
@@ -120,6 +121,8 @@ def scores_data(scores: RoundScores) -> dict[str, Any]:
         **score_data(scores.total),
         "score": scores.mean,
         "check_score": scores.mean_check,
+        "interval": _interval(scores.interval),
+        "check_interval": _interval(scores.check_interval),
         "rounds": [
             {"round": number, **score_data(score)} for number, score in enumerate(scores.rounds, start=1)
         ],
@@ -151,7 +154,18 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
 
 
 def _kill_rate(rate: KillRate) -> dict[str, Any]:
-    return {"killed": rate.killed, "valid": rate.valid, "rate": rate.rate}
+    return {
+        "killed": rate.killed,
+        "valid": rate.valid,
+        "rate": rate.rate,
+        "interval": _interval(rate.interval),
+    }
+
+
+def _interval(interval: Interval | None) -> dict[str, float] | None:
+    if interval is None:
+        return None
+    return {"low": interval.low, "high": interval.high, "level": interval.level}
 
 
 def _meaning(quantity: Quantity | None) -> dict[str, Any] | None:

@@ -11,6 +11,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from mutabot.analysis.statistics import Interval
+
 _ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
@@ -68,6 +70,11 @@ def short_place(file: str, line: int, *, width: int = 24) -> str:
 def percent(share: float | None) -> str:
     """A score as text: ``92.3 %``, or ``–`` where nothing was valid."""
     return "–" if share is None else f"{100 * share:.1f} %"
+
+
+def between(interval: Interval | None) -> str:
+    """An interval as text: ``34–90 %``, or ``–`` where there is none."""
+    return "–" if interval is None else f"{100 * interval.low:.0f}–{100 * interval.high:.0f} %"
 
 
 def plural(count: int, singular: str, several: str | None = None) -> str:

@@ -11,9 +11,10 @@ from rich.text import Text
 
 from mutabot.analysis.divergence import change_text
 from mutabot.analysis.results import MutantResult
+from mutabot.analysis.score import KillRate
 from mutabot.model import Kind, Outcome, Quantity
 
-from .console import heading, make_table, plain
+from .console import between, heading, make_table, percent, plain
 from .excerpt import excerpt
 from .marks import mark_of
 
@@ -51,12 +52,18 @@ def _facts(result: MutantResult) -> Table:
         "operator": f"{mutant.operator} ({mutant.family})",
         "operation": mutant.operation + (f", command {mutant.pattern_name}" if mutant.pattern else ""),
         "quantity": _quantity_text(mutant.quantity, result.quantity),
-        "killed": f"in {rate.killed} of the {rate.valid} rounds in which it was valid",
+        "killed": f"in {rate.killed} of the {rate.valid} rounds in which it was valid{_interval_text(rate)}",
         "result": result.why,
     }
     for name, text in facts.items():
         table.add_row(name, plain(text))
     return table
+
+
+def _interval_text(rate: KillRate) -> str:
+    if rate.interval is None:
+        return ""
+    return f": {percent(rate.rate)}, 95 % interval {between(rate.interval)}"
 
 
 def _quantity_text(name: str | None, quantity: Quantity | None) -> str:

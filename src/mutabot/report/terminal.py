@@ -13,10 +13,21 @@ from rich.text import Text
 
 from mutabot.analysis.divergence import first_line
 from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.score import Group, RoundScores
+from mutabot.analysis.score import Group, KillRate, RoundScores
+from mutabot.analysis.statistics import Interval
 from mutabot.model import LeftOut, Outcome, Verdict
 
-from .console import add_row, heading, make_mutant_table, make_table, percent, plain, plural, short_place
+from .console import (
+    add_row,
+    between,
+    heading,
+    make_mutant_table,
+    make_table,
+    percent,
+    plain,
+    plural,
+    short_place,
+)
 from .marks import counted, legend, mark_of
 
 #: verdicts outside the score that a user should look at, in this order
@@ -25,6 +36,12 @@ _TOLD = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verd
 _MANY_ROUNDS = 12
 #: columns from which on every fact of a mutant has a column of its own
 WIDE = 110
+#: columns from which on there is room for kill rates
+_RATES = 72
+_INTERVALS = (
+    "Intervals hold the true value in 95 % of campaigns: of a score over other rounds and mutants like "
+    "these, of a kill rate over other rounds (docs/statistics.md)."
+)
 
 
 def print_results(console: Console, results: Results, *, everything: bool = False) -> None:
@@ -45,6 +62,8 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
         yield from round_tables(results, width)
         yield heading("Scores")
         yield group_table(results)
+        if results.rounds > 1:
+            yield Text(_INTERVALS, style="dim")
     yield from _survivors(results, width)
     yield from _outside(results, width)
     yield from left_out_lines(results.left_out, everything=everything)
@@ -75,12 +94,17 @@ def mutant_table(results: Results, width: int) -> Table:
     narrow = width < WIDE
     table = make_mutant_table(("role", "place", "operator"), "what it does", narrow=narrow)
     many = results.rounds > _MANY_ROUNDS
+    with_rates = results.rounds > 1 and width >= _RATES
+    if with_rates:
+        table.add_column("killed", justify="right", no_wrap=True)
     table.add_column("rounds" if many else _round_numbers(results.rounds), no_wrap=not many)
     for result in results.mutants:
         mutant = result.mutant
         facts = (mutant.site.role.value, _place(result), mutant.operator)
-        letters = _row(result.rounds, many)
-        add_row(table, mutant.number, facts, mutant.description, letters, narrow=narrow)
+        more = [_row(result.rounds, many)]
+        if with_rates:
+            more.insert(0, _kill_rate(result.kill_rate, narrow=narrow))
+        add_row(table, mutant.number, facts, mutant.description, *more, narrow=narrow)
     return table
 
 
@@ -94,6 +118,17 @@ def _row(outcomes: Sequence[Outcome | None], many: bool) -> Text:
     else:
         parts = [mark_of(outcome).text for outcome in outcomes]
     return Text(" ").join(parts)
+
+
+def _kill_rate(rate: KillRate, *, narrow: bool) -> Text:
+    """``3/5`` and its interval, on a line each where there is little room."""
+    interval = between(rate.interval) if rate.interval is not None else ""
+    # spaces that do not break are not cut off at the end of a cell either
+    return Text.assemble(
+        f"{rate.killed}/{rate.valid}",
+        "\n" if narrow else " ",
+        (interval if narrow else interval.rjust(8, "\N{NO-BREAK SPACE}"), "dim"),
+    )
 
 
 def _place(result: MutantResult) -> str:
@@ -145,11 +180,16 @@ def group_table(results: Results) -> Table:
         table.add_row(
             _name(group),
             str(group.mutants),
-            f"{percent(group.scores.mean)}\n{total.killed}/{total.valid}",
-            f"{percent(group.scores.mean_check)}\n{total.by_check}/{total.valid}",
+            _score_cell(group.scores.mean, total.killed, total.valid, group.scores.interval),
+            _score_cell(group.scores.mean_check, total.by_check, total.valid, group.scores.check_interval),
             _counts(group.scores),
         )
     return table
+
+
+def _score_cell(mean: float | None, killed: int, valid: int, interval: Interval | None) -> Text:
+    text = Text(f"{percent(mean)}\n{killed}/{valid}")
+    return text if interval is None else text.append(f"\n{between(interval)}", style="dim")
 
 
 def _counts(scores: RoundScores) -> str:
