@@ -20,15 +20,19 @@ import typer
 from mutabot.cli_options import (
     ENGINES,
     All,
+    Confirm,
     Engine,
+    Fresh,
     Jobs,
     Json,
     MinScore,
     Only,
+    Round,
     Rounds,
     Seed,
     Selection,
     Skip,
+    Verify,
     Version,
 )
 from mutabot.errors import MutabotError, UsageError, unknown_name_text
@@ -37,7 +41,7 @@ if TYPE_CHECKING:
     from mutabot.campaign.request import Request
     from mutabot.report.progress import Reporter
 
-INTERNAL_ERROR, INTERRUPTED = 70, 130
+UNSTABLE, INTERNAL_ERROR, INTERRUPTED = 4, 70, 130
 _SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
 
 app = typer.Typer(
@@ -123,16 +127,19 @@ def run(
     seed: Seed = None,
     jobs: Jobs = None,
     engine: Engine = "auto",
+    fresh: Fresh = False,
+    verify: Verify = 0,
+    confirm: Confirm = False,
     min_score: MinScore = None,
     json: Json = False,
 ) -> None:
-    """Run the campaign: baseline, controls, mutants, scores."""
+    """Run the campaign, or go on with it: baseline, controls, mutants, scores."""
     from mutabot.analysis.gate import decide
     from mutabot.campaign.run import run_campaign
 
     request = _request(
         context.obj, only=only, skip=skip, selection=selection, rounds=rounds, seed=seed, jobs=jobs,
-        engine=engine,
+        engine=engine, fresh=fresh, verify=verify, confirm=confirm,
     )  # fmt: skip
     with _progress() as progress:
         journal_path = run_campaign(request, progress)
@@ -142,10 +149,44 @@ def run(
         results,
         min_score=None if limit is None else limit / 100,
         max_timeouts=request.configuration.timeout_limit,
+        max_unstable=request.configuration.unstable_limit,
     )
     for line in decision.lines:
         typer.echo(line, err=True)
     raise typer.Exit(decision.exit_code)
+
+
+@app.command(rich_help_panel=_RUN)
+def replay(
+    context: typer.Context,
+    mutant: Annotated[str, typer.Argument(help="The mutant's id or number.")],
+    round: Round = None,
+    jobs: Jobs = None,
+    json: Json = False,
+) -> None:
+    """Run one mutant of the last campaign again in fresh processes; exit with 4 if it ends otherwise."""
+    from mutabot.analysis.results import find_mutant, read_results
+    from mutabot.campaign.journal import Journal
+    from mutabot.campaign.verify import replay_one
+    from mutabot.report.as_json import replayed_data
+    from mutabot.report.console import make_console
+    from mutabot.report.detail import print_replayed
+
+    path = _journal_path(context.obj)
+    with Journal.open(path) as journal:
+        found = read_results(journal)
+        chosen = find_mutant(found, mutant).mutant
+        if round is not None and round > found.rounds:
+            raise UsageError(f"there is no round {round}; the campaign has {found.rounds}")
+        rounds = range(found.rounds) if round is None else [round - 1]
+        request = _request(path.parent.parent, rounds=found.rounds, seed=found.meta.get("seed"), jobs=jobs)
+        with _progress() as progress:
+            replayed = replay_one(request, journal, chosen, rounds, progress)
+    if json:
+        _print_json(replayed_data(chosen, replayed))
+    else:
+        print_replayed(make_console(), chosen, replayed)
+    raise typer.Exit(UNSTABLE if any(one.agrees is False for one in replayed) else 0)
 
 
 @app.command(rich_help_panel=_LOOK)
@@ -235,6 +276,9 @@ def _request(project: Path, *, selection: Path | None = None, engine: str = "aut
         skip=tuple(given.get("skip") or ()),
         selection=selection,
         engine=engine,
+        fresh=bool(given.get("fresh")),
+        verify=given.get("verify") or 0,
+        confirm=bool(given.get("confirm")),
     )
 
 

@@ -39,6 +39,21 @@ Rounds = Annotated[int | None, typer.Option("--rounds", min=1, help="Repetitions
 Seed = Annotated[int | None, typer.Option("--seed", min=0, help="The campaign's seed.")]
 Jobs = Annotated[int | None, typer.Option("-j", "--jobs", min=1, help="Processes at a time.")]
 Engine = Annotated[str, typer.Option("--engine", help=f"What runs the mutants: {' or '.join(ENGINES)}.")]
+Fresh = Annotated[bool, typer.Option("--fresh", help="Run everything again, also outcomes that still hold.")]
+Verify = Annotated[
+    int,
+    typer.Option(
+        "--verify",
+        metavar="N",
+        min=0,
+        help="Run N random outcomes once more in fresh processes; exit with 4 if one ends otherwise.",
+    ),
+]
+Confirm = Annotated[
+    bool,
+    typer.Option("--confirm", help="Run survivors and time-outs once more; unstable where that disagrees."),
+]
+Round = Annotated[int | None, typer.Option("--round", min=1, help="Only this round.")]
 MinScore = Annotated[
     float | None,
     typer.Option("--min-score", min=0, max=100, help="Exit with 1 if a score is under this many percent."),

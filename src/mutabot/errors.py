@@ -9,6 +9,7 @@
     ├── BaselineError               the tests do not pass on the unmutated program             (exit 3)
     ├── NothingToDoError            no tests, no mutants, or every mutant refused              (exit 3)
     ├── ControlError                a control mutant ended wrongly                             (exit 4)
+    ├── UnstableError               more tests are flaky than the configuration allows         (exit 4)
     ├── JournalError                the journal is missing, foreign or cannot be written       (exit 2)
     ├── PathError                   a path into an argument or result that does not fit
     └── OperatorError               an operator plug-in that breaks the contract               (exit 2)
@@ -131,6 +132,20 @@ class ControlError(MutabotError):
     def __init__(self, message: str, *, control: str, test_file: str) -> None:
         super().__init__(message)
         self.control, self.test_file = control, test_file
+
+
+class UnstableError(MutabotError):
+    """More tests are flaky than the configuration allows.
+
+    Attributes:
+        tests: node ids of the flaky tests.
+    """
+
+    exit_code = 4
+
+    def __init__(self, message: str, *, tests: Iterable[str] = ()) -> None:
+        super().__init__(message)
+        self.tests = tuple(tests)
 
 
 class JournalError(MutabotError):

@@ -8,7 +8,7 @@ from mutabot.model import Verdict
 
 from .results import Results
 
-PASSED, SCORE_TOO_LOW, NOTHING_VALID, TOO_MANY_TIMEOUTS = 0, 1, 3, 5
+PASSED, SCORE_TOO_LOW, NOTHING_VALID, UNSTABLE, TOO_MANY_TIMEOUTS = 0, 1, 3, 4, 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,15 +25,24 @@ class Decision:
 
 
 def decide(
-    results: Results, *, min_score: float | None = None, max_timeouts: float | None = None
+    results: Results,
+    *,
+    min_score: float | None = None,
+    max_timeouts: float | None = None,
+    max_unstable: float | None = None,
 ) -> Decision:
     """Hold the results against the limits.
 
     ``min_score`` (0 … 1) holds for every printed mean score, that is for each family and role on its own:
     a good score of the oracle never hides a poor one of the program. ``max_timeouts`` (0 … 1) is the
-    greatest share of time-outs among the valid outcomes.
+    greatest share of time-outs among the valid outcomes. ``max_unstable`` is the greatest share of flaky
+    tests among the tests, and of unstable outcomes among all. A disagreement that ``--verify`` found always
+    fails.
     """
     total = results.all.total
+    unstable = (*_disagreements(results), *_too_unstable(results, max_unstable))
+    if unstable:
+        return Decision(UNSTABLE, unstable)
     if not total.valid:
         return Decision(NOTHING_VALID, (_nothing_valid(results),))
     share = total.timeouts / total.valid
@@ -42,6 +51,31 @@ def decide(
         return Decision(TOO_MANY_TIMEOUTS, (f"{text}; the limit is {max_timeouts:.0%}",))
     low = tuple(_too_low(results, min_score)) if min_score is not None else ()
     return Decision(SCORE_TOO_LOW, low) if low else Decision(PASSED)
+
+
+def _disagreements(results: Results) -> tuple[str, ...]:
+    found = results.verification
+    if found is None or not found.disagreements:
+        return ()
+    lines = [f"{len(found.disagreements)} of {found.checked} outcomes come out otherwise in a fresh process:"]
+    for one in found.disagreements:
+        lines.append(f"  mutant {one.number} ({one.mutant}), round {one.round + 1}:")
+        lines += [f"    here    {one.first}", f"    afresh  {one.second}"]
+    return tuple(lines)
+
+
+def _too_unstable(results: Results, limit: float | None) -> tuple[str, ...]:
+    if limit is None:
+        return ()
+    lines = [results.flaky.text(limit)] if results.flaky.share > limit else []
+    counts = results.all.total.counts
+    unstable, run = counts.get(Verdict.UNSTABLE, 0), sum(counts.values())
+    if run and unstable / run > limit:
+        numbers = [str(result.mutant.number) for result, _ in results.with_verdict(Verdict.UNSTABLE)]
+        shown = ", ".join(numbers[:20]) + (" …" if len(numbers) > 20 else "")
+        text = f"{unstable} of {run} outcomes are unstable ({unstable / run:.0%})"
+        lines.append(f"{text}; the limit is {limit:.0%} (unstable_limit): mutants {shown}")
+    return tuple(lines)
 
 
 def _nothing_valid(results: Results) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from mutabot.campaign.journal import BaselineTest, ControlEnd, Journal
 from mutabot.campaign.lock import is_written
+from mutabot.campaign.verify import CONFIRMATION, FLAKY, VERIFICATION, Flaky, Verification
 from mutabot.errors import SelectionError, unknown_name_text
-from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
+from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict, from_data
 
 from .divergence import explain, is_indistinguishable, quantity_of, rank
 from .score import Group, KillRate, RoundScores, groups_of
@@ -72,6 +73,9 @@ class Results:
         left_out: what the plan leaves out.
         controls: the control mutants.
         tests: the baseline.
+        verification: what ``--verify`` found; None if it was not asked for.
+        confirmation: ``checked`` and ``unstable`` outcomes of ``--confirm``; None if it was not asked for.
+        flaky: tests that cannot be relied on.
     """
 
     meta: Mapping[str, Any]
@@ -83,6 +87,9 @@ class Results:
     left_out: tuple[LeftOut, ...]
     controls: tuple[ControlEnd, ...]
     tests: tuple[BaselineTest, ...]
+    verification: Verification | None = None
+    confirmation: Mapping[str, int] | None = None
+    flaky: Flaky = field(default_factory=Flaky)
 
     @property
     def survivors(self) -> list[MutantResult]:
@@ -149,6 +156,9 @@ def read_results(journal: Journal) -> Results:
         left_out=tuple(journal.left_out()),
         controls=tuple(journal.controls()),
         tests=tuple(journal.tests()),
+        verification=from_data(Verification, meta[VERIFICATION]) if VERIFICATION in meta else None,
+        confirmation=meta.get(CONFIRMATION),
+        flaky=from_data(Flaky, meta[FLAKY]) if FLAKY in meta else Flaky(),
     )
 
 

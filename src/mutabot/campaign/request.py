@@ -22,7 +22,10 @@ class Request:
         rounds, seed, jobs: as in the configuration, unless the command line says otherwise.
         only, skip: selections as in ``select``.
         selection: file with the ids to run; None for all.
-        engine: ``auto`` or ``replay``.
+        engine: ``auto``, ``branch`` or ``replay``.
+        fresh: whether to run everything, also what an earlier campaign has found.
+        verify: how many outcomes to run once more in fresh processes, and compare.
+        confirm: whether to run survivors and time-outs once more.
     """
 
     configuration: Configuration
@@ -34,6 +37,9 @@ class Request:
     skip: tuple[str, ...] = ()
     selection: Path | None = None
     engine: str = "auto"
+    fresh: bool = False
+    verify: int = 0
+    confirm: bool = False
 
     @property
     def root(self) -> Path:

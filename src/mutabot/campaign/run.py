@@ -20,6 +20,7 @@ from .journal import Journal
 from .plan import Plan, make_plan
 from .request import CheckReport, Progress, Request
 from .selection import select
+from .verify import look_again, refuse_flaky
 from .workers import Result, Workers
 
 #: what else decides how a campaign ends, beside the user's own files
@@ -41,7 +42,9 @@ def run_campaign(request: Request, progress: Progress) -> Path:
             try:
                 _write_beginning(journal, request, results, plan)
                 _note_unstable(baseline, progress)
+                refuse_flaky(request, baseline)
                 run_mutants(request, baseline, workers, progress, plan.mutants, journal)
+                look_again(request, baseline, workers, progress, plan.mutants, journal)
             except BaseException as error:
                 journal.finish(_reason(error))
                 raise

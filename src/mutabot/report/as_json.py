@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterable
 from typing import Any
 
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import KillRate, RoundScores, Score
 from mutabot.analysis.statistics import Interval
+from mutabot.campaign.verify import CONFIRMATION, FLAKY, VERIFICATION, Replayed, Verification
 from mutabot.model import Mutant, Outcome, Quantity, Verdict
 
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
+#: facts of a campaign that are not repeated as they are in the journal
+_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY}
 
 
 def dumps(data: Any) -> str:
@@ -26,7 +30,7 @@ def results_data(results: Results) -> dict[str, Any]:
         "format": FORMAT,
         "state": results.state,
         "finished": results.state == "complete",
-        "meta": {key: value for key, value in results.meta.items() if key != "vocabulary"},
+        "meta": {key: value for key, value in results.meta.items() if key not in _ELSEWHERE},
         "rounds": [
             {"round": number, **score_data(score)} for number, score in enumerate(results.all.rounds, start=1)
         ],
@@ -59,6 +63,9 @@ def results_data(results: Results) -> dict[str, Any]:
             }
             for one in results.tests
         ],
+        "flaky": list(results.flaky.tests),
+        "verification": _verification(results.verification),
+        "confirmation": dict(results.confirmation) if results.confirmation is not None else None,
     }
 
 
@@ -125,6 +132,43 @@ def scores_data(scores: RoundScores) -> dict[str, Any]:
         "check_interval": _interval(scores.check_interval),
         "rounds": [
             {"round": number, **score_data(score)} for number, score in enumerate(scores.rounds, start=1)
+        ],
+    }
+
+
+def replayed_data(mutant: Mutant, rounds: Iterable[Replayed]) -> dict[str, Any]:
+    """One mutant that was run again, beside its outcomes in the journal."""
+    return {
+        "id": mutant.id,
+        "number": mutant.number,
+        "rounds": [
+            {
+                "round": one.round + 1,
+                "agrees": one.agrees,
+                "journal": _round_data(one.round + 1, one.first),
+                "replay": _round_data(one.round + 1, one.second),
+            }
+            for one in rounds
+        ],
+    }
+
+
+def _verification(found: Verification | None) -> dict[str, Any] | None:
+    if found is None:
+        return None
+    return {
+        "wanted": found.wanted,
+        "checked": found.checked,
+        "agreed": found.agreed,
+        "disagreements": [
+            {
+                "id": one.mutant,
+                "number": one.number,
+                "round": one.round + 1,
+                "first": one.first,
+                "second": one.second,
+            }
+            for one in found.disagreements
         ],
     }
 

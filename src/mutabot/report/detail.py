@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from rich.console import Console, RenderableType
 from rich.padding import Padding
@@ -12,7 +12,8 @@ from rich.text import Text
 from mutabot.analysis.divergence import change_text
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import KillRate
-from mutabot.model import Kind, Outcome, Quantity
+from mutabot.campaign.verify import Replayed, in_words
+from mutabot.model import Kind, Mutant, Outcome, Quantity
 
 from .console import between, heading, make_table, percent, plain
 from .excerpt import excerpt
@@ -23,6 +24,27 @@ def print_mutant(console: Console, result: MutantResult, source: str | None) -> 
     """Print one mutant; ``source`` is the text of its file, or None if it is not known."""
     for part in _parts(result, source):
         console.print(part)
+
+
+def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed]) -> None:
+    """Print how a mutant ended when it was run again, beside what the journal says."""
+    console.print(Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold"))
+    for one in rounds:
+        state = {
+            True: "as in the journal",
+            False: "otherwise than in the journal",
+            None: "not in the journal",
+        }
+        console.print(heading(f"Round {one.round + 1}: {state[one.agrees]}"))
+        console.print(_replayed_line("replay", one.second))
+        if one.first is not None and not one.agrees:
+            console.print(_replayed_line("journal", one.first))
+
+
+def _replayed_line(name: str, outcome: Outcome) -> RenderableType:
+    parts = [f"{name}, {outcome.engine}: {in_words(outcome)}", *_evidence(outcome)]
+    text = Text("\n").join(Text(plain(part), overflow="fold") for part in parts)
+    return Padding(text, (0, 0, 0, 2))
 
 
 def _parts(result: MutantResult, source: str | None) -> Iterator[RenderableType]:

@@ -67,6 +67,7 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
     yield from _survivors(results, width)
     yield from _outside(results, width)
     yield from left_out_lines(results.left_out, everything=everything)
+    yield from _trust(results)
     yield from _controls(results)
 
 
@@ -246,6 +247,26 @@ def left_out_lines(left_out: Sequence[LeftOut], *, everything: bool = False) -> 
                     yield Padding(
                         Text(f"{item.id}  {plain(item.description)}", overflow="fold"), (0, 0, 0, 8)
                     )
+
+
+def _trust(results: Results) -> Iterator[RenderableType]:
+    """Flaky tests, and what a second look at outcomes found."""
+    if results.flaky.tests:
+        yield heading(f"{plural(len(results.flaky.tests), 'flaky test')} set aside")
+        for line in results.flaky.tests:
+            yield Text(plain(line), overflow="fold")
+    checked = results.verification
+    if checked is not None:
+        text = f"\nVerified: {checked.agreed} of {checked.checked} outcomes end the same in fresh processes."
+        yield Text(text, style="bold red" if checked.disagreements else "dim")
+        for one in checked.disagreements:
+            words = f"mutant {one.number}, round {one.round + 1}: {one.first}; afresh: {one.second}"
+            yield Padding(Text(plain(words), overflow="fold"), (0, 0, 0, 2))
+    confirmed = results.confirmation
+    if confirmed is not None:
+        kept = confirmed["checked"] - confirmed["unstable"]
+        text = f"\nConfirmed: {kept} of {confirmed['checked']} survivors and time-outs end so once more."
+        yield Text(text, style="bold red" if confirmed["unstable"] else "dim")
 
 
 def _controls(results: Results) -> Iterator[RenderableType]:
