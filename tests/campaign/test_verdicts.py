@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.model import By, Outcome, Verdict
 
-from .project import fingerprint, run, write_project
+from .project import ROBOT, fingerprint, run, write_project
 
 MISSION = """
     import os
@@ -96,6 +96,10 @@ MISSION = """
         if arm.position() < 0:
             raise robot.Diverged("NaN in joint 3")
 
+    def crashes_in_the_mutated_call(arm):
+        arm.move_by(0.25)
+        return arm.x
+
     def skips_itself(arm):
         if arm.position() < 0:
             import pytest
@@ -129,6 +133,16 @@ CONFIGURATION = """
     timeout_seconds = 4
     memory = "3 GB"
 """
+CRASH = """
+    def crash(dx):
+        \"\"\"As a native driver does that is given a value it never expected.\"\"\"
+        import os
+        import signal
+
+        if dx == -0.25:
+            os.kill(os.getpid(), signal.SIGSEGV)
+        return 0.0
+"""
 #: function -> (verdict, by, words of the message)
 EXPECTED = {
     "noticed_by_the_test": (Verdict.KILLED, By.CHECK, "assert -0.5 > 0"),
@@ -148,18 +162,23 @@ EXPECTED = {
     "exits": (Verdict.KILLED, By.EXCEPTION, "3"),
     "eats_memory": (Verdict.ERROR, None, "memory limit"),
     "diverges": (Verdict.ERROR, None, "NaN in joint 3"),
+    "crashes_in_the_mutated_call": (Verdict.KILLED, By.EXCEPTION, "signal 11"),
     "skips_itself": (Verdict.SURVIVED, None, ""),
 }
 
 
-@pytest.fixture(scope="module")
-def campaign(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Outcome], dict[str, str]]:
-    """One campaign for the whole table: it is the slow part."""
+@pytest.fixture(scope="module", params=["replay", "branch"])
+def campaign(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Path, dict[str, Outcome], dict[str, str]]:
+    """One campaign per engine for the whole table: it is the slow part."""
     folder = tmp_path_factory.mktemp("verdicts")
-    write_project(folder, MISSION, TESTS, configuration=CONFIGURATION)
+    robot = ROBOT.replace("self.x += dx", "self.x += dx + crash(dx)") + CRASH
+    write_project(folder, MISSION, TESTS, configuration=CONFIGURATION, robot=robot)
     before = fingerprint(folder)
     only = ("*:negate", "*:reverse")
-    found = run(folder, only=only)
+    found = run(folder, only=only, engine=request.param)
+    assert {outcome.engine for outcome in found.values()} == {request.param}
     return folder, {key.split(":")[1]: outcome for key, outcome in found.items()}, before
 
 
@@ -183,7 +202,7 @@ def test_every_kill_and_every_survivor_really_ran_mutated_code(
     for function, outcome in campaign[1].items():
         if outcome.verdict in (Verdict.KILLED, Verdict.SURVIVED, Verdict.REFUSED):
             assert outcome.acted > 0, function
-            assert outcome.example is not None, function
+            assert outcome.example is not None or function == "crashes_in_the_mutated_call"
 
 
 def test_the_users_tree_is_byte_identical_afterwards(

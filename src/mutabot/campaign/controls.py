@@ -12,7 +12,7 @@ the branch engine, whose trunk runs the whole suite anyway, it is run in every t
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mutabot.errors import ControlError
 from mutabot.model import Mutant, Outcome, Verdict
@@ -56,7 +56,7 @@ class Control:
 
     def task(self, request: Request, baseline: Baseline) -> Task:
         """The task that runs it by replay."""
-        made = task(request, baseline, self.mutant, self.round, self.tests, stop=False)
+        made = task(request, baseline, self.mutant, self.round, self.tests, stop=self.name == FATAL)
         return Task(self, made.job, made.deadlines, made.deadline, made.startup)
 
     def end(self, outcome: Outcome) -> ControlEnd:
@@ -91,8 +91,7 @@ def run_controls(
     """
     mutants = list(mutants)
     identities = _identities_by_selection(baseline, mutants)
-    fatals = _fatals(baseline, mutants)
-    progress.stage("controls", len(identities) + len(fatals))
+    progress.stage("controls", len(identities) + len(_fatals(baseline, mutants)))
     together: list[Control] = []
     for control, outcome in _replayed(request, baseline, workers, identities):
         end = control.end(outcome)
@@ -106,6 +105,11 @@ def run_controls(
             baseline.dependent.add(control.tests)
             together.append(_with_whole_suite(control, baseline))
             progress.note(f"{control.subject} pass only after other tests: judged by the whole suite")
+    # only now is it known which selections pass by themselves
+    fatals = [
+        replace(fatal, tests=baseline.selection(fatal.round, fatal.place))
+        for fatal in _fatals(baseline, mutants)
+    ]
     for control, outcome in _replayed(request, baseline, workers, [*together, *fatals]):
         end = control.end(outcome)
         progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")

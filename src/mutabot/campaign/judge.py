@@ -70,6 +70,7 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
     verdict, end, message = _ruling(run)
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
     by = end.by if end is not None else By.EXCEPTION
+    died_at_work = run.death is not None and (run.death.acted or run.death.in_mutated_call)
     outcome = Outcome(
         mutant=run.mutant.id,
         round=run.round,
@@ -79,8 +80,9 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
         exception=end.exception if end is not None else None,
         message=message,
         place=end.place if end is not None else None,
-        hits=sum(end.hits for end in run.ends),
-        acted=sum(end.acted for end in run.ends),
+        # a test that never ended cannot say how often, but that the mutant was at work is known
+        hits=sum(end.hits for end in run.ends) + died_at_work,
+        acted=sum(end.acted for end in run.ends) + died_at_work,
         example=next((end.example for end in run.ends if end.example is not None), None),
         tests=len(run.ends),
         wall=run.wall,

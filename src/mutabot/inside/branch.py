@@ -21,12 +21,13 @@ from .isolate import Foot, isolate_files
 from .pipe import Pipe
 from .tokens import Tokens
 
-#: exit code of a branch whose test decides about its mutant: no other test needs to run
-DECIDED = 10
+#: exit code of a branch whose test decides about its mutant: no other test needs to run. These codes are
+#: unlike any that a program would leave with by itself
+DECIDED = 113
 #: exit code of a branch that could not report
-FAILED = 70
+FAILED = 115
 #: exit code of a branch whose test leaves its mutant alive
-ALIVE = 0
+ALIVE = 114
 
 Key = tuple[Span, str, str | None]
 

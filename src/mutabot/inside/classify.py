@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from types import TracebackType
@@ -16,6 +17,8 @@ from .activate import Evidence, is_named
 from .limits import BudgetExceeded
 from .locate import Locator
 
+#: where an object lies in memory differs from run to run and says nothing
+_ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
 _INSIDE = os.path.dirname(os.path.realpath(__file__))
 
 
@@ -62,7 +65,8 @@ def classify(
 
 
 def _text(error: BaseException) -> str:
-    lines = str(error).strip().splitlines() or [type(error).__name__]
+    text = _ADDRESS.sub("0x…", str(error))
+    lines = text.strip().splitlines() or [type(error).__name__]
     return "\n".join(lines[:12])[:2000]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import stat
 import sys
 from collections.abc import Callable, Iterable
@@ -10,6 +11,8 @@ from collections.abc import Callable, Iterable
 #: libraries whose loading means that a graphics context may exist, which does not survive a fork
 _GRAPHICS = ("libEGL", "libGL.", "libGLX", "libOSMesa", "libvulkan")
 _SELF = "/proc/self"
+#: how often, and for how many seconds each, to wait for threads that are about to end
+_TRIES, _PAUSE = 10, 0.002
 
 
 def why_not(own_children: Iterable[int], known_sockets: frozenset[int]) -> str | None:
@@ -30,13 +33,21 @@ def why_not(own_children: Iterable[int], known_sockets: frozenset[int]) -> str |
 
 
 def _threads() -> str | None:
-    count = len(os.listdir(f"{_SELF}/task"))
-    if count == 1:
-        return None
+    count = _count_threads()
     threading = sys.modules.get("threading")
     names = [thread.name for thread in threading.enumerate()[1:]] if threading is not None else []
+    tries = 0 if names else _TRIES
+    while count > 1 and tries > 0:  # one that was joined may take a moment to leave
+        select.select([], [], [], _PAUSE)  # a simulation may have taken over time.sleep
+        count, tries = _count_threads(), tries - 1
+    if count == 1:
+        return None
     named = f", such as {names[0]}" if names else ", started by native code"
     return f"{count - 1} more {'thread' if count == 2 else 'threads'}{named}"
+
+
+def _count_threads() -> int:
+    return len(os.listdir(f"{_SELF}/task"))
 
 
 def _event_loop() -> str | None:
