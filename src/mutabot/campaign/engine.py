@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from mutabot.model import Mutant, Outcome, Verdict
 
@@ -32,12 +32,22 @@ def run_mutants(
     progress: Progress,
     mutants: Sequence[Mutant],
     journal: Journal,
+    done: Collection[tuple[str, int]] = (),
 ) -> None:
     """Run controls and mutants in all rounds; every outcome is in the journal as soon as it is known.
 
+    ``done`` are the ids and rounds that need not be run.
+
     Raises ControlError for a control that ends wrongly.
     """
-    pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
+    pairs = [
+        (mutant, round)
+        for round in range(request.rounds)
+        for mutant in mutants
+        if (mutant.id, round) not in done
+    ]
+    if not pairs:
+        return
     report = _Report(progress, journal, {mutant.id: mutant.number for mutant in mutants})
     if engine_of(request) == "branch":
         pairs = _branched(request, baseline, workers, report, pairs)

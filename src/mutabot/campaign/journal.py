@@ -3,14 +3,19 @@
 One process writes, any number read, also while it writes and after it was killed. Each record is on its
 own and committed when it is added, so that a killed campaign loses nothing that was reported. All else
 (reports, resuming, comparing) reads from here.
+
+A new campaign begins in the same file: in one transaction the plan, the baseline and the outcomes of the
+one before make way, and its outcomes are kept aside under their keys, for those that still hold.
 """
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -23,9 +28,10 @@ from mutabot.model import LeftOut, Mutant, Outcome, TestEnd, Vocabulary, from_da
 from .database import connect, connect_to_read, guarded
 from .lock import WriterLock
 
-SCHEMA_VERSION = 1
-#: where the journal of the last campaign but one is kept, beside the journal
+SCHEMA_VERSION = 2
+#: where the journal of the last complete campaign before this one is kept, beside the journal
 PREVIOUS = "journal.previous.sqlite"
+_HALF_A_COPY = f"{PREVIOUS}.new"
 
 _SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -36,10 +42,28 @@ CREATE TABLE mutant (number INTEGER NOT NULL, id TEXT PRIMARY KEY, data TEXT NOT
 CREATE TABLE left_out (id TEXT NOT NULL, reason TEXT NOT NULL, data TEXT NOT NULL);
 CREATE TABLE source (file TEXT PRIMARY KEY, text TEXT NOT NULL);
 CREATE TABLE outcome (
-    mutant TEXT NOT NULL, round INTEGER NOT NULL, verdict TEXT NOT NULL, "by" TEXT, data TEXT NOT NULL);
+    mutant TEXT NOT NULL, round INTEGER NOT NULL, verdict TEXT NOT NULL, "by" TEXT, data TEXT NOT NULL,
+    key TEXT NOT NULL, reused INTEGER NOT NULL);
 CREATE INDEX outcome_of ON outcome (mutant, round);
 CREATE TABLE control (
     test_file TEXT NOT NULL, control TEXT NOT NULL, ok INTEGER NOT NULL, detail TEXT NOT NULL);
+CREATE TABLE kept (
+    mutant TEXT NOT NULL, round INTEGER NOT NULL, verdict TEXT NOT NULL, "by" TEXT, data TEXT NOT NULL,
+    key TEXT NOT NULL, PRIMARY KEY (mutant, round));
+CREATE TABLE parts (digest TEXT PRIMARY KEY, data TEXT NOT NULL);
+"""
+_LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
+#: from one campaign to the next
+_ADOPT = f"""
+INSERT OR REPLACE INTO kept
+    SELECT mutant, round, verdict, "by", data, key FROM outcome WHERE rowid IN ({_LAST}) AND key != '';
+DELETE FROM meta;
+DELETE FROM test;
+DELETE FROM mutant;
+DELETE FROM left_out;
+DELETE FROM source;
+DELETE FROM outcome;
+DELETE FROM control
 """
 # Keys of meta that are the journal's own; the others are the campaign's.
 _VERSION_KEY, _FINISHED_KEY = "journal:version", "journal:finished"
@@ -58,6 +82,19 @@ class BaselineTest:
     round: int
     repetition: int
     test: TestEnd
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """An outcome of an earlier campaign.
+
+    Attributes:
+        key: what it depends on.
+        is_sound: whether it says anything about the mutant, and not about the tool or the machine.
+    """
+
+    key: str
+    is_sound: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +118,11 @@ class Journal:
     """The record of one campaign; use as a context manager.
 
     Every method raises JournalError when the file cannot be read or written.
+
+    Attributes:
+        path: the file.
+        key_of: tells what the outcome of a mutant in a round depends on; the empty key says that nobody
+            knows, and that it is not to be reused.
     """
 
     def __init__(
@@ -92,11 +134,15 @@ class Journal:
         copy: TemporaryDirectory[str] | None = None,
     ) -> None:
         self.path = path
+        self.key_of: Callable[[str, int], str] = lambda mutant, round: ""
         self._connection, self._lock, self._copy = connection, lock, copy
 
     @classmethod
-    def create(cls, path: Path, *, meta: Mapping[str, Any]) -> Journal:
-        """Begin the journal of a new campaign; an older one is kept as ``journal.previous.sqlite``.
+    def create(cls, path: Path, *, meta: Mapping[str, Any], fresh: bool = False) -> Journal:
+        """Begin a new campaign; outcomes of those before are kept aside, unless it is to begin ``fresh``.
+
+        All or nothing: until it has begun, the journal is that of the campaign before. A complete one stays
+        readable as ``journal.previous.sqlite``, and so does what is no journal of this version.
 
         Reports understand these keys of ``meta``, all optional: ``mutabot``, ``python``, ``versions`` (name
         to version), ``root``, ``seed``, ``rounds``, ``engine``, ``jobs``, ``started``, ``vocabulary`` (what
@@ -106,13 +152,16 @@ class Journal:
             path.parent.mkdir(parents=True, exist_ok=True)
             lock = WriterLock.take(path)
             try:
-                _keep_previous(path)
+                _remove(path.with_name(_HALF_A_COPY))
+                is_journal = _make_way(path)
                 journal = cls(path, connect(path), lock=lock)
             except BaseException:
                 lock.release()
                 raise
             with journal._closed_on_error():
-                journal._begin(meta)
+                if is_journal and journal.finished == "complete":
+                    journal._keep_copy()
+                journal._begin(meta, adopt=is_journal, fresh=fresh)
         return journal
 
     @classmethod
@@ -248,15 +297,68 @@ class Journal:
     def add_outcome(self, outcome: Outcome) -> None:
         """Add one outcome; a later one of the same mutant and round takes its place."""
         self._write(
-            "INSERT INTO outcome VALUES (?, ?, ?, ?, ?)",
-            outcome.mutant, outcome.round, outcome.verdict.value,
-            outcome.by.value if outcome.by else None, _dump(outcome),
+            "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?, 0)",
+            outcome.mutant, outcome.round, outcome.verdict.value, outcome.by.value if outcome.by else None,
+            _dump(outcome), self.key_of(outcome.mutant, outcome.round),
         )  # fmt: skip
 
     def outcomes(self) -> list[Outcome]:
         """The last outcome of each (mutant, round), in the order they came."""
-        last = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
-        return self._read(Outcome, f"SELECT data FROM outcome WHERE rowid IN ({last}) ORDER BY rowid")
+        return self._read(Outcome, f"SELECT data FROM outcome WHERE rowid IN ({_LAST}) ORDER BY rowid")
+
+    def reused(self) -> set[tuple[str, int]]:
+        """The mutants and rounds whose outcomes were taken over from an earlier campaign."""
+        return set(self._rows(f"SELECT mutant, round FROM outcome WHERE reused AND rowid IN ({_LAST})"))
+
+    # Outcomes of earlier campaigns
+
+    def kept(self) -> dict[tuple[str, int], Kept]:
+        """The last outcome that earlier campaigns found for each mutant and round."""
+        rows = self._rows(
+            "SELECT mutant, round, key, verdict NOT IN ('error', 'unstable') AND data NOT LIKE ? FROM kept",
+            f"%{os.strerror(errno.ENOSPC)}%",
+        )
+        return {(mutant, round): Kept(key, bool(sound)) for mutant, round, key, sound in rows}
+
+    def reuse(self, pairs: Iterable[tuple[str, int]]) -> None:
+        """Take over the kept outcomes of these mutants and rounds."""
+        with guarded(self.path), self._transaction() as execute:
+            for pair in pairs:
+                execute(
+                    'INSERT INTO outcome SELECT mutant, round, verdict, "by", data, key, 1 FROM kept '
+                    "WHERE mutant = ? AND round = ?",
+                    *pair,
+                )
+
+    def add_parts(self, parts: Mapping[str, Mapping[str, str]]) -> None:
+        """Write down what digests in keys stand for."""
+        if not parts:
+            return
+        with guarded(self.path), self._transaction() as execute:
+            for digest, data in parts.items():
+                execute("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, _dump(data))
+
+    def parts(self, digest: str) -> dict[str, str] | None:
+        """What a digest in a key stands for, or None if that is not known any more."""
+        rows = self._rows("SELECT data FROM parts WHERE digest = ?", digest)
+        return dict(json.loads(rows[0][0])) if rows else None
+
+    def forget_keys(self) -> None:
+        """Never reuse what this campaign has found itself."""
+        self._write("UPDATE outcome SET key = '' WHERE NOT reused")
+
+    def tidy(self, mutants: Iterable[str]) -> None:
+        """Forget what earlier campaigns found about other mutants, and what nothing refers to."""
+        with guarded(self.path), self._transaction() as execute:
+            known = set(mutants)
+            for (mutant,) in execute("SELECT DISTINCT mutant FROM kept").fetchall():
+                if mutant not in known:
+                    execute("DELETE FROM kept WHERE mutant = ?", mutant)
+            keys = execute("SELECT key FROM kept UNION SELECT key FROM outcome").fetchall()
+            needed = {digest for (key,) in keys for digest in key.split()}
+            for (digest,) in execute("SELECT digest FROM parts").fetchall():
+                if digest not in needed:
+                    execute("DELETE FROM parts WHERE digest = ?", digest)
 
     # Controls
 
@@ -285,13 +387,26 @@ class Journal:
     def _read(self, kind: type[Any], statement: str) -> list[Any]:
         return [from_data(kind, json.loads(data)) for (data,) in self._rows(statement)]
 
-    def _begin(self, meta: Mapping[str, Any]) -> None:
+    def _begin(self, meta: Mapping[str, Any], *, adopt: bool, fresh: bool) -> None:
         with self._transaction() as execute:
-            for statement in _SCHEMA.split(";"):
+            for statement in (_ADOPT if adopt else _SCHEMA).split(";"):
                 execute(statement)
+            if fresh:
+                execute("DELETE FROM kept")
             self._put(_VERSION_KEY, SCHEMA_VERSION)
             for key, value in meta.items():
                 self._put(key, value)
+
+    def _keep_copy(self) -> None:
+        """Keep the campaign before this one as it is."""
+        kept = self.path.with_name(PREVIOUS)
+        new = self.path.with_name(_HALF_A_COPY)
+        try:
+            self._connection.execute("VACUUM INTO ?", (str(new),))
+            _remove(kept)
+            new.replace(kept)
+        finally:
+            new.unlink(missing_ok=True)
 
     @contextmanager
     def _closed_on_error(self) -> Iterator[None]:
@@ -331,14 +446,46 @@ def _dump(value: Any) -> str:
     return json.dumps(to_data(value), ensure_ascii=False, default=str)
 
 
-def _keep_previous(path: Path) -> None:
+def _make_way(path: Path) -> bool:
+    """Whether a journal of this version lies there; anything else that mutabot may replace is moved aside."""
     if not path.exists():
-        return
-    if path.stat().st_size and not path.read_bytes()[:16].startswith(b"SQLite format 3"):
+        return False
+    with path.open("rb") as file:
+        start = file.read(16)
+    if start and not start.startswith(b"SQLite format 3"):
         raise JournalError(f"{path} is in the way: it is not a journal of mutabot", path=str(path))
+    if _is_journal(path):
+        return True
+    if _is_empty(path):  # of a campaign that was killed before it had begun
+        return False
+    kept = path.with_name(PREVIOUS)
+    _remove(kept)
     for suffix in ("", "-wal", "-shm"):
         old = path.with_name(path.name + suffix)
-        kept = path.with_name(PREVIOUS + suffix)
-        kept.unlink(missing_ok=True)
         if old.exists():
-            old.replace(kept)
+            old.replace(kept.with_name(kept.name + suffix))
+    return False
+
+
+def _is_empty(path: Path) -> bool:
+    with closing(connect(path)) as connection, suppress(sqlite3.DatabaseError):
+        return connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None
+    return False
+
+
+def _is_journal(path: Path) -> bool:
+    try:
+        with closing(connect(path)) as connection:
+            Journal(path, connection)._check_version()
+            (sound,) = connection.execute("PRAGMA quick_check(1)").fetchone()
+    except (JournalError, sqlite3.DatabaseError) as error:
+        cause = error.__cause__ if isinstance(error, JournalError) else error
+        if isinstance(cause, sqlite3.OperationalError):
+            raise  # it is not the content that is wrong: a full disk, a folder that cannot be written
+        return False
+    return bool(sound == "ok")
+
+
+def _remove(path: Path) -> None:
+    for suffix in ("", "-wal", "-shm"):
+        path.with_name(path.name + suffix).unlink(missing_ok=True)

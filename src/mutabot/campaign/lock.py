@@ -1,10 +1,13 @@
-"""The lock that keeps a second campaign out of the same journal."""
+"""The locks on a project: one campaign at a time writes its journal, and whoever works there says so."""
 
 from __future__ import annotations
 
 import fcntl
 import os
+import shutil
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from mutabot.errors import JournalError
@@ -51,3 +54,25 @@ def is_written(journal: Path) -> bool:
     finally:
         os.close(descriptor)
     return False
+
+
+@contextmanager
+def at_work(home: Path) -> Iterator[None]:
+    """Say that somebody works in mutabot's folder; the first to come removes what killed ones left there."""
+    try:
+        home.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(home, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except OSError as error:
+        raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            pass
+        else:
+            for left_behind in home.glob("work-*"):
+                shutil.rmtree(left_behind, ignore_errors=True)
+        fcntl.flock(descriptor, fcntl.LOCK_SH)
+        yield
+    finally:
+        os.close(descriptor)

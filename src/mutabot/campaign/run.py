@@ -1,24 +1,29 @@
-"""The campaign: baseline, plan, controls, engine, journal, in this order."""
+"""The campaign: baseline, plan, what still holds, controls, engine; and the journal from the first moment."""
 
 from __future__ import annotations
 
+import errno
 import platform
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from mutabot import __version__
-from mutabot.errors import NothingToDoError
+from mutabot.errors import JournalError, NothingToDoError
 from mutabot.model import LeftOut, Mutant, Vocabulary, to_data
 
 from .baseline import Baseline, take_baseline
 from .branching import Remainder
+from .dependencies import Dependencies, Snapshot
 from .engine import engine_of, repetitions_for, run_mutants, try_controls
 from .journal import Journal
+from .lock import at_work
 from .plan import Plan, make_plan
 from .request import CheckReport, Progress, Request
+from .reuse import reuse
 from .selection import select
 from .verify import look_again, refuse_flaky
 from .workers import Result, Workers
@@ -30,27 +35,97 @@ _VERSIONS = ("pytest", "wrapt", "mujoco", "mink", "ruckig", "numpy", "pytest-bdd
 def run_campaign(request: Request, progress: Progress) -> Path:
     """Run a whole campaign and return the path of its journal.
 
-    Outcomes are in the journal as soon as they are known; an interrupted campaign leaves what it has.
+    Outcomes of earlier campaigns that still hold are taken over. New ones are in the journal as soon as
+    they are known; an interrupted campaign leaves what it has.
 
-    Raises ConfigurationError, BaselineError, NothingToDoError, ControlError.
+    Raises ConfigurationError, BaselineError, NothingToDoError, ControlError, JournalError.
     """
     started = time.monotonic()
-    with _workers(request) as workers:
-        baseline, results = _baseline(request, workers, progress)
-        plan = selected(request, make_plan(baseline, request.vocabulary), baseline)
-        with Journal.create(request.journal_path, meta=_meta(request)) as journal:
-            try:
-                _write_beginning(journal, request, results, plan)
-                _note_unstable(baseline, progress)
-                refuse_flaky(request, baseline)
-                run_mutants(request, baseline, workers, progress, plan.mutants, journal)
-                look_again(request, baseline, workers, progress, plan.mutants, journal)
-            except BaseException as error:
-                journal.finish(_reason(error))
-                raise
+    with Journal.create(request.journal_path, meta=_meta(request), fresh=request.fresh) as journal:
+        try:
+            with _disk_told(request), _workers(request) as workers:
+                _run(request, workers, progress, journal)
             journal.set_meta("seconds", time.monotonic() - started)
             journal.finish("complete")
+        except BaseException as error:
+            with suppress(JournalError):  # on a full disk not even this can be written
+                journal.finish(_reason(error))
+            raise
     return request.journal_path
+
+
+def _run(request: Request, workers: Workers, progress: Progress, journal: Journal) -> None:
+    before = Snapshot.take(request.root)
+    baseline, results = _baseline(request, workers, progress)
+    whole = make_plan(baseline, request.vocabulary)
+    plan = selected(request, whole, baseline)
+    _write_beginning(journal, request, results, plan)
+    _note_unstable(baseline, progress)
+    refuse_flaky(request, baseline)
+    after = Snapshot.take(request.root, before)
+    edited = after.edited_programs(before)
+    if edited:
+        progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
+        run_mutants(request, baseline, workers, progress, plan.mutants, journal)
+        look_again(request, baseline, workers, progress, plan.mutants, journal)
+        return
+    dependencies = Dependencies(request, baseline, _collected(results), before, after)
+    done = reuse(journal, dependencies, plan.mutants, request.rounds, progress)
+    journal.key_of = _key_of(journal, dependencies, plan)
+    try:
+        run_mutants(request, baseline, workers, progress, plan.mutants, journal, done)
+        look_again(request, baseline, workers, progress, plan.mutants, journal)
+    finally:
+        _forget_if_edited(request, journal, progress, dependencies, after)
+    journal.tidy(mutant.id for mutant in whole.mutants)
+
+
+def _collected(results: Sequence[Result]) -> set[str]:
+    """All tests that the baseline knows of, also those it set aside."""
+    ends = (result.end for result in results)
+    return {test for end in ends if end is not None for test in end.collected}
+
+
+def _key_of(journal: Journal, dependencies: Dependencies, plan: Plan) -> Callable[[str, int], str]:
+    by_id = {mutant.id: mutant for mutant in plan.mutants}
+
+    def key_of(mutant: str, round: int) -> str:
+        key = dependencies.keys(by_id[mutant], round)[0]
+        journal.add_parts(dependencies.new_parts())
+        return key
+
+    return key_of
+
+
+def _forget_if_edited(
+    request: Request, journal: Journal, progress: Progress, dependencies: Dependencies, after: Snapshot
+) -> None:
+    """Outcomes that may come from two versions of a file are not reused."""
+    edited = Snapshot.take(request.root, after).edited_since(dependencies.files)
+    if edited:
+        progress.note(f"{_listed(edited)} changed while mutants ran: what was found will not be reused")
+        with suppress(JournalError):
+            journal.forget_keys()
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return ", ".join(names[:3]) + more
+
+
+@contextmanager
+def _disk_told(request: Request) -> Iterator[None]:
+    """A disk that cannot be written is the user's concern, not a fault of ours."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in {errno.ENOSPC, errno.EDQUOT, errno.EROFS}:
+            raise
+        home = request.journal_path.parent
+        text = (
+            f"{error.filename or home} cannot be written: {error.strerror}; what was reported before is kept"
+        )
+        raise JournalError(text, path=str(request.journal_path)) from error
 
 
 def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[LeftOut]]:
@@ -88,8 +163,13 @@ def selected(request: Request, plan: Plan, baseline: Baseline) -> Plan:
     return Plan(mutants, plan.left_out)
 
 
-def _workers(request: Request) -> Workers:
-    return Workers(request.root, request.arguments, request.jobs)
+@contextmanager
+def _workers(request: Request) -> Iterator[Workers]:
+    with (
+        at_work(request.journal_path.parent),
+        Workers(request.root, request.arguments, request.jobs) as workers,
+    ):
+        yield workers
 
 
 def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
