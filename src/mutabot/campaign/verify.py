@@ -17,6 +17,7 @@ from mutabot.model import Mutant, Outcome, Verdict, to_data
 
 from .baseline import Baseline, Place, take_baseline
 from .controls import run_controls
+from .engine import engine_of
 from .journal import Journal
 from .plan import make_plan
 from .replay import Pair, replay
@@ -178,7 +179,11 @@ def look_again(
     journal: Journal,
 ) -> None:
     """Verify and confirm what was asked for, and write down what came of it, flaky tests included."""
-    journal.set_meta(FLAKY, to_data(Flaky.of(baseline)))
+    flaky = Flaky.of(baseline)
+    journal.set_meta(FLAKY, to_data(flaky))
+    if engine_of(request) == "branch":  # only now have the trunks given the second opinion
+        for line in flaky.tests:
+            progress.note(f"set aside as flaky: {line}")
     by_id = {mutant.id: mutant for mutant in mutants}
     outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
     chosen = choose(outcomes.values(), request.verify, request.seed)
