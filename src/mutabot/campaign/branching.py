@@ -58,11 +58,13 @@ def branch(
     remainder: Remainder,
     *,
     only: Mapping[str, tuple[str, ...]] | None = None,
+    at_start: bool = False,
 ) -> Iterator[Outcome]:
     """Outcomes of mutants in rounds, as they come; ``remainder`` is filled with what is left to replay.
 
     ``only`` names the tests that judge certain mutants, by id; all others are judged by every test that
-    reaches them.
+    reaches them. ``at_start`` forks when a test begins instead of at the site, to measure what sharing is
+    worth.
     """
     trunks: dict[int, _Trunk] = {}
     for mutant, round in pairs:
@@ -74,7 +76,7 @@ def branch(
         if round not in trunks:
             trunks[round] = _Trunk(request, baseline, round)
         trunks[round].add(mutant, tests)
-    tasks = (trunk.task(workers.pool.descriptors) for trunk in trunks.values())
+    tasks = (trunk.task(workers.pool.descriptors, at_start=at_start) for trunk in trunks.values())
     for event in workers.events(tasks):
         if isinstance(event, Result):
             yield from trunks[event.task.job.round].finish(event, remainder)
@@ -130,7 +132,7 @@ class _Trunk:
         self._open[mutant.id] = _Branches(mutant, tests)
         self._needed.update(tests)
 
-    def task(self, tokens: tuple[int, int]) -> Task:
+    def task(self, tokens: tuple[int, int], *, at_start: bool = False) -> Task:
         """The task that runs the trunk."""
         request, baseline, round = self._request, self._baseline, self._round
         in_order = tuple(test for test in baseline.by_cost(round) if test in self._needed)
@@ -142,6 +144,7 @@ class _Trunk:
             tokens=tokens,
             walls=walls,
             wall=longest,
+            at_start=at_start,
         )
         factor = request.configuration.timeout_factor
         budgets = {test: baseline.budget(round, test, factor) for test in in_order}

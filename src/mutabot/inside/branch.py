@@ -110,6 +110,12 @@ class Trunk:
             return None
         return self._fork_each(due)
 
+    def branch_at_start(self) -> Mutant | None:
+        """Fork for every live mutant of the test that begins, if that is asked for. As ``branch``."""
+        if not self.branching.at_start:
+            return None
+        return self._fork_each([mutant for mutant in self.branching.mutants if self._is_due(mutant)])
+
     def finish(self) -> None:
         """All tests are over: wait for the branches that still run, holding no token meanwhile."""
         self._tokens.give_back()

@@ -105,6 +105,7 @@ class Session:
             door.reset()
         if self.trunk is not None:
             self.trunk.start_test(test)
+            self._become(self.trunk.branch_at_start())
         if self.activation is not None:
             self._start_activation(self.activation)
 
@@ -243,7 +244,10 @@ class Session:
     def _let_branch(self, trunk: Trunk, span: Span, call: Call) -> None:
         """Fork for the mutants of this call; a branch goes on from here as its mutant."""
         pattern = call.pattern.text if call.pattern is not None else None
-        mutant = trunk.branch(span, call.operation.target, pattern)
+        self._become(trunk.branch(span, call.operation.target, pattern))
+
+    def _become(self, mutant: Mutant | None) -> None:
+        """In a branch that was just forked: take on its mutant."""
         if mutant is not None:
             self.trunk, self.branch = None, mutant.id
             self.activate(mutant)

@@ -45,6 +45,8 @@ class Branching:
         tokens: descriptors of the token pool: reading end, writing end.
         walls: wall-clock seconds that a branch may take, by test.
         wall: the same for tests that are missing there.
+        at_start: whether to fork when a test begins instead of at the site: nothing but the imports is
+            shared then. Only of use to measure what sharing is worth.
     """
 
     mutants: tuple[Mutant, ...]
@@ -52,6 +54,7 @@ class Branching:
     tokens: tuple[int, int]
     walls: Mapping[str, float] = field(default_factory=dict)
     wall: float = 600.0
+    at_start: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Coroutine, Mapping
 from dataclasses import dataclass, field
+from math import isclose
 from typing import Any, TypeVar
 
 from mutabot.errors import OperatorError
@@ -138,8 +139,17 @@ def same_values(one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
 
 
 def same(one: Value, other: Value) -> bool:
-    """Whether two values are equal; arrays by their elements, not-a-number equal to itself."""
+    """Whether two values are equal; arrays by their elements, not-a-number equal to itself.
+
+    A difference that is but rounding of the computation is none: no robot could show it.
+    """
     if one is other:
+        return True
+    if (
+        isinstance(one, float)
+        and isinstance(other, float)
+        and isclose(one, other, rel_tol=1e-9, abs_tol=1e-12)
+    ):
         return True
     if hasattr(one, "tolist"):
         one = one.tolist()

@@ -1,0 +1,210 @@
+"""The engines side by side on the examples: what sharing prefixes is worth.
+
+Four ways to run the same mutants, in one go on the same machine:
+
+  branch   trunk and branches: the prefix is shared up to the site
+  fork     a warm fork per (mutant, test) when the test begins: only imports are shared
+  replay   a fresh process per mutant and round, with the tests that reach the site
+  fresh    a fresh pytest per mutant and round with the whole suite until a test fails, as general tools do it
+
+Usage: python benchmarks/engines.py [--examples paper …] [--engines branch …] [--limit N] [--output FILE]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import resource
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from mutabot.campaign.baseline import Baseline, take_baseline
+from mutabot.campaign.branching import Remainder, branch
+from mutabot.campaign.configuration import load_configuration
+from mutabot.campaign.plan import make_plan
+from mutabot.campaign.replay import Pair, replay
+from mutabot.campaign.request import Request
+from mutabot.campaign.run import selected
+from mutabot.campaign.workers import Workers
+from mutabot.model import Outcome
+from mutabot.vocabulary import load
+
+ROOT = Path(__file__).resolve().parent.parent
+EXAMPLES: dict[str, dict[str, Any]] = {
+    "paper": {"selection": "published.txt", "rounds": 5},
+    "pick_and_place": {"selection": None, "rounds": 1},
+    "scales": {"selection": None, "rounds": 1},
+}
+ENGINES = ("branch", "fork", "replay", "fresh")
+#: physics steps per simulated second of mutabot.cells
+STEPS_PER_SECOND = 500
+
+
+@dataclass
+class Row:
+    """One line of the table."""
+
+    example: str
+    engine: str
+    outcomes: int
+    wall: float
+    cpu: float
+    simulated: float
+    memory: float
+    bound: float | None
+
+    @property
+    def data(self) -> dict[str, Any]:
+        efficiency = self.bound / self.wall if self.bound is not None else None
+        return {**vars(self), "per_second": self.outcomes / self.wall, "efficiency": efficiency}
+
+
+class Silent:
+    """A progress that says nothing."""
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        """Ignore it."""
+
+    def advance(self, line: str | None = None) -> None:
+        """Ignore it."""
+
+    def note(self, text: str) -> None:
+        """Ignore it."""
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--examples", nargs="+", default=list(EXAMPLES), choices=list(EXAMPLES))
+    parser.add_argument("--engines", nargs="+", default=list(ENGINES), choices=ENGINES)
+    parser.add_argument("--limit", type=int, default=None, help="mutants per example at most")
+    parser.add_argument("--output", type=Path, default=None)
+    options = parser.parse_args()
+    rate = raw_step_rate()
+    rows = [
+        measure(example, engine, options.limit, rate)
+        for example in options.examples
+        for engine in options.engines
+    ]
+    show(rows, rate)
+    if options.output is not None:
+        data = {"raw_steps_per_second": rate, "rows": [row.data for row in rows]}
+        options.output.write_text(json.dumps(data, indent=1), encoding="utf-8")
+
+
+def measure(example: str, engine: str, limit: int | None, rate: float) -> Row:
+    """Run one example with one engine in a copy, baseline and start-up included."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name) / example
+        shutil.copytree(ROOT / "examples" / example, folder, ignore=shutil.ignore_patterns(".mutabot"))
+        before, started = cpu_seconds(), time.monotonic()
+        request = request_for(folder, **EXAMPLES[example])
+        with Workers(request.root, request.arguments, request.jobs) as workers:
+            shared = engine in ("branch", "fork")
+            baseline, results = take_baseline(request, workers, Silent(), repetitions=1 if shared else 2)
+            mutants = selected(request, make_plan(baseline, request.vocabulary), baseline).mutants[:limit]
+            pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
+            outcomes = list(run_pairs(engine, request, baseline, workers, pairs))
+        wall, cpu = time.monotonic() - started, cpu_seconds() - before
+    originals = sum(end.simulated or 0.0 for result in results for end in result.ends)
+    if shared:
+        originals *= 2  # the trunks run the same again
+    simulated = originals + sum((one.simulated or 0.0) - (one.shared or 0.0) for one in outcomes)
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    bound = None if example == "scales" else simulated * STEPS_PER_SECOND / rate / request.jobs
+    return Row(example, engine, len(outcomes), wall, cpu, simulated, peak, bound)
+
+
+def run_pairs(
+    engine: str, request: Request, baseline: Baseline, workers: Workers, pairs: list[Pair]
+) -> Iterator[Outcome]:
+    """All outcomes; what a fork could not do is replayed, as in a campaign."""
+    if engine in ("branch", "fork"):
+        remainder = Remainder()
+        yield from branch(request, baseline, workers, pairs, remainder, at_start=engine == "fork")
+        yield from replay(request, baseline, workers, remainder.pairs)
+        return
+    if engine == "fresh":
+        for round, place in baseline.reaching:
+            baseline.reaching[round, place] = list(baseline.tests[round])
+    yield from replay(request, baseline, workers, pairs)
+
+
+def request_for(folder: Path, *, selection: str | None, rounds: int) -> Request:
+    """The campaign to measure."""
+    configuration = load_configuration(folder)
+    vocabulary = load(configuration.vocabulary, configuration.root)
+    jobs = len(os.sched_getaffinity(0))
+    file = folder / selection if selection is not None else None
+    return Request(configuration, vocabulary, rounds, 1, jobs, selection=file)
+
+
+def cpu_seconds() -> float:
+    """Processor time of this process and of all that have ended below it, s."""
+    own, children = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return own.ru_utime + own.ru_stime + children.ru_utime + children.ru_stime
+
+
+def raw_step_rate() -> float:
+    """Physics steps per second of the bare engine on one core: a recorded run, stepped without control."""
+    import mujoco  # noqa: PLC0415  # only this needs it
+
+    from mutabot.cells import Cell  # noqa: PLC0415
+
+    cell = Cell(1)
+    inputs: list[Any] = []
+    cell.simulation.after_tick.append(lambda: inputs.extend(cell.simulation.setpoints.copy()))
+    cell.arm.move_by(y=0.2)
+    cell.arm.move_by(theta_x=80)
+    cell.arm.move_by(z=-0.29)
+    cell.gripper.command(1.0)
+    cell.wait(1.5)
+    cell.arm.home()
+    rates = []
+    for _ in range(3):
+        again = Cell(1).simulation
+        started = time.process_time()
+        for row in inputs:
+            again.data.ctrl[:] = row
+            mujoco.mj_step(again.model, again.data)
+        rates.append(len(inputs) / (time.process_time() - started))
+    return max(rates)
+
+
+def show(rows: list[Row], rate: float) -> None:
+    """Print the table."""
+    table = Table(title=f"raw physics: {rate:,.0f} steps/s on one core")
+    headings = (
+        "example",
+        "engine",
+        "outcomes",
+        "wall s",
+        "CPU s",
+        "simulated s",
+        "outcomes/s",
+        "peak MB",
+        "efficiency",
+    )
+    for heading in headings:
+        table.add_column(heading, justify="left" if heading in ("example", "engine") else "right")
+    for row in rows:
+        data = row.data
+        efficiency = "" if data["efficiency"] is None else f"{data['efficiency']:.2f}"
+        table.add_row(
+            row.example, row.engine, str(row.outcomes), f"{row.wall:.1f}", f"{row.cpu:.1f}",
+            f"{row.simulated:.0f}", f"{data['per_second']:.1f}", f"{row.memory:.0f}", efficiency,
+        )  # fmt: skip
+    Console(width=110).print(table)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,31 @@
+"""When a mutant counts as having changed something."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mutabot.operators.driving import same
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "expected"),
+    [
+        (0.1 + 0.2, 0.3, True),
+        (-1.27e-14, 0.0, True),
+        (0.5, 0.5001, False),
+        (1, 1.0, True),
+        (math.nan, math.nan, True),
+        (True, False, False),
+        ("red", "blue", False),
+        ([0.1, 0.2], [0.1, 0.2], True),
+        (np.array([1.0, 2.0]), np.array([1.0, 2.0]), True),
+        (np.array([1.0, 2.0]), np.array([1.0, -2.0]), False),
+        (None, 0.0, False),
+    ],
+)
+def test_values_are_the_same_up_to_rounding(one: Any, other: Any, expected: bool) -> None:
+    assert same(one, other) is expected
