@@ -16,10 +16,10 @@ import mutabot
 from analysis import samples
 from mutabot.campaign import run as campaign
 from mutabot.cli import main
-from mutabot.errors import BaselineError, ControlError, MutabotError
+from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
 
-COMMANDS = ("init", "check", "list", "run", "results", "show")
+COMMANDS = ("init", "check", "list", "run", "results", "show", "replay")
 
 
 @pytest.fixture
@@ -96,6 +96,9 @@ def test_the_version_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
         ["run", "--nonsense"],
         ["show"],
         ["run", "--min-score", "101"],
+        ["run", "--verify", "-1"],
+        ["replay"],
+        ["replay", "1", "--round", "0"],
     ],
 )
 def test_a_wrong_command_line_is_2_without_a_traceback(
@@ -120,7 +123,7 @@ def test_a_folder_without_configuration_is_2_and_names_init(
     assert "mutabot init" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("command", [["results"], ["show", "1"]])
+@pytest.mark.parametrize("command", [["results"], ["show", "1"], ["replay", "1"]])
 def test_results_without_a_journal_are_2_and_name_run(
     command: list[str], project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -138,8 +141,9 @@ def test_a_run_prints_the_results(fake: Campaign, capsys: pytest.CaptureFixture[
 def test_options_of_a_run_reach_the_campaign(fake: Campaign) -> None:
     (fake.project / "s.txt").write_text("")
     words = "--only reverse --only skip --skip 3 --rounds 4 --seed 0 -j 3 --engine replay --selection s.txt"
-    assert main(["run", *words.split()]) == 0
+    assert main(["run", *words.split(), "--verify", "7", "--confirm"]) == 0
     request = fake.request
+    assert (request.verify, request.confirm) == (7, True)
     assert (request.only, request.skip) == (("reverse", "skip"), ("3",))
     assert (request.rounds, request.seed, request.jobs) == (4, 0, 3)
     assert (request.engine, request.selection) == ("replay", Path("s.txt"))
@@ -212,11 +216,31 @@ def test_time_outs_beyond_the_limit_are_5(fake: Campaign) -> None:
     assert main(["run"]) == 5
 
 
+def test_unstable_outcomes_beyond_the_limit_are_4(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:
+    ends = (Outcome(samples.SKIP.id, 0, Verdict.UNSTABLE), Outcome(samples.SKIP.id, 1, Verdict.SURVIVED))
+    fake.journal = {"outcomes": ends}
+    assert main(["run"]) == 4
+    assert "1 of 2 outcomes are unstable (50%); the limit is 10%" in capsys.readouterr().err
+    with (fake.project / "mutabot.toml").open("a") as file:
+        file.write("unstable_limit = 0.5\n")
+    assert main(["run"]) == 0
+
+
+def test_a_disagreement_is_4_and_names_the_mutant(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:
+    wrong = {"mutant": "some.id", "number": 2, "round": 0, "first": "survived", "second": "killed by check"}
+    fake.journal = {"verification": {"wanted": 3, "checked": 3, "disagreements": [wrong]}}
+    assert main(["run", "--verify", "3"]) == 4
+    out, err = capsys.readouterr()
+    assert "Verified: 2 of 3 outcomes end the same" in out
+    assert "mutant 2 (some.id), round 1" in err
+
+
 @pytest.mark.parametrize(
     ("error", "code"),
     [
         (BaselineError("the tests fail: test_a"), 3),
         (ControlError("a control ended wrongly", control="fatal", test_file="t.py"), 4),
+        (UnstableError("2 of 3 tests are flaky", tests=["a", "b"]), 4),
         (MutabotError("something of ours"), 70),
     ],
 )

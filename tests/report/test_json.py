@@ -17,6 +17,23 @@ from mutabot.model import Outcome, Verdict
 from mutabot.report.as_json import dumps, results_data
 from mutabot.report.listing import plan_data
 
+SECOND_LOOK: dict[str, Any] = {
+    "verification": {
+        "wanted": 20,
+        "checked": 10,
+        "disagreements": [
+            {
+                "mutant": samples.SKIP.id,
+                "number": 2,
+                "round": 1,
+                "first": "survived",
+                "second": "killed by check",
+            }
+        ],
+    },
+    "confirmation": {"checked": 3, "unstable": 1},
+    "flaky": {"tests": ["test_a in round 1: failed and passed in equal runs"], "known": 4},
+}
 DOCUMENT = Path(__file__).parents[2] / "docs" / "json.md"
 
 
@@ -61,6 +78,25 @@ def test_meta_says_with_what_and_how_it_ended(tmp_path: Path) -> None:
     assert "vocabulary" not in found["meta"]
 
 
+def test_a_second_look_is_in_it(tmp_path: Path) -> None:
+    found = data(tmp_path, **SECOND_LOOK)
+    assert (found["verification"]["checked"], found["verification"]["agreed"]) == (10, 9)
+    (wrong,) = found["verification"]["disagreements"]
+    assert (wrong["id"], wrong["round"], wrong["first"]) == (samples.SKIP.id, 2, "survived")
+    assert found["confirmation"] == {"checked": 3, "unstable": 1}
+    assert found["flaky"] == ["test_a in round 1: failed and passed in equal runs"]
+    assert not set(SECOND_LOOK) & set(found["meta"])
+    without = data(tmp_path)
+    assert (without["verification"], without["confirmation"], without["flaky"]) == (None, None, [])
+
+
+def test_means_carry_their_interval(tmp_path: Path) -> None:
+    group = data(tmp_path)["groups"][0]
+    assert 0 <= group["interval"]["low"] < group["score"] < group["interval"]["high"] <= 1
+    assert group["interval"]["level"] == 0.95
+    assert group["check_interval"]["high"] > group["check_score"]
+
+
 def test_rounds_that_were_not_run_are_there_without_a_verdict(tmp_path: Path) -> None:
     found = data(tmp_path, outcomes=())
     assert found["mutants"][0]["rounds"][1] == {"round": 2, "verdict": None}
@@ -84,10 +120,13 @@ def test_the_plan_has_the_same_keys_for_a_mutant(tmp_path: Path) -> None:
 
 def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
     documented = set(re.findall(r"^\| `(\w+)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE))
-    found = data(tmp_path)
+    found = data(tmp_path, **SECOND_LOOK)
     parts = [found, *found["mutants"], *found["groups"], *found["rounds"], *found["left_out"]]
     parts += [
         *found["controls"],
+        found["verification"],
+        *found["verification"]["disagreements"],
+        found["confirmation"],
         *found["baseline"],
         *(one for mutant in found["mutants"] for one in mutant["rounds"]),
     ]

@@ -86,6 +86,45 @@ def test_scores_carry_their_counts_per_round_and_per_role(results: Results) -> N
     assert row(text, "robot · program", "58.3 %", "25.0 %", "1 killed by a check", "1 timeout")
 
 
+@pytest.mark.parametrize("width", [80, 120])
+def test_kill_rates_and_scores_carry_their_intervals(results: Results, width: int) -> None:
+    text = report(results, width)
+    assert row(text, "reverse", "2/2")
+    assert row(text, "34–100 %")
+    assert "3–98 %" in text[text.index("Scores") :]
+    assert "docs/statistics.md" in text
+
+
+def test_with_one_round_there_is_no_interval(tmp_path: Path) -> None:
+    once = tuple(one for one in samples.OUTCOMES if one.round == 0)
+    path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=once, rounds=1)
+    with Journal.open(path) as journal:
+        text = report(read_results(journal), 80)
+    assert "–" not in text.partition("Scores")[2].partition("survivor")[0].replace("–  ", "")
+    assert "docs/statistics.md" not in text
+
+
+@WIDTHS
+def test_a_second_look_is_told(tmp_path: Path, width: int) -> None:
+    wrong = {
+        "mutant": samples.SKIP.id, "number": 2, "round": 0, "first": "survived", "second": "killed by check",
+    }  # fmt: skip
+    path = samples.write_journal(
+        tmp_path / "journal.sqlite",
+        verification={"wanted": 9, "checked": 9, "disagreements": [wrong]},
+        confirmation={"checked": 4, "unstable": 1},
+        flaky={"tests": ["tests/t.py::test_a in round 1: failed in an equal run"], "known": 8},
+    )
+    with Journal.open(path) as journal:
+        text = report(read_results(journal), width)
+    flat = " ".join(text.split())
+    assert "Verified: 8 of 9 outcomes end the same in fresh processes." in flat
+    assert "mutant 2, round 1: survived; afresh: killed by check" in flat
+    assert "Confirmed: 3 of 4 survivors and time-outs end so once more." in flat
+    assert "1 flaky test set aside tests/t.py::test_a in round 1" in flat
+    assert max(cell_len(line) for line in text.splitlines()) <= width
+
+
 def test_survivors_come_with_a_reason_the_farthest_first(results: Results) -> None:
     text = report(results)
     section = text[text.index("survivors") :]
@@ -140,6 +179,12 @@ def test_show_underlines_the_call_in_its_source(results: Results) -> None:
     lines = written(on).splitlines()
     source = next(index for index, line in enumerate(lines) if "größe" in line)
     assert lines[source + 1].index("^") == lines[source].index("arm.move_by")
+
+
+def test_show_gives_the_kill_rate_with_its_interval(results: Results) -> None:
+    on = console(100)
+    print_mutant(on, find_mutant(results, "1"), None)
+    assert "in 2 of the 2 rounds in which it was valid: 100.0 %, 95 % interval 34–100 %" in written(on)
 
 
 def test_show_tells_what_changed_and_how_each_round_ended(results: Results) -> None:
