@@ -9,12 +9,14 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from analysis import samples
-from mutabot.campaign.journal import PREVIOUS, Journal
+from mutabot.campaign.database import connect
+from mutabot.campaign.journal import PREVIOUS, Journal, Kept
 from mutabot.campaign.lock import is_written
 from mutabot.errors import JournalError
 from mutabot.model import By, Outcome, TestEnd, Verdict
@@ -93,12 +95,127 @@ def test_a_campaign_can_end_and_go_on(path: Path) -> None:
         assert journal.meta() == {"seed": 3}
 
 
-def test_a_new_campaign_keeps_the_journal_of_the_one_before(path: Path) -> None:
-    for seed in (1, 2, 3):
-        with Journal.create(path, meta={"seed": seed}):
-            pass
+def test_a_new_campaign_keeps_the_journal_of_the_last_complete_one(path: Path) -> None:
+    for seed, end in ((1, "complete"), (2, "complete"), (3, "interrupted"), (4, "interrupted")):
+        with Journal.create(path, meta={"seed": seed}) as journal:
+            journal.add_outcome(KILLED)
+            journal.finish(end)
+    assert {file.name for file in path.parent.iterdir()} == {path.name, f"{path.name}.lock", PREVIOUS}
     with Journal.open(path) as journal, Journal.open(path.with_name(PREVIOUS)) as previous:
-        assert (journal.meta()["seed"], previous.meta()["seed"]) == (3, 2)
+        assert (journal.meta()["seed"], previous.meta()["seed"]) == (4, 2)
+        assert previous.outcomes() == [KILLED]
+
+
+def begin(path: Path, *outcomes: Outcome, key: str = "a b c", **options: bool) -> None:
+    """A campaign that finds these outcomes and is then lost."""
+    with Journal.create(path, meta={}, **options) as journal:
+        journal.key_of = lambda mutant, round: key
+        for outcome in outcomes:
+            journal.add_outcome(outcome)
+
+
+def test_outcomes_are_kept_aside_with_their_keys_until_a_later_one_takes_their_place(path: Path) -> None:
+    begin(path, KILLED, Outcome("m", 1, Verdict.SURVIVED), Outcome("n", 0, Verdict.ERROR))
+    begin(path)
+    begin(path, Outcome("m", 1, Verdict.KILLED), key="d e f")
+    with Journal.create(path, meta={}) as journal:
+        assert journal.outcomes() == []
+        assert journal.kept() == {
+            ("m", 0): Kept("a b c", is_sound=True),
+            ("m", 1): Kept("d e f", is_sound=True),
+            ("n", 0): Kept("a b c", is_sound=False),
+        }
+        journal.reuse([("m", 0)])
+        journal.add_outcome(Outcome("m", 1, Verdict.SURVIVED))
+        assert journal.outcomes() == [KILLED, Outcome("m", 1, Verdict.SURVIVED)]
+        assert journal.reused() == {("m", 0)}
+
+
+@pytest.mark.parametrize(
+    "outcome",
+    [
+        Outcome("m", 0, Verdict.ERROR),
+        Outcome("m", 0, Verdict.UNSTABLE),
+        Outcome("m", 0, Verdict.KILLED, message="OSError: [Errno 28] No space left on device: 'x'"),
+    ],
+)
+def test_an_outcome_that_tells_of_the_machine_is_not_sound(path: Path, outcome: Outcome) -> None:
+    begin(path, outcome)
+    with Journal.create(path, meta={}) as journal:
+        assert not journal.kept()["m", 0].is_sound
+
+
+def test_a_fresh_campaign_and_outcomes_without_a_key_keep_nothing(path: Path) -> None:
+    begin(path, KILLED)
+    begin(path, fresh=True)
+    with Journal.create(path, meta={}) as journal:
+        assert journal.kept() == {}
+    begin(path, KILLED, key="")
+    with Journal.create(path, meta={}) as journal:
+        assert journal.kept() == {}
+
+
+def test_a_campaign_can_give_up_the_keys_of_what_it_found_itself(path: Path) -> None:
+    begin(path, KILLED)
+    with Journal.create(path, meta={}) as journal:
+        journal.key_of = lambda mutant, round: "d e f"
+        journal.reuse([("m", 0)])
+        journal.add_outcome(Outcome("m", 1, Verdict.SURVIVED))
+        journal.forget_keys()
+    with Journal.create(path, meta={}) as journal:
+        assert set(journal.kept()) == {("m", 0)}
+
+
+def test_what_nothing_refers_to_is_tidied_away(path: Path) -> None:
+    begin(path, KILLED, Outcome("gone", 0, Verdict.SURVIVED))
+    with Journal.create(path, meta={}) as journal:
+        journal.add_parts({"a": {"x.py": "#1"}, "z": {}})
+        assert journal.parts("a") == {"x.py": "#1"}
+        journal.tidy(["m"])
+        assert set(journal.kept()) == {("m", 0)}
+        assert (journal.parts("a"), journal.parts("z")) == ({"x.py": "#1"}, None)
+
+
+def test_a_campaign_that_cannot_begin_leaves_the_one_before_as_it_was(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begin(path, KILLED)
+
+    def full(self: Journal, key: str, value: object) -> None:
+        raise sqlite3.OperationalError("database or disk is full")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Journal, "_put", full)
+        with pytest.raises(JournalError, match="disk is full"):
+            Journal.create(path, meta={"seed": 2})
+    with Journal.open(path) as journal:
+        assert journal.outcomes() == [KILLED]
+
+
+def test_a_journal_of_a_campaign_killed_before_it_began_is_no_obstacle(path: Path) -> None:
+    begin(path)
+    with Journal.create(path, meta={"seed": 1}) as journal:
+        journal.finish("complete")
+    begin(path)
+    path.unlink()
+    connect(path).close()
+    with Journal.create(path, meta={}) as journal, Journal.open(path.with_name(PREVIOUS)) as previous:
+        assert journal.outcomes() == []
+        assert previous.meta() == {"seed": 1}
+
+
+@pytest.mark.parametrize("content", ["version", "garbage"])
+def test_what_is_no_journal_of_this_version_is_moved_aside(path: Path, content: str) -> None:
+    begin(path, KILLED)
+    if content == "version":
+        with closing(sqlite3.connect(path)) as connection, connection:
+            connection.execute("UPDATE meta SET value = '1' WHERE key = 'journal:version'")
+    else:
+        path.write_bytes(path.read_bytes()[:4096] + b"?" * 8192)
+    before = path.read_bytes()
+    with Journal.create(path, meta={}) as journal:
+        assert journal.kept() == {}
+    assert path.with_name(PREVIOUS).read_bytes() == before
 
 
 def test_readers_see_each_outcome_while_the_writer_is_active(path: Path) -> None:
@@ -197,7 +314,7 @@ def test_a_journal_of_another_schema_version_is_refused(path: Path) -> None:
     with connection:
         connection.execute("UPDATE meta SET value = '99' WHERE key = 'journal:version'")
     connection.close()
-    with pytest.raises(JournalError, match="version 99, this one reads 1"):
+    with pytest.raises(JournalError, match="version 99, this one reads 2"):
         Journal.open(path)
 
 

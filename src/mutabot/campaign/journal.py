@@ -468,7 +468,7 @@ def _make_way(path: Path) -> bool:
 
 
 def _is_empty(path: Path) -> bool:
-    with closing(connect(path)) as connection, suppress(sqlite3.DatabaseError):
+    with suppress(sqlite3.DatabaseError), closing(connect(path)) as connection:
         return connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None
     return False
 
