@@ -243,10 +243,15 @@ def same_end(first: Outcome, second: Outcome) -> bool:
 
 def in_words(outcome: Outcome) -> str:
     """How a mutant ended: ``killed by check in tests/test_box.py::test_arrives: assert 1 == 2``."""
+    lines = (outcome.message or "").strip().splitlines()
+    return f"{end_in_words(outcome)}{f': {lines[0]}' if lines else ''}"
+
+
+def end_in_words(outcome: Outcome) -> str:
+    """The same without the message."""
     by = f" by {outcome.by}" if outcome.by is not None else ""
     test = f" in {outcome.test}" if outcome.test is not None else ""
-    lines = (outcome.message or "").strip().splitlines()
-    return f"{outcome.verdict}{by}{test}{f': {lines[0]}' if lines else ''}"
+    return f"{outcome.verdict}{by}{test}"
 
 
 def unconfirmed(first: Outcome, second: Outcome) -> Outcome:

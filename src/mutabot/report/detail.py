@@ -12,7 +12,7 @@ from rich.text import Text
 from mutabot.analysis.divergence import change_text
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import KillRate
-from mutabot.campaign.verify import Replayed, in_words
+from mutabot.campaign.verify import Replayed, end_in_words
 from mutabot.model import Kind, Mutant, Outcome, Quantity
 
 from .console import between, heading, make_table, percent, plain
@@ -36,15 +36,14 @@ def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed])
             None: "not in the journal",
         }
         console.print(heading(f"Round {one.round + 1}: {state[one.agrees]}"))
-        console.print(_replayed_line("replay", one.second))
+        console.print(_replayed_line("now", one.second))
         if one.first is not None and not one.agrees:
-            console.print(_replayed_line("journal", one.first))
+            console.print(_replayed_line(f"in the journal ({one.first.engine})", one.first))
 
 
 def _replayed_line(name: str, outcome: Outcome) -> RenderableType:
-    parts = [f"{name}, {outcome.engine}: {in_words(outcome)}", *_evidence(outcome)]
-    text = Text("\n").join(Text(plain(part), overflow="fold") for part in parts)
-    return Padding(text, (0, 0, 0, 2))
+    parts = [f"{name}: {end_in_words(outcome)}", *_evidence(outcome)]
+    return Padding(Text(plain("\n".join(parts)), overflow="fold"), (0, 0, 0, 2), expand=False)
 
 
 def _parts(result: MutantResult, source: str | None) -> Iterator[RenderableType]:
