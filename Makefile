@@ -5,7 +5,7 @@ VENV   := .venv
 RUN    := $(VENV)/bin/python
 READY  := $(VENV)/.ready
 
-.PHONY: demo test check format docs bench clean
+.PHONY: demo test check format docs bench stress clean
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
@@ -36,7 +36,13 @@ bench: $(READY)
 	$(RUN) benchmarks/interception.py
 	$(RUN) benchmarks/cell_speed.py
 	$(RUN) benchmarks/paper_seeds.py
+	$(RUN) benchmarks/engines.py
+	$(RUN) benchmarks/interval_coverage.py
 	$(RUN) benchmarks/pick_and_place_seeds.py
+
+## slow: kill the controller at 30 random moments and finish by resuming
+stress: $(READY)
+	$(RUN) benchmarks/kill_and_resume.py --kills 30
 
 $(READY): requirements.lock pyproject.toml tools/setup.sh
 	PYTHON=$(PYTHON) VENV=$(VENV) sh tools/setup.sh

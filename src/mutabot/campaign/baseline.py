@@ -101,6 +101,12 @@ class Baseline:
         tests = tuple(self.reaching.get((round, place), ()))
         return tuple(self.tests[round]) if tests in self.dependent else tests
 
+    def judge_by_whole_suite(self, round: int, test: str) -> None:
+        """A test passes only after others: no selection with it can be relied on by itself."""
+        for (where, _), tests in self.reaching.items():
+            if where == round and test in tests:
+                self.dependent.add(tuple(tests))
+
     def set_aside(self, round: int, test: str, reason: str) -> None:
         """A test turned out to be flaky: from now on no mutant is judged by it in this round."""
         self.unstable[round, test] = reason

@@ -42,11 +42,13 @@ class Remainder:
     Attributes:
         pairs: mutants and rounds.
         reasons: test to why it was not safe to fork in it.
+        suspects: (round, test) that passed in the baseline, but not in a trunk.
         notes: what else went wrong, in words.
     """
 
     pairs: list[Pair] = field(default_factory=list)
     reasons: dict[str, str] = field(default_factory=dict)
+    suspects: list[tuple[int, str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
 
@@ -166,7 +168,7 @@ class _Trunk:
             case SiteSeen():
                 self._trunk_sites[line.index] = line
             case TestEnd():
-                yield from self._test_ended(line)
+                yield from self._test_ended(line, remainder)
 
     def finish(self, result: Result, remainder: Remainder) -> Iterator[Outcome]:
         """The trunk is gone: settle what can be settled, and leave the rest to replay."""
@@ -207,15 +209,14 @@ class _Trunk:
         else:
             branches.in_mutated_call = line.began
 
-    def _test_ended(self, end: TestEnd) -> Iterator[Outcome]:
+    def _test_ended(self, end: TestEnd, remainder: Remainder) -> Iterator[Outcome]:
         """The trunk has run a test: the second opinion on the original."""
         if end.outcome == "passed":
             self._passed.add(end.test)
             self._compare_with_baseline(end)
         else:
             self._failed.add(end.test)
-            reason = f"passed in the baseline and {end.outcome} in an equal run"
-            self._baseline.set_aside(self._round, end.test, reason)
+            remainder.suspects.append((self._round, end.test))
         for mutant in self._waiting.pop(end.test, set()):
             if mutant in self._open:
                 yield from self._settle(mutant)
@@ -232,8 +233,9 @@ class _Trunk:
         """Yield the mutant's outcome if all that it depends on is known."""
         branches = self._open[mutant]
         run = Run(branches.mutant, self._round, branches.tests, engine="branch", shared=branches.shared)
-        tests = [test for test in branches.tests if test not in self._failed]
-        for test in tests:
+        for test in branches.tests:
+            if test in self._failed:
+                return  # replay will find out what is the matter with this test
             dead = branches.death is not None and branches.death.test == test
             if test not in branches.ends and not dead:
                 return
@@ -246,9 +248,7 @@ class _Trunk:
             run.ends.append(branches.ends[test])
             if branches.ends[test].is_decided:
                 break
-        if not tests:
-            return  # no test is left that can be relied on: replay says so
-        run.observations = {test: seen for test, seen in branches.observations.items() if test in tests}
+        run.observations = branches.observations
         run.wall = sum(end.wall for end in run.ends)
         del self._open[mutant]
         yield judge(run, self._request, self._baseline)

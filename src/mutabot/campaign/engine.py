@@ -12,6 +12,7 @@ from .controls import Control, controls_in_branches, run_controls
 from .journal import ControlEnd, Journal
 from .replay import Pair, replay
 from .request import Progress, Request
+from .suspects import clear_up
 from .workers import Workers
 
 
@@ -111,6 +112,7 @@ def _branched(
         else:
             report.outcome(outcome)
     _note(report.progress, remainder)
+    clear_up(request, baseline, workers, report.progress, remainder.suspects)
     rest = [(mutant, round) for mutant, round in remainder.pairs if mutant.id not in by_id]
     if request.engine == "branch":
         for outcome in _refused(rest, remainder):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import json
 import os
+import select
 import signal
 import time
 from collections.abc import Generator
@@ -50,6 +51,8 @@ class Conductor:
     def from_files(cls, job_file: str, descriptor: int) -> Conductor:
         """Read the job, set the limits of the process and put the interception in place."""
         die_with_parent()
+        if nobody_listens(descriptor):  # the controller died before the kernel was asked
+            os._exit(FAILED)
         home = os.path.dirname(job_file)
         with open(job_file, encoding="utf-8") as file:
             job = from_data(Job, json.load(file))
@@ -242,6 +245,13 @@ def keep_shared_fixtures(item: pytest.Item) -> None:
         teardown(_Parent(item))  # type: ignore[arg-type]  # only its chain is looked at
 
     state.teardown_exact = teardown_own  # type: ignore[method-assign]  # in this process alone
+
+
+def nobody_listens(descriptor: int) -> bool:
+    """Whether the reading end of the pipe is gone."""
+    poll = select.poll()
+    poll.register(descriptor, select.POLLERR)
+    return any(event & select.POLLERR for _, event in poll.poll(0))
 
 
 def die_with_parent() -> None:
