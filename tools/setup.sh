@@ -17,4 +17,6 @@ fi
 "$PYTHON" -m venv "$VENV"
 "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check -r requirements.lock
 "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+# Workers never write bytecode, so let them find ours.
+"$VENV/bin/python" -m compileall -q src
 echo "ready: $VENV"

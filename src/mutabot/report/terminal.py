@@ -274,7 +274,7 @@ def _controls(results: Results) -> Iterator[RenderableType]:
         return
     wrong = [control for control in results.controls if not control.ok]
     if not wrong:
-        files = {control.test_file for control in results.controls}
+        files = {control.test_file.partition("::")[0] for control in results.controls}
         yield Text(f"\nControls ended as they must in {plural(len(files), 'test file')}.", style="dim")
     for control in wrong:
         text = f"\nThe {control.control} control of {control.test_file} ended wrongly: {control.detail}"
