@@ -1,0 +1,198 @@
+"""The switches that instrumented program text looks at, and what happens when one is on.
+
+The text of a place ``E`` with number ``p`` becomes ``(other) if __mutabot__[p] and __mutabot__[p].chosen()
+else E``. ``__mutabot__`` is a plain list, so a place that is off costs one look-up. It is a built-in name:
+modules keep the names they have.
+"""
+
+from __future__ import annotations
+
+import builtins
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from types import FrameType
+from typing import Any, NoReturn
+
+from mutabot.model.alternative import RUNTIME, Choice, Sighting
+
+from .kinds import is_variable, kind_of
+
+#: evaluations of a variable at which the names around it are looked at
+LOOKS = 3
+
+
+class Bomb(Exception):  # noqa: N818  # the name that the literature gives it
+    """A statement that was replaced by a bomb was reached."""
+
+
+class ZeroValue(Exception):  # noqa: N818  # as above: failOnZero
+    """An expression that must not be zero for its mutant to survive was zero."""
+
+
+class Switch:
+    """A place that is on.
+
+    Attributes:
+        place: its number.
+        index: the alternative that is active there; None if the place is only watched.
+        watched: whether its next evaluation is to be told.
+    """
+
+    __slots__ = ("_owner", "index", "place", "watched")
+
+    def __init__(self, owner: Alternatives, place: int, index: int | None, watched: bool) -> None:
+        self._owner, self.place, self.index, self.watched = owner, place, index, watched
+
+    def chosen(self) -> bool:
+        """Asked at every evaluation: whether an alternative stands for the original."""
+        return self._owner.reached(self)
+
+
+@dataclass(slots=True)
+class _Seen:
+    hits: int = 0
+    kinds: set[str] = field(default_factory=set)
+    last: type | None = None
+    looks: int = 0
+    variables: set[str] | None = None
+
+
+class Alternatives:
+    """All places of the program, and which of their alternatives is active.
+
+    Attributes:
+        active: index of the active alternative by place; more than one for mutants of higher order.
+        hits: evaluations of each place that was on.
+        on_place: told the number of a watched place before its value is computed; it may activate one of
+            the place's alternatives, which then stands for the original at once.
+        on_act: told the number of an active place whenever it is evaluated.
+        switches: what instrumented program text looks at; item 0 is this object.
+    """
+
+    def __init__(self, size: int, variables: Iterable[int] = ()) -> None:
+        """``size``: the largest number of a place; ``variables``: places that are variables."""
+        self.active: dict[int, int] = {}
+        self.hits: dict[int, int] = {}
+        self.on_place: Callable[[int], None] | None = None
+        self.on_act: Callable[[int], None] | None = None
+        self.switches: list[Any] = [self, *([None] * size)]
+        self._variables = frozenset(variables)
+        self._seen: dict[int, _Seen] = {}
+
+    def install(self) -> None:
+        """Let instrumented program text find its switches."""
+        setattr(builtins, RUNTIME, self.switches)
+
+    def remove(self) -> None:
+        """Switch everything off; program text that is already instrumented goes on as the original."""
+        self.activate()
+        self.watch(())
+
+    def activate(self, *choices: Choice) -> None:
+        """Make these alternatives, and no others, stand for the original."""
+        watched = self.watched
+        self.active = {choice.place: choice.index for choice in choices}
+        self._set(watched)
+
+    def watch(self, places: Iterable[int]) -> None:
+        """Tell the next evaluation of each of these places, once, and of no other."""
+        self._set(frozenset(places))
+
+    @property
+    def watched(self) -> frozenset[int]:
+        """Places whose next evaluation will be told."""
+        return frozenset(
+            switch.place for switch in self.switches[1:] if switch is not None and switch.watched
+        )
+
+    def reached(self, switch: Switch) -> bool:
+        """A place that is on is evaluated; whether an alternative stands for it."""
+        place = switch.place
+        self.hits[place] = self.hits.get(place, 0) + 1
+        if switch.watched:
+            switch.watched = False
+            if switch.index is None:
+                self.switches[place] = None
+            if self.on_place is not None:
+                self.on_place(place)
+        if place not in self.active:
+            return False
+        if self.on_act is not None:
+            self.on_act(place)
+        return True
+
+    def _set(self, watched: frozenset[int]) -> None:
+        on = watched | self.active.keys()
+        for place in range(1, len(self.switches)):
+            self.switches[place] = (
+                Switch(self, place, self.active.get(place), place in watched) if place in on else None
+            )
+
+    # what templates and recordings call
+
+    def see(self, place: int, value: Any) -> Any:
+        """Note the kind of a value; for a variable also the others of its type around it."""
+        seen = self._seen.get(place)
+        if seen is None:
+            seen = self._seen[place] = _Seen()
+        seen.hits += 1
+        kind = type(value)
+        if kind is not seen.last:
+            seen.last = kind
+            seen.kinds.add(kind_of(value))
+            seen.looks = 0
+        if seen.looks < LOOKS and place in self._variables:
+            seen.looks += 1
+            self._look_around(seen, value, sys._getframe(1))
+        return value
+
+    def pass_by(self, place: int) -> None:
+        """Note that a statement is reached."""
+        seen = self._seen.get(place)
+        if seen is None:
+            seen = self._seen[place] = _Seen()
+        seen.hits += 1
+
+    def sightings(self) -> list[Sighting]:
+        """What was seen so far, by place."""
+        return [
+            Sighting(place, seen.hits, tuple(sorted(seen.kinds)), tuple(sorted(seen.variables or ())))
+            for place, seen in sorted(self._seen.items())
+        ]
+
+    def reached_places(self) -> frozenset[int]:
+        """Numbers of the places that were seen so far."""
+        return frozenset(self._seen)
+
+    def _look_around(self, seen: _Seen, value: Any, frame: FrameType) -> None:
+        names = set(_alike(value, frame)) if is_variable(value) else set()
+        seen.variables = names if seen.variables is None else seen.variables & names
+
+    def bomb(self) -> NoReturn:
+        """The statement that stood here is replaced by one that raises."""
+        raise Bomb("the mutant's bomb went off")
+
+    def absolute(self, value: Any) -> Any:
+        """``abs``, whatever the program calls by that name."""
+        return abs(value)
+
+    def fail_on_zero(self, value: Any) -> Any:
+        """The value itself; raises ZeroValue if it is zero, or if one of several is."""
+        equal = value == 0
+        if equal.any() if hasattr(equal, "any") else equal:
+            raise ZeroValue("the value is zero")
+        return value
+
+
+def _alike(value: Any, frame: FrameType) -> Iterable[str]:
+    """Names around a frame's instruction with a value of exactly this type.
+
+    Of the function's own names and the module's: to mention a name of a function further out would make
+    it a part of this one.
+    """
+    kind = type(value)
+    for names in (frame.f_locals, frame.f_globals):
+        for name, other in list(names.items()):
+            if type(other) is kind and name.isidentifier() and not name.startswith("__"):
+                yield name

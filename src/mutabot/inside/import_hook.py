@@ -1,0 +1,96 @@
+"""Import hook: program files are compiled with their alternatives in them.
+
+Every way to import a source file asks ``SourceFileLoader.get_code`` for the code: the import statement,
+``importlib``, ``runpy.run_module``. That is where the hook sits; loader, spec and module stay what they
+are without it. No compiled file is read or written for an instrumented module.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable
+from importlib.machinery import SourceFileLoader
+from types import CodeType, ModuleType
+from typing import Any, cast
+
+from mutabot.model.alternative import Instrumentation, ProgramText
+
+from .alternatives import Alternatives
+from .instrument import MismatchError, compile_text
+
+GetCode = Callable[[SourceFileLoader, str], CodeType | None]
+
+
+class ImportHook:
+    """The hook for one process.
+
+    Attributes:
+        alternatives: the switches of the instrumented text.
+        imported: files that were instrumented, relative to the root.
+        problems: files that were not, with the reason.
+    """
+
+    def __init__(self, root: str, instrumentation: Instrumentation) -> None:
+        texts = instrumentation.texts
+        places = [place for text in texts for place in text.places]
+        size = max((place.number for place in places), default=0)
+        self.alternatives = Alternatives(size, [place.number for place in places if place.variable])
+        self.alternatives.activate(*instrumentation.active)
+        self.imported: list[str] = []
+        self.problems: dict[str, str] = {}
+        self._record = instrumentation.record
+        self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
+        self._real_paths: dict[str, str] = {}
+        self._original: GetCode | None = None
+
+    def install(self) -> None:
+        """Instrument the program's files from now on; files imported before are told as problems."""
+        self.alternatives.install()
+        for module in list(sys.modules.values()):
+            text = self._text_of(getattr(module, "__file__", None) or "") if _is_module(module) else None
+            if text is not None:
+                self.problems[text.file] = "it was imported before mutabot could look at it"
+        # get_code is inherited; it is put where the inherited one is found last
+        self._original = cast(GetCode, SourceFileLoader.get_code)
+        original, hook = self._original, self
+
+        def get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
+            path = self.get_filename(fullname)
+            text = hook._text_of(path)
+            if text is None:
+                return original(self, fullname)
+            return hook._compiled(text, self.get_data(path), path) or original(self, fullname)
+
+        SourceFileLoader.get_code = get_code  # type: ignore[method-assign, assignment]
+
+    def remove(self) -> None:
+        """Import as ever from now on; text that is instrumented goes on as the original."""
+        if self._original is not None:
+            if "get_code" in vars(SourceFileLoader):
+                del SourceFileLoader.get_code
+            self._original = None
+        self.alternatives.remove()
+
+    def _text_of(self, path: str) -> ProgramText | None:
+        real = self._real_paths.get(path)
+        if real is None:
+            real = self._real_paths[path] = os.path.realpath(path)
+        return self._texts.get(real)
+
+    def _compiled(self, text: ProgramText, source: bytes, path: str) -> CodeType | None:
+        if hashlib.sha256(source).hexdigest() != text.digest:
+            self.problems[text.file] = "it has changed since its mutants were made"
+            return None
+        try:
+            code = compile_text(source, path, text, record=self._record)
+        except (MismatchError, RecursionError, SyntaxError, ValueError) as error:
+            self.problems[text.file] = f"it cannot be instrumented: {error}"
+            return None
+        self.imported.append(text.file)
+        return code
+
+
+def _is_module(value: Any) -> bool:
+    return isinstance(value, ModuleType)
