@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import ast
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from hashlib import sha256
@@ -13,6 +13,7 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.classical import Example, find_texts, names, refine
+from mutabot.classical.rendering import same_program
 from mutabot.inside.import_hook import ImportHook
 from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
 
@@ -45,7 +46,7 @@ def spliced(source: str, place: TextPlace, alternative: Alternative) -> str:
         return (before + alternative.text.encode() + after).decode()
     bare = (before + alternative.text.encode() + after).decode()
     wrapped = (before + f"({alternative.text})".encode() + after).decode()
-    return bare if ast.dump(ast.parse(bare)) == ast.dump(ast.parse(wrapped)) else wrapped
+    return bare if same_program(bare, wrapped) else wrapped
 
 
 @contextmanager
@@ -56,11 +57,11 @@ def imported(
     hook = ImportHook(str(folder), Instrumentation((text,), record, active))
     hook.install()
     try:
-        assert not hook.problems
         yield load(folder / text.file), hook
         assert not hook.problems
     finally:
         hook.remove()
+        sys.modules.pop(Path(text.file).stem, None)
 
 
 def load(path: Path) -> ModuleType:
@@ -68,7 +69,7 @@ def load(path: Path) -> ModuleType:
     spec = spec_from_file_location(path.stem, path, loader=SourceFileLoader(path.stem, str(path)))
     assert spec is not None
     assert spec.loader is not None
-    module = module_from_spec(spec)
+    module = sys.modules[path.stem] = module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
 

@@ -61,7 +61,7 @@ def refine(
 def _variables(place: TextPlace, seen: Sighting | None) -> Iterable[Alternative]:
     if not place.variable or seen is None:
         return ()
-    return VariableReplacement.with_variables(name for name in seen.variables if name != place.text)
+    return VariableReplacement.with_variables(seen.variables)
 
 
 def _reason(alternative: Alternative, seen: Sighting | None) -> str | None:

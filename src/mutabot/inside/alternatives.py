@@ -8,18 +8,10 @@ modules keep the names they have.
 from __future__ import annotations
 
 import builtins
-import sys
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
-from types import FrameType
 from typing import Any, NoReturn
 
-from mutabot.model.alternative import RUNTIME, Choice, Sighting
-
-from .kinds import is_variable, kind_of
-
-#: evaluations of a variable at which the names around it are looked at
-LOOKS = 3
+from mutabot.model.alternative import RUNTIME, Choice
 
 
 class Bomb(Exception):  # noqa: N818  # the name that the literature gives it
@@ -49,15 +41,6 @@ class Switch:
         return self._owner.reached(self)
 
 
-@dataclass(slots=True)
-class _Seen:
-    hits: int = 0
-    kinds: set[str] = field(default_factory=set)
-    last: type | None = None
-    looks: int = 0
-    variables: set[str] | None = None
-
-
 class Alternatives:
     """All places of the program, and which of their alternatives is active.
 
@@ -70,15 +53,13 @@ class Alternatives:
         switches: what instrumented program text looks at; item 0 is this object.
     """
 
-    def __init__(self, size: int, variables: Iterable[int] = ()) -> None:
-        """``size``: the largest number of a place; ``variables``: places that are variables."""
+    def __init__(self, size: int) -> None:
+        """``size``: the largest number of a place."""
         self.active: dict[int, int] = {}
         self.hits: dict[int, int] = {}
         self.on_place: Callable[[int], None] | None = None
         self.on_act: Callable[[int], None] | None = None
         self.switches: list[Any] = [self, *([None] * size)]
-        self._variables = frozenset(variables)
-        self._seen: dict[int, _Seen] = {}
 
     def install(self) -> None:
         """Let instrumented program text find its switches."""
@@ -86,8 +67,8 @@ class Alternatives:
 
     def remove(self) -> None:
         """Switch everything off; program text that is already instrumented goes on as the original."""
-        self.activate()
-        self.watch(())
+        self.active = {}
+        self._set(frozenset())
 
     def activate(self, *choices: Choice) -> None:
         """Make these alternatives, and no others, stand for the original."""
@@ -129,45 +110,7 @@ class Alternatives:
                 Switch(self, place, self.active.get(place), place in watched) if place in on else None
             )
 
-    # what templates and recordings call
-
-    def see(self, place: int, value: Any) -> Any:
-        """Note the kind of a value; for a variable also the others of its type around it."""
-        seen = self._seen.get(place)
-        if seen is None:
-            seen = self._seen[place] = _Seen()
-        seen.hits += 1
-        kind = type(value)
-        if kind is not seen.last:
-            seen.last = kind
-            seen.kinds.add(kind_of(value))
-            seen.looks = 0
-        if seen.looks < LOOKS and place in self._variables:
-            seen.looks += 1
-            self._look_around(seen, value, sys._getframe(1))
-        return value
-
-    def pass_by(self, place: int) -> None:
-        """Note that a statement is reached."""
-        seen = self._seen.get(place)
-        if seen is None:
-            seen = self._seen[place] = _Seen()
-        seen.hits += 1
-
-    def sightings(self) -> list[Sighting]:
-        """What was seen so far, by place."""
-        return [
-            Sighting(place, seen.hits, tuple(sorted(seen.kinds)), tuple(sorted(seen.variables or ())))
-            for place, seen in sorted(self._seen.items())
-        ]
-
-    def reached_places(self) -> frozenset[int]:
-        """Numbers of the places that were seen so far."""
-        return frozenset(self._seen)
-
-    def _look_around(self, seen: _Seen, value: Any, frame: FrameType) -> None:
-        names = set(_alike(value, frame)) if is_variable(value) else set()
-        seen.variables = names if seen.variables is None else seen.variables & names
+    # what templates call
 
     def bomb(self) -> NoReturn:
         """The statement that stood here is replaced by one that raises."""
@@ -183,16 +126,3 @@ class Alternatives:
         if equal.any() if hasattr(equal, "any") else equal:
             raise ZeroValue("the value is zero")
         return value
-
-
-def _alike(value: Any, frame: FrameType) -> Iterable[str]:
-    """Names around a frame's instruction with a value of exactly this type.
-
-    Of the function's own names and the module's: to mention a name of a function further out would make
-    it a part of this one.
-    """
-    kind = type(value)
-    for names in (frame.f_locals, frame.f_globals):
-        for name, other in list(names.items()):
-            if type(other) is kind and name.isidentifier() and not name.startswith("__"):
-                yield name

@@ -19,6 +19,7 @@ from mutabot.model.alternative import Instrumentation, ProgramText
 
 from .alternatives import Alternatives
 from .instrument import MismatchError, compile_text
+from .recording import Recording
 
 GetCode = Callable[[SourceFileLoader, str], CodeType | None]
 
@@ -27,7 +28,8 @@ class ImportHook:
     """The hook for one process.
 
     Attributes:
-        alternatives: the switches of the instrumented text.
+        alternatives: the switches of the instrumented text; idle in a recording.
+        recording: what was seen, if this is a recording; else None.
         imported: files that were instrumented, relative to the root.
         problems: files that were not, with the reason.
     """
@@ -36,18 +38,20 @@ class ImportHook:
         texts = instrumentation.texts
         places = [place for text in texts for place in text.places]
         size = max((place.number for place in places), default=0)
-        self.alternatives = Alternatives(size, [place.number for place in places if place.variable])
+        self.alternatives = Alternatives(size)
         self.alternatives.activate(*instrumentation.active)
         self.imported: list[str] = []
         self.problems: dict[str, str] = {}
-        self._record = instrumentation.record
+        self.recording: Recording | None = None
+        if instrumentation.record:
+            self.recording = Recording(size, {place.number: place.text for place in places if place.variable})
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
         self._real_paths: dict[str, str] = {}
         self._original: GetCode | None = None
 
     def install(self) -> None:
         """Instrument the program's files from now on; files imported before are told as problems."""
-        self.alternatives.install()
+        (self.recording or self.alternatives).install()
         for module in list(sys.modules.values()):
             text = self._text_of(getattr(module, "__file__", None) or "") if _is_module(module) else None
             if text is not None:
@@ -71,7 +75,7 @@ class ImportHook:
             if "get_code" in vars(SourceFileLoader):
                 del SourceFileLoader.get_code
             self._original = None
-        self.alternatives.remove()
+        (self.recording or self.alternatives).remove()
 
     def _text_of(self, path: str) -> ProgramText | None:
         real = self._real_paths.get(path)
@@ -84,7 +88,7 @@ class ImportHook:
             self.problems[text.file] = "it has changed since its mutants were made"
             return None
         try:
-            code = compile_text(source, path, text, record=self._record)
+            code = compile_text(source, path, text, record=self.recording is not None)
         except (MismatchError, RecursionError, SyntaxError, ValueError) as error:
             self.problems[text.file] = f"it cannot be instrumented: {error}"
             return None

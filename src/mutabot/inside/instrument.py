@@ -104,8 +104,7 @@ class _Instrumenter(ast.NodeTransformer):
 
     def _seen(self, node: ast.expr, place: TextPlace) -> ast.expr:
         self.generic_visit(node)
-        see = ast.Attribute(_switch(0), "see", ast.Load())
-        return _at(ast.Call(see, [ast.Constant(place.number), node], []), node)
+        return _at(ast.Call(_switch(place.number), [node], []), node)
 
     def _statement(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
         if self._record:
@@ -124,13 +123,11 @@ class _Instrumenter(ast.NodeTransformer):
 
     def _statement_seen(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
         self.generic_visit(node)
-        number = ast.Constant(place.number)
-        if isinstance(node, ast.AugAssign):
-            see = ast.Attribute(_switch(0), "see", ast.Load())
-            node.value = _at(ast.Call(see, [number, node.value], []), node.value)
+        if isinstance(node, ast.AugAssign):  # what is added tells the type
+            node.value = _at(ast.Call(_switch(place.number), [node.value], []), node.value)
             return [node]
-        call = ast.Call(ast.Attribute(_switch(0), "pass_by", ast.Load()), [number], [])
-        return [_at(ast.Expr(call), node), node]
+        seen = ast.Call(_switch(place.number), [ast.Constant(None)], [])
+        return [_at(ast.Expr(seen), node), node]
 
 
 def _switch(number: int) -> ast.expr:

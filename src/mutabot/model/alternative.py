@@ -134,7 +134,7 @@ class Sighting:
 
     Attributes:
         place: number of the place.
-        hits: evaluations.
+        hits: evaluations that were looked at; no more than a few per test.
         kinds: kinds of the values it had, sorted: ``number``, ``integer``, ``truth``, ``text`` … or
             ``module:Type``.
         variables: for a variable: others in scope that had the same type each time, sorted.

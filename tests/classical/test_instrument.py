@@ -1,0 +1,198 @@
+"""Instrumented program text means the same while nothing is active, and the alternative when one is."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+import types
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.inside.alternatives import Alternatives, Bomb, ZeroValue
+from mutabot.inside.import_hook import ImportHook
+from mutabot.inside.instrument import compile_text
+from mutabot.model import Instrumentation, from_data, to_data
+
+from .build import choices, imported, load, spliced, text_of
+
+ORDINARY = Path(__file__).with_name("ordinary.py").read_text(encoding="utf-8")
+
+
+def same_for_all(value: Any) -> str:
+    """A value in words that do not depend on where and when it was made."""
+    return repr(value)
+
+
+@pytest.mark.parametrize("record", [False, True], ids=["alternatives", "recording"])
+def test_a_program_of_everything_behaves_as_the_original(tmp_path: Path, record: bool) -> None:
+    text = text_of(tmp_path, ORDINARY)
+    plain = load(tmp_path / text.file).results()
+    del sys.modules[Path(text.file).stem]
+    with imported(tmp_path, text, record=record) as (module, hook):
+        instrumented = module.results()
+    assert hook.imported == [text.file]
+    for key, value in plain.items():
+        assert same_for_all(instrumented[key]) == same_for_all(value), key
+
+
+def test_every_alternative_does_what_its_text_says(tmp_path: Path) -> None:
+    text = text_of(tmp_path, MISSION)
+    assert len(choices(text)) > 150
+    code = compile_text(MISSION.encode(), text.file, text)
+    alternatives = Alternatives(len(text.places))
+    alternatives.install()
+    for choice, place, alternative in choices(text):
+        alternatives.activate(choice)
+        assert outcome(code) == outcome(spliced(MISSION, place, alternative)), (place.text, alternative)
+    alternatives.activate()
+    assert outcome(code) == outcome(MISSION)
+
+
+MISSION = """
+STEP = 0.25
+LIMITS = (-1.5, 4)
+
+def reach(x, y, high=3):
+    total = x * 2 + y
+    if x < y <= high and not total == 0:
+        total -= STEP
+    flags = 6 & high | 1
+    return total if total > -y or high >> 1 else -total, flags
+
+def run():
+    seen = []
+    for x in (-1, 0, 2):
+        seen.append(reach(x, 1.5))
+        seen.append(reach(x, x + 1, high=LIMITS[1]))
+    return seen, STEP
+
+result = run()
+"""
+
+
+def outcome(source: str | types.CodeType) -> str:
+    """What becomes of a program: its result, or its exception."""
+
+    def bomb() -> None:
+        raise Bomb
+
+    def fail_on_zero(value: Any) -> Any:
+        if value == 0:
+            raise ZeroValue
+        return value
+
+    space = {"Bomb": bomb, "failOnZero": fail_on_zero}
+    try:
+        exec(source, space)
+    except Exception as error:
+        return type(error).__name__
+    return repr(space.get("result"))
+
+
+def test_tracebacks_show_the_users_lines_and_columns(tmp_path: Path) -> None:
+    source = "def f(a, b):\n    return (a +\n        b.missing) * 2\n"
+    text = text_of(tmp_path, source)
+
+    def where(module: types.ModuleType) -> list[tuple[object, ...]]:
+        try:
+            module.f(1, 2)
+        except AttributeError as error:
+            frame = traceback.extract_tb(error.__traceback__)[-1]
+            return [(frame.filename, frame.lineno, frame.colno, frame.end_lineno, frame.end_colno)]
+        raise AssertionError
+
+    plain = where(load(tmp_path / text.file))
+    del sys.modules[Path(text.file).stem]
+    with imported(tmp_path, text) as (module, _):
+        assert where(module) == plain
+    add = next(choice for choice, _, one in choices(text) if (one.operator, one.variant) == ("AOR", "sub"))
+    with imported(tmp_path, text, add) as (module, _):
+        assert where(module) == plain  # what an alternative keeps stays where it stands
+
+
+def test_no_file_is_written_and_none_is_read_in_its_place(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "x = 1 + 1\n")
+    before = sys.dont_write_bytecode
+    sys.dont_write_bytecode = False
+    try:
+        with imported(tmp_path, text) as (module, _):
+            assert module.x == 2
+    finally:
+        sys.dont_write_bytecode = before
+    assert sorted(path.name for path in tmp_path.iterdir()) == [text.file]
+
+
+def test_an_alternative_chosen_at_the_first_evaluation_stands_at_once(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "def f(x, y):\n    return x + y\n", "AOR")
+    (place,) = text.places
+    with imported(tmp_path, text) as (module, hook):
+        told: list[int] = []
+
+        def fork(number: int) -> None:
+            told.append(number)
+            if len(told) == 2:  # the second test is where this process becomes the mutant
+                hook.alternatives.activate(choices(text)[0][0])
+
+        hook.alternatives.on_place = fork
+        hook.alternatives.watch([place.number])
+        assert [module.f(5, 3), module.f(5, 3)] == [8, 8]
+        assert told == [1]
+        hook.alternatives.watch([place.number])
+        assert [module.f(5, 3), module.f(5, 3)] == [2, 2]
+        assert told == [1, 1]
+        hook.alternatives.activate()
+        assert module.f(5, 3) == 8
+
+
+def test_two_alternatives_at_once(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "def f(x, y):\n    return [x + y, x * y]\n", "AOR")
+    add, multiply = text.places
+    first = next(choice for choice, place, _ in choices(text) if place == add)
+    second = next(choice for choice, place, _ in choices(text) if place == multiply)
+    with imported(tmp_path, text, first, second) as (module, hook):
+        assert module.f(5, 3) == [2, 8]
+        assert hook.alternatives.hits == {add.number: 1, multiply.number: 1}
+
+
+def test_a_recording_tells_kinds_and_variables_of_the_same_type(tmp_path: Path) -> None:
+    source = "LIMIT = 4\nNAME = 'a'\ndef f(x, y, z):\n    n = 1\n    return x < y, n\n"
+    text = text_of(tmp_path, source)
+    with imported(tmp_path, text, record=True) as (module, hook):
+        assert hook.recording is not None
+        hook.recording.start()
+        module.f(1.0, 2.0, "z")
+        module.f(1, 2.0, "z")
+        seen = {sighting.place: sighting for sighting in hook.recording.sightings()}
+        reached = hook.recording.reached()
+    by_text = {place.text: seen[place.number] for place in text.places if place.number in seen}
+    assert by_text["x"].kinds == ("integer", "number")
+    assert by_text["x"].variables == ()
+    assert by_text["y"].kinds == ("number",)
+    assert by_text["n"].variables == ("LIMIT",)
+    assert {place.text for place in text.places if place.number in reached} == {
+        "x",
+        "y",
+        "n",
+        "x < y",
+        "n = 1",
+        "return x < y, n",
+    }
+
+
+def test_a_file_that_changed_is_left_alone_and_told(tmp_path: Path) -> None:
+    text = text_of(tmp_path, "x = 1 + 1\n")
+    (tmp_path / text.file).write_text("x = 5\n")
+    hook = ImportHook(str(tmp_path), Instrumentation((text,)))
+    hook.install()
+    try:
+        assert load(tmp_path / text.file).x == 5
+    finally:
+        hook.remove()
+    assert hook.problems == {text.file: "it has changed since its mutants were made"}
+
+
+def test_the_plan_crosses_the_border_as_json(tmp_path: Path) -> None:
+    instrumentation = Instrumentation((text_of(tmp_path, ORDINARY),), record=True)
+    assert from_data(Instrumentation, to_data(instrumentation)) == instrumentation
