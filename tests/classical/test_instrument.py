@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import traceback
 import types
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -177,6 +178,7 @@ def test_a_recording_tells_kinds_and_variables_of_the_same_type(tmp_path: Path) 
         "n",
         "x < y",
         "n = 1",
+        "1",
         "return x < y, n",
     }
 
@@ -196,3 +198,41 @@ def test_a_file_that_changed_is_left_alone_and_told(tmp_path: Path) -> None:
 def test_the_plan_crosses_the_border_as_json(tmp_path: Path) -> None:
     instrumentation = Instrumentation((text_of(tmp_path, ORDINARY),), record=True)
     assert from_data(Instrumentation, to_data(instrumentation)) == instrumentation
+
+
+@pytest.mark.parametrize(
+    ("operator", "variant", "arguments", "acted", "example"),
+    [
+        ("AOR", "sub", (5, 0), 0, None),
+        ("AOR", "sub", (5, 3), 1, (8, 2)),
+        ("AOR", "div", (5, 0), 1, None),  # it raises
+        ("ABS", "abs", (5, 3), 0, None),
+        ("ABS", "abs", (-5, 3), 1, (-2, 2)),
+        ("ABS", "failOnZero", (-5, 5), 1, None),
+        ("BSR", "", (5, 3), 1, None),
+    ],
+)
+def test_an_alternative_that_changes_no_value_has_not_acted(
+    tmp_path: Path, operator: str, variant: str, arguments: Any, acted: int, example: Any
+) -> None:
+    text = text_of(tmp_path, "def f(x, y):\n    return x + y\n", operator)
+    choice, place, _ = next(
+        found for found in choices(text) if found[2].variant == variant and found[1].text != "x"
+    )
+    told: list[int] = []
+    with imported(tmp_path, text, choice) as (module, hook):
+        hook.alternatives.on_act = told.append
+        hook.alternatives.start()
+        with suppress(ZeroDivisionError, ZeroValue, Bomb):
+            module.f(*arguments)
+        assert hook.alternatives.acted(place.number) == acted
+        assert hook.alternatives.examples.get(place.number) == example
+
+
+def test_an_original_with_effects_is_not_computed_twice(tmp_path: Path) -> None:
+    source = "log = []\ndef g(x):\n    log.append(x)\n    return x\ndef f():\n    return g(1) + g(0)\n"
+    text = text_of(tmp_path, source, "AOR", "ABS", "UOI")
+    for choice, _place, _ in choices(text):
+        with imported(tmp_path, text, choice) as (module, _hook):
+            with suppress(ZeroDivisionError, ZeroValue):
+                module.f()

@@ -8,7 +8,9 @@ modules keep the names they have.
 from __future__ import annotations
 
 import builtins
+import sys
 from collections.abc import Callable, Iterable
+from types import CodeType, FrameType
 from typing import Any, NoReturn
 
 from mutabot.model.alternative import RUNTIME, Choice
@@ -31,14 +33,42 @@ class Switch:
         watched: whether its next evaluation is to be told.
     """
 
-    __slots__ = ("_owner", "index", "place", "watched")
+    __slots__ = ("_before", "_code", "_owner", "index", "place", "watched")
 
     def __init__(self, owner: Alternatives, place: int, index: int | None, watched: bool) -> None:
         self._owner, self.place, self.index, self.watched = owner, place, index, watched
+        self._before: Any = _UNKNOWN
+        self._code: CodeType | None = None
 
     def chosen(self) -> bool:
         """Asked at every evaluation: whether an alternative stands for the original."""
         return self._owner.reached(self)
+
+    # what instrumented text calls around an alternative, so that one sees whether it changed anything
+
+    def was(self, value: Any) -> Any:
+        """The original's value, which the alternative goes on with."""
+        self._before = value
+        return value
+
+    def became(self, value: Any, original: str = "") -> Any:
+        """The alternative's value; ``original`` is the original as text if computing it has no effect."""
+        before, self._before = self._before, _UNKNOWN
+        if before is _UNKNOWN and original:
+            before = self._value_of(original, sys._getframe(1))
+        self._owner.note(self.place, before, value)
+        return value
+
+    def _value_of(self, original: str, frame: FrameType) -> Any:
+        try:
+            if self._code is None:
+                self._code = compile(original, "<original>", "eval")
+            return eval(self._code, frame.f_globals, frame.f_locals)
+        except Exception:  # what the original would have raised; the alternative did not
+            return _UNKNOWN
+
+
+_UNKNOWN = object()
 
 
 class Alternatives:
@@ -47,9 +77,12 @@ class Alternatives:
     Attributes:
         active: index of the active alternative by place; more than one for mutants of higher order.
         hits: evaluations of each place that was on.
+        idle: evaluations of each active place at which the alternative had the value of the original.
+        examples: value of the original and of the alternative when they first differed, by place.
         on_place: told the number of a watched place before its value is computed; it may activate one of
             the place's alternatives, which then stands for the original at once.
-        on_act: told the number of an active place whenever it is evaluated.
+        on_act: told the number of an active place when its alternative is known to change something, or
+            may do so, for the first time since ``start``.
         switches: what instrumented program text looks at; item 0 is this object.
     """
 
@@ -57,6 +90,9 @@ class Alternatives:
         """``size``: the largest number of a place."""
         self.active: dict[int, int] = {}
         self.hits: dict[int, int] = {}
+        self.idle: dict[int, int] = {}
+        self.examples: dict[int, tuple[Any, Any]] = {}
+        self._told: set[int] = set()
         self.on_place: Callable[[int], None] | None = None
         self.on_act: Callable[[int], None] | None = None
         self.switches: list[Any] = [self, *([None] * size)]
@@ -69,6 +105,31 @@ class Alternatives:
         """Switch everything off; program text that is already instrumented goes on as the original."""
         self.active = {}
         self._set(frozenset())
+
+    def start(self) -> None:
+        """A new test begins: count anew."""
+        for counts in (self.hits, self.idle, self.examples, self._told):
+            counts.clear()
+
+    def acted(self, place: int) -> int:
+        """Evaluations at which the active alternative changed something, or raised."""
+        return self.hits.get(place, 0) - self.idle.get(place, 0)
+
+    def note(self, place: int, before: Any, after: Any) -> None:
+        """An alternative has its value; compare it with the original's, where that is known."""
+        if before is not _UNKNOWN and _is_same(before, after):
+            self.idle[place] = self.idle.get(place, 0) + 1
+            return
+        if before is not _UNKNOWN:
+            self.examples.setdefault(place, (before, after))
+        self.tell(place)
+
+    def tell(self, place: int) -> None:
+        """An alternative changed something, or may have."""
+        if place not in self._told:
+            self._told.add(place)
+            if self.on_act is not None:
+                self.on_act(place)
 
     def activate(self, *choices: Choice) -> None:
         """Make these alternatives, and no others, stand for the original."""
@@ -97,11 +158,7 @@ class Alternatives:
                 self.switches[place] = None
             if self.on_place is not None:
                 self.on_place(place)
-        if place not in self.active:
-            return False
-        if self.on_act is not None:
-            self.on_act(place)
-        return True
+        return place in self.active
 
     def _set(self, watched: frozenset[int]) -> None:
         on = watched | self.active.keys()
@@ -114,6 +171,8 @@ class Alternatives:
 
     def bomb(self) -> NoReturn:
         """The statement that stood here is replaced by one that raises."""
+        for place in self.active:
+            self.tell(place)
         raise Bomb("the mutant's bomb went off")
 
     def absolute(self, value: Any) -> Any:
@@ -126,3 +185,14 @@ class Alternatives:
         if equal.any() if hasattr(equal, "any") else equal:
             raise ZeroValue("the value is zero")
         return value
+
+
+def _is_same(before: Any, after: Any) -> bool:
+    """Whether two values are the same to any program: equal, and of one type."""
+    if type(before) is not type(after):
+        return False
+    try:
+        equal = before == after
+        return bool(equal.all()) if hasattr(equal, "all") else bool(equal)
+    except Exception:  # values that cannot be compared are told apart by nobody
+        return False

@@ -19,6 +19,8 @@ from mutabot.model.alternative import RUNTIME, Alternative, Extent, ProgramText,
 
 _Key = tuple[str, Extent]
 _Node = TypeVar("_Node", bound=ast.AST)
+#: expressions without effects; attributes and items may be readings of a robot
+_PURE = (ast.Name, ast.Constant, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Tuple)
 _KEPT = kept_name(0).partition("0")[0]
 
 
@@ -94,12 +96,14 @@ class _Instrumenter(ast.NodeTransformer):
         if self._record:
             return self._seen(node, place)
         others = [_expression_of(alternative, place, node) for alternative in place.alternatives]
-        self.generic_visit(node)
         if not others:
+            self.generic_visit(node)
             return node
         *firsts, tree = others
         for index in reversed(range(len(firsts))):
             tree = _at(ast.IfExp(_is_index(place, index), firsts[index], tree), node)
+        tree = _observed(tree, place, node)
+        self.generic_visit(node)
         return _at(ast.IfExp(_is_chosen(place), tree, node), node)
 
     def _seen(self, node: ast.expr, place: TextPlace) -> ast.expr:
@@ -128,6 +132,18 @@ class _Instrumenter(ast.NodeTransformer):
             return [node]
         seen = ast.Call(_switch(place.number), [ast.Constant(None)], [])
         return [_at(ast.Expr(seen), node), node]
+
+
+def _observed(other: ast.expr, place: TextPlace, node: ast.expr) -> ast.expr:
+    """Alternatives that say what they became, and how to compute the original where that has no effect."""
+    became = ast.Attribute(_switch(place.number), "became", ast.Load())
+    original: list[ast.expr] = [ast.Constant(ast.unparse(node))] if _is_pure(node) else []
+    return _at(ast.Call(became, [other, *original], []), node)
+
+
+def _is_pure(node: ast.expr) -> bool:
+    """Whether computing an expression once more has no effect: names, constants and what operators make."""
+    return all(isinstance(part, _PURE) for part in ast.walk(node) if isinstance(part, ast.expr))
 
 
 def _switch(number: int) -> ast.expr:
@@ -167,16 +183,20 @@ def _filled(made: _Node, place: TextPlace, node: ast.AST) -> _Node:
     if missing:
         raise MismatchError(f"{place.span.file}: no expression at {min(missing)}")
     filler = _Filler({kept_name(index): parts[extent] for index, extent in enumerate(place.kept)})
+    if isinstance(node, ast.expr) and place.extent in parts:
+        was = ast.Attribute(_switch(place.number), "was", ast.Load())
+        whole = _at(ast.Call(was, [parts[place.extent]], []), node)
+        filler.parts[kept_name(place.kept.index(place.extent))] = whole
     result: _Node = filler.visit(_moved(made, node))
     return result
 
 
 class _Filler(ast.NodeTransformer):
     def __init__(self, parts: dict[str, ast.expr]) -> None:
-        self._parts = parts
+        self.parts = parts
 
     def visit_Name(self, node: ast.Name) -> ast.expr:  # the name that ast looks for
-        return copy.deepcopy(self._parts[node.id]) if node.id.startswith(_KEPT) else node
+        return copy.deepcopy(self.parts[node.id]) if node.id.startswith(_KEPT) else node
 
 
 def _moved(made: _Node, node: ast.AST) -> _Node:

@@ -120,10 +120,19 @@ def _alike(value: Any, frame: FrameType) -> Iterator[str]:
     """Names around a frame's instruction with a value of exactly this type.
 
     Of the function's own names and the module's: to mention a name of a function further out would make
-    it a part of this one.
+    it a part of this one. So inside another function only such names of the module count as this one uses,
+    since any other could be one of the function around it.
     """
-    kind = type(value)
-    for names in (frame.f_locals, frame.f_globals):
-        for name, other in list(names.items()):
-            if type(other) is kind and name.isidentifier() and not name.startswith("__"):
-                yield name
+    kind, code = type(value), frame.f_code
+    for name, other in list(frame.f_locals.items()):
+        if type(other) is kind and _is_plain(name):
+            yield name
+    nested = "<locals>" in code.co_qualname
+    for name, other in list(frame.f_globals.items()):
+        if type(other) is kind and _is_plain(name) and (not nested or name in code.co_names):
+            yield name
+
+
+def _is_plain(name: str) -> bool:
+    """Whether a program would use this name; comprehensions have names of their own."""
+    return name.isidentifier() and not name.startswith("__")
