@@ -10,3 +10,4 @@ from .refine import refine as refine
 from .registry import names as names
 from .registry import operator as operator
 from .texts import find_texts as find_texts
+from .texts import program_files as program_files

@@ -28,6 +28,16 @@ from .surroundings import is_variable, surroundings
 LONGEST = 1000
 
 
+def program_files(root: Path, program: Iterable[str]) -> list[str]:
+    """Python files of the configured files and folders, relative to ``root``, each once."""
+    files: dict[str, None] = {}
+    for name in program:
+        path = root / name
+        for file in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
+            files.setdefault(file.relative_to(root).as_posix())
+    return list(files)
+
+
 def find_texts(
     root: Path, files: Iterable[str], operators: Iterable[str] | None = None
 ) -> tuple[ProgramText, ...]:

@@ -53,7 +53,7 @@ class ImportHook:
         """Instrument the program's files from now on; files imported before are told as problems."""
         (self.recording or self.alternatives).install()
         for module in list(sys.modules.values()):
-            text = self._text_of(getattr(module, "__file__", None) or "") if _is_module(module) else None
+            text = self._text_of(_file_of(module))
             if text is not None:
                 self.problems[text.file] = "it was imported before mutabot could look at it"
         # get_code is inherited; it is put where the inherited one is found last
@@ -96,5 +96,9 @@ class ImportHook:
         return code
 
 
-def _is_module(value: Any) -> bool:
-    return isinstance(value, ModuleType)
+def _file_of(module: Any) -> str:
+    """A module's file; empty if it has none. Modules that are loaded when first used stay asleep."""
+    if not isinstance(module, ModuleType):
+        return ""
+    file = object.__getattribute__(module, "__dict__").get("__file__")
+    return file if isinstance(file, str) else ""
