@@ -1,8 +1,8 @@
 """The switches that instrumented program text looks at, and what happens when one is on.
 
 The text of a place ``E`` with number ``p`` becomes ``(other) if __mutabot__[p] and __mutabot__[p].chosen()
-else E``. ``__mutabot__`` is a plain list, so a place that is off costs one look-up. It is a built-in name:
-modules keep the names they have.
+else E``. ``__mutabot__`` is a plain list with False at places that are off, so these cost one look-up. It is
+a built-in name: modules keep the names they have.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class Alternatives:
         self._told: set[int] = set()
         self.on_place: Callable[[int], None] | None = None
         self.on_act: Callable[[int], None] | None = None
-        self.switches: list[Any] = [self, *([None] * size)]
+        self.switches: list[Any] = [self, *([False] * size)]
 
     def install(self) -> None:
         """Let instrumented program text find its switches."""
@@ -144,9 +144,7 @@ class Alternatives:
     @property
     def watched(self) -> frozenset[int]:
         """Places whose next evaluation will be told."""
-        return frozenset(
-            switch.place for switch in self.switches[1:] if switch is not None and switch.watched
-        )
+        return frozenset(switch.place for switch in self.switches[1:] if switch and switch.watched)
 
     def reached(self, switch: Switch) -> bool:
         """A place that is on is evaluated; whether an alternative stands for it."""
@@ -155,7 +153,7 @@ class Alternatives:
         if switch.watched:
             switch.watched = False
             if switch.index is None:
-                self.switches[place] = None
+                self.switches[place] = False
             if self.on_place is not None:
                 self.on_place(place)
         return place in self.active
@@ -164,7 +162,7 @@ class Alternatives:
         on = watched | self.active.keys()
         for place in range(1, len(self.switches)):
             self.switches[place] = (
-                Switch(self, place, self.active.get(place), place in watched) if place in on else None
+                Switch(self, place, self.active.get(place), place in watched) if place in on else False
             )
 
     # what templates call
