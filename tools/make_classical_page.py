@@ -35,6 +35,7 @@ comparisons, `await`, `yield`, `:=`, `super()`, `locals()` and class bodies mean
   listed with the reason. Which variables may stand for one another is seen in the baseline as well.
 - Expressions of more than 1000 characters, and expressions that stand twice in one f-string (before Python
   3.12, which reports one place for both).
+- Programs that are not imported: those started with `runpy.run_path` or as a process of their own.
 - The plus of UOI, which changes no number; ABS of literals, whose sign is UOI's; plain assignments for ASR,
   since a name may have no value before.
 

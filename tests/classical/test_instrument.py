@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.classical import find_texts
+from mutabot.classical import find_texts, merge, refine
 from mutabot.inside.alternatives import Alternatives, Bomb, ZeroValue
 from mutabot.inside.import_hook import ImportHook
 from mutabot.inside.instrument import compile_text
@@ -280,3 +280,37 @@ def test_a_program_imported_too_early_is_told(tmp_path: Path) -> None:
     hook.remove()
     del sys.modules[Path(text.file).stem]
     assert list(hook.problems) == [text.file]
+
+
+GLOBALS = """
+a, b, c = 1, 2, 3
+
+def f():
+    y = a
+    global b
+    b = y
+    def g():
+        c = 5
+        def h():
+            return a
+        return h(), c
+    result = g(), a
+    a2 = 7
+    return result
+"""
+
+
+def test_variables_that_would_change_what_a_name_means_do_not_stand_in(tmp_path: Path) -> None:
+    text = text_of(tmp_path, GLOBALS, "SVR")
+    with imported(tmp_path, text, record=True) as (module, hook):
+        assert module.f() == ((1, 5), 1)
+        assert hook.recording is not None
+        seen = merge(hook.recording.sightings())
+    (text,), _ = refine([text], seen)
+    found = {(place.span.function, place.text, one.text) for _, place, one in choices(text)}
+    assert ("f", "a", "c") in found
+    assert not {(function, name, "b") for function, name, _ in found if function == "f"} & found
+    assert not [one for one in found if one[0].endswith("h")]
+    assert ("f", "a", "a2") not in found
+    with imported(tmp_path, text) as (module, _):
+        assert module.f() == ((1, 5), 1)

@@ -59,11 +59,12 @@ class Index:
     Attributes:
         expressions: by extent; None where several stand at the same place, as inside old f-strings.
         statements: by where they start.
-        names: per function, names it binds or that belong to a function around it.
+        declared: names declared ``global`` or ``nonlocal``, by function.
     """
 
     expressions: dict[Extent, Found | None] = field(default_factory=dict)
     statements: dict[Start, Found] = field(default_factory=dict)
+    declared: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, tree: ast.Module) -> Index:
@@ -102,6 +103,8 @@ class Index:
     def _note(self, node: ast.AST, scope: Scope) -> None:
         if isinstance(node, ast.stmt):
             self.statements[node.lineno, node.col_offset] = Found(node, scope)
+            if isinstance(node, ast.Global | ast.Nonlocal):
+                self.declared[scope.name] = (*self.declared.get(scope.name, ()), *node.names)
         elif isinstance(node, ast.expr):
             extent = extent_of(node)
             self.expressions[extent] = None if extent in self.expressions else Found(node, scope)

@@ -51,17 +51,18 @@ def refine(
                     alternatives.append(alternative)
                 else:
                     left_out.append(LeftOutText(place, alternative, reason))
-            alternatives += _variables(place, seen.get(place.number))
+            declared = text.declared.get(place.span.function, ())
+            alternatives += _variables(place, seen.get(place.number), declared)
             if alternatives:
                 places.append(replace(place, alternatives=tuple(alternatives)))
         refined.append(replace(text, places=tuple(places)))
     return tuple(refined), left_out
 
 
-def _variables(place: TextPlace, seen: Sighting | None) -> Iterable[Alternative]:
+def _variables(place: TextPlace, seen: Sighting | None, declared: tuple[str, ...]) -> Iterable[Alternative]:
     if not place.variable or seen is None:
         return ()
-    return VariableReplacement.with_variables(seen.variables)
+    return VariableReplacement.with_variables(name for name in seen.variables if name not in declared)
 
 
 def _reason(alternative: Alternative, seen: Sighting | None) -> str | None:

@@ -52,17 +52,18 @@ def find_texts(
     number = 0
     for file in files:
         source = (root / file).read_bytes()
-        places = list(find_places(source, file, rules, first=number + 1))
+        index = Index.of(ast.parse(source, file))
+        places = list(find_places(source, file, rules, index, first=number + 1))
         number += len(places)
-        texts.append(ProgramText(file, sha256(source).hexdigest(), tuple(places)))
+        texts.append(ProgramText(file, sha256(source).hexdigest(), tuple(places), index.declared))
     return tuple(texts)
 
 
 def find_places(
-    source: bytes, file: str, rules: Iterable[ClassicalOperator], *, first: int = 1
+    source: bytes, file: str, rules: Iterable[ClassicalOperator], index: Index, *, first: int = 1
 ) -> Iterator[TextPlace]:
     """The places of one file that any of the rules has to do with, in the order of the text."""
-    finder = _Finder(_decoded(source), file, list(rules), Index.of(ast.parse(source, file)))
+    finder = _Finder(_decoded(source), file, list(rules), index)
     finder.wrapper.visit(finder)
     counts: dict[tuple[str, str, str], int] = {}
     number = first

@@ -127,9 +127,10 @@ def _alike(value: Any, frame: FrameType) -> Iterator[str]:
     for name, other in list(frame.f_locals.items()):
         if type(other) is kind and _is_plain(name):
             yield name
-    nested = "<locals>" in code.co_qualname
+    own = {*code.co_varnames, *code.co_cellvars, *code.co_freevars}
+    allowed = code.co_names if "<locals>" in code.co_qualname else frame.f_globals
     for name, other in list(frame.f_globals.items()):
-        if type(other) is kind and _is_plain(name) and (not nested or name in code.co_names):
+        if type(other) is kind and _is_plain(name) and name in allowed and name not in own:
             yield name
 
 

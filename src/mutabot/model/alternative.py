@@ -6,7 +6,8 @@ that crosses the process border as JSON.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from .site import Role, Site, Span
 
@@ -93,11 +94,14 @@ class ProgramText:
         file: path relative to the project's root, with forward slashes.
         digest: SHA-256 of the file's bytes, in hexadecimal digits: other text has other places.
         places: the places, in the order of the text.
+        declared: names that a function declares ``global`` or ``nonlocal``, by function: they must not be
+            mentioned there before, so they cannot stand for another variable.
     """
 
     file: str
     digest: str
     places: tuple[TextPlace, ...] = ()
+    declared: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, order=True)
