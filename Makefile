@@ -30,10 +30,12 @@ format: $(READY)
 ## write the generated pages of docs/ again
 docs: $(READY)
 	$(RUN) tools/make_docs.py
+	$(RUN) tools/make_classical_page.py
 
 ## measure: the cost of an intercepted call, start-up, simulation speed, 200 seeds of each example
 bench: $(READY)
 	$(RUN) benchmarks/interception.py
+	$(RUN) benchmarks/instrumentation.py
 	$(RUN) benchmarks/cell_speed.py
 	$(RUN) benchmarks/paper_seeds.py
 	$(RUN) benchmarks/engines.py

@@ -1,5 +1,11 @@
 """Plain data: what mutabot talks about, without any input or output."""
 
+from .alternative import Alternative as Alternative
+from .alternative import Choice as Choice
+from .alternative import Instrumentation as Instrumentation
+from .alternative import ProgramText as ProgramText
+from .alternative import Sighting as Sighting
+from .alternative import TextPlace as TextPlace
 from .call import Call as Call
 from .call import Middleware as Middleware
 from .call import Proceed as Proceed

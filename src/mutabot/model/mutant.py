@@ -18,7 +18,7 @@ class Mutant:
         family: ``robot``, ``classical``, ``text`` or ``physical``.
         operator: name of the operator.
         site: where it acts.
-        operation: target of the operation it acts on.
+        operation: target of the operation it acts on; empty for a mutant of the program text.
         pattern: notation of the text command it acts on; None where that does not apply.
         quantity: name of the quantity it changes; None if it concerns the call as a whole.
         variant: which of several mutants of the same operator here; empty if there is only one.
@@ -40,10 +40,12 @@ class Mutant:
 
     @property
     def id(self) -> str:
-        """Stable under edits elsewhere: file, function, call text, occurrence, quantity, operator."""
+        """Stable under edits elsewhere: file, function, text, occurrence, quantity, operator."""
         from_pattern = f"{self.pattern_name}" if self.pattern is not None else ""
         subject = "/".join(part for part in (from_pattern, self.quantity) if part) or "call"
         variant = f"={self.variant}" if self.variant else ""
+        if not self.operation:
+            return f"{self.site.id}:{self.operator}{variant}"
         return f"{self.site.id}:{subject}:{self.operator}{variant}"
 
     @property

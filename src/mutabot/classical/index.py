@@ -1,0 +1,152 @@
+"""What of a module is evaluated, where, and in which function: the ground that places stand on.
+
+Annotations, patterns of ``match``, docstrings and what is not run by a test (``if TYPE_CHECKING``,
+``if __name__ == "__main__"``) are not in it, so nothing there can become a place.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from mutabot.model.alternative import Extent
+
+_Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+Start = tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """The function that a node belongs to.
+
+    Attributes:
+        name: qualified name, as in ``code.co_qualname``; ``<module>`` at the top level.
+        at_import: whether its code runs while the module is imported.
+        is_class: whether it is the body of a class.
+    """
+
+    name: str = "<module>"
+    at_import: bool = True
+    is_class: bool = False
+
+    def function(self, name: str) -> Scope:
+        """A function defined here."""
+        return Scope(self._inner(name), at_import=False)
+
+    def klass(self, name: str) -> Scope:
+        """A class defined here; its body runs where it stands."""
+        return Scope(self._inner(name), self.at_import, is_class=True)
+
+    def _inner(self, name: str) -> str:
+        if self.name == "<module>":
+            return name
+        return f"{self.name}.{name}" if self.is_class else f"{self.name}.<locals>.{name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """A node and its scope."""
+
+    node: ast.expr | ast.stmt
+    scope: Scope
+
+
+@dataclass(slots=True)
+class Index:
+    """Nodes of a module that are evaluated.
+
+    Attributes:
+        expressions: by extent; None where several stand at the same place, as inside old f-strings.
+        statements: by where they start.
+        declared: names declared ``global`` or ``nonlocal``, by function.
+    """
+
+    expressions: dict[Extent, Found | None] = field(default_factory=dict)
+    statements: dict[Start, Found] = field(default_factory=dict)
+    declared: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, tree: ast.Module) -> Index:
+        """The index of a module."""
+        index = cls()
+        index._walk_all(tree.body, Scope())
+        return index
+
+    def expression(self, extent: Extent) -> Found | None:
+        """The expression of exactly this extent, if it is read and there is only one."""
+        found = self.expressions.get(extent)
+        if found is None or isinstance(getattr(found.node, "ctx", None), ast.Store | ast.Del):
+            return None
+        return found
+
+    def _walk_all(self, nodes: list[ast.stmt] | list[ast.expr] | list[ast.AST], scope: Scope) -> None:
+        for node in nodes:
+            self._walk(node, scope)
+
+    def _walk(self, node: ast.AST, scope: Scope) -> None:
+        if is_docstring(node):
+            return
+        self._note(node, scope)
+        if isinstance(node, _Function):
+            self._walk_all(_outer_of_function(node), scope)
+            name = "<lambda>" if isinstance(node, ast.Lambda) else node.name
+            body = [node.body] if isinstance(node, ast.Lambda) else node.body
+            self._walk_all([*body], scope.function(name))
+        elif isinstance(node, ast.ClassDef):
+            keywords = [keyword.value for keyword in node.keywords]
+            self._walk_all([*node.decorator_list, *node.bases, *keywords], scope)
+            self._walk_all(node.body, scope.klass(node.name))
+        else:
+            self._walk_all(list(_evaluated(node)), scope)
+
+    def _note(self, node: ast.AST, scope: Scope) -> None:
+        if isinstance(node, ast.stmt):
+            self.statements[node.lineno, node.col_offset] = Found(node, scope)
+            if isinstance(node, ast.Global | ast.Nonlocal):
+                self.declared[scope.name] = (*self.declared.get(scope.name, ()), *node.names)
+        elif isinstance(node, ast.expr):
+            extent = extent_of(node)
+            self.expressions[extent] = None if extent in self.expressions else Found(node, scope)
+
+
+def extent_of(node: ast.expr | ast.stmt) -> Extent:
+    """Where a node stands."""
+    return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
+
+
+def is_docstring(node: ast.AST) -> bool:
+    """Whether a statement is nothing but a text."""
+    return (
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    )
+
+
+def _outer_of_function(node: _Function) -> list[ast.AST]:
+    """What is evaluated where a function is defined."""
+    defaults = [default for default in (*node.args.defaults, *node.args.kw_defaults) if default is not None]
+    decorators = [] if isinstance(node, ast.Lambda) else node.decorator_list
+    return [*decorators, *defaults]
+
+
+def _evaluated(node: ast.AST) -> Iterator[ast.AST]:
+    """Parts of a node that are evaluated in its own scope."""
+    if isinstance(node, ast.AnnAssign):
+        yield from (node.target, *([node.value] if node.value is not None else []))
+    elif isinstance(node, ast.match_case):
+        yield from (*([node.guard] if node.guard is not None else []), *node.body)
+    elif isinstance(node, ast.JoinedStr):
+        yield from (value for value in node.values if isinstance(value, ast.FormattedValue))
+    elif isinstance(node, ast.If) and _is_never_run_by_tests(node.test):
+        yield from node.orelse
+    elif not type(node).__name__.startswith("TypeAlias"):
+        yield from ast.iter_child_nodes(node)
+
+
+def _is_never_run_by_tests(test: ast.expr) -> bool:
+    if isinstance(test, ast.Compare):
+        return isinstance(test.left, ast.Name) and test.left.id == "__name__"
+    name = test.attr if isinstance(test, ast.Attribute) else getattr(test, "id", None)
+    return name == "TYPE_CHECKING"

@@ -1,0 +1,100 @@
+"""The contract of an operator on program text.
+
+An operator looks at one node of the concrete syntax tree and says what could stand there instead. What it
+keeps of the original it hands on as nodes, so that these keep their place, their line and their meaning.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import libcst as cst
+
+#: what the helper object is called in templates
+HELPER = "__mutabot__[0]"
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """What could stand in a node's place.
+
+    Attributes:
+        variant: which of the operator's alternatives here.
+        parts: text, and nodes of the original that are kept.
+        needs: kind of value that the place must have; empty for any (see ``Alternative.needs``).
+        shown: parts as the program text would show them, where that differs.
+    """
+
+    variant: str
+    parts: tuple[str | cst.CSTNode, ...]
+    needs: str = ""
+    shown: tuple[str | cst.CSTNode, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What an operator may want to know about where a node stands.
+
+    Attributes:
+        is_value: whether the node's own value is used, rather than called or looked into.
+        is_condition: whether only the truth of it matters.
+        is_operand_of_unary: whether a unary operator stands right before it.
+        is_argument: whether it is an argument of a call.
+        is_callee: whether it is what a call calls.
+    """
+
+    is_value: bool = True
+    is_condition: bool = False
+    is_operand_of_unary: bool = False
+    is_argument: bool = False
+    is_callee: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Example:
+    """One worked example: a program text, and all texts that the operator makes of it.
+
+    Attributes:
+        before: the text of a module.
+        after: the texts it makes, in order; empty where it stays away.
+        kinds: kinds of values seen in the baseline, by expression; all others were numbers.
+        variables: for the variables named here, the others of the same type in scope.
+        note: one line for the documentation.
+    """
+
+    before: str
+    after: tuple[str, ...] = ()
+    kinds: Mapping[str, str] = field(default_factory=dict)
+    variables: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    note: str = ""
+
+
+class ClassicalOperator(ABC):
+    """A rule that makes alternatives of program text.
+
+    Class attributes:
+        name: how ids, reports and selections call it.
+        family: ``classical`` or ``text``.
+        summary: one sentence for the documentation.
+        examples: worked examples; they are tests and documentation at once.
+    """
+
+    name: ClassVar[str]
+    family: ClassVar[str] = "classical"
+    summary: ClassVar[str]
+    examples: ClassVar[tuple[Example, ...]] = ()
+
+    @abstractmethod
+    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+        """What could stand in this node's place; nothing for nodes that are none of its business."""
+
+
+def is_scalar(node: cst.CSTNode, around: Surroundings) -> bool:
+    """Whether a node may have a number or a truth value that the program goes on with."""
+    kinds = cst.Name | cst.Attribute | cst.Subscript | cst.Call | cst.BinaryOperation
+    if not isinstance(node, kinds) or not around.is_value:
+        return False
+    return not (isinstance(node, cst.Name) and node.value in ("None", "True", "False"))

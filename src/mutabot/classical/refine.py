@@ -1,0 +1,76 @@
+"""After the baseline: variables for variables, and only what fits the types that were seen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from mutabot.model.alternative import Alternative, ProgramText, Sighting, TextPlace
+
+from .mutants import LeftOutText
+from .variable import VariableReplacement
+
+#: kinds of values that fit what an alternative needs
+FITTING: Mapping[str, frozenset[str]] = {
+    "number": frozenset({"number", "integer"}),
+    "integer": frozenset({"integer"}),
+    "truth": frozenset({"truth"}),
+    "bits": frozenset({"integer", "truth", "set", "flag"}),
+}
+
+
+def merge(sightings: Iterable[Sighting]) -> dict[int, Sighting]:
+    """What several sessions saw, by place: all kinds, and the variables that each of them saw."""
+    merged: dict[int, Sighting] = {}
+    for seen in sightings:
+        before = merged.get(seen.place)
+        if before is not None:
+            kinds = tuple(sorted({*before.kinds, *seen.kinds}))
+            variables = tuple(name for name in before.variables if name in seen.variables)
+            seen = Sighting(seen.place, before.hits + seen.hits, kinds, variables)  # noqa: PLW2901
+        merged[seen.place] = seen
+    return merged
+
+
+def refine(
+    texts: Iterable[ProgramText], seen: Mapping[int, Sighting]
+) -> tuple[tuple[ProgramText, ...], list[LeftOutText]]:
+    """The texts with alternatives for variables added, and what does not fit the types left out.
+
+    Numbers of places stay; places that have no alternative any more are gone.
+    """
+    refined: list[ProgramText] = []
+    left_out: list[LeftOutText] = []
+    for text in texts:
+        places: list[TextPlace] = []
+        for place in text.places:
+            alternatives: list[Alternative] = []
+            for alternative in place.alternatives:
+                reason = _reason(alternative, seen.get(place.number))
+                if reason is None:
+                    alternatives.append(alternative)
+                else:
+                    left_out.append(LeftOutText(place, alternative, reason))
+            declared = text.declared.get(place.span.function, ())
+            alternatives += _variables(place, seen.get(place.number), declared)
+            if alternatives:
+                places.append(replace(place, alternatives=tuple(alternatives)))
+        refined.append(replace(text, places=tuple(places)))
+    return tuple(refined), left_out
+
+
+def _variables(place: TextPlace, seen: Sighting | None, declared: tuple[str, ...]) -> Iterable[Alternative]:
+    if not place.variable or seen is None:
+        return ()
+    return VariableReplacement.with_variables(name for name in seen.variables if name not in declared)
+
+
+def _reason(alternative: Alternative, seen: Sighting | None) -> str | None:
+    """Why an alternative does not fit; None if it does."""
+    if not alternative.needs:
+        return None
+    if seen is None or not seen.kinds:
+        return "no test reaches it, so its type is not known"
+    if FITTING[alternative.needs].isdisjoint(seen.kinds):
+        return f"its value is {' or '.join(seen.kinds)}, never {alternative.needs}"
+    return None

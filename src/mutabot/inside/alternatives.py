@@ -1,0 +1,196 @@
+"""The switches that instrumented program text looks at, and what happens when one is on.
+
+The text of a place ``E`` with number ``p`` becomes ``(other) if __mutabot__[p] and __mutabot__[p].chosen()
+else E``. ``__mutabot__`` is a plain list with False at places that are off, so these cost one look-up. It is
+a built-in name: modules keep the names they have.
+"""
+
+from __future__ import annotations
+
+import builtins
+import sys
+from collections.abc import Callable, Iterable
+from types import CodeType, FrameType
+from typing import Any, NoReturn
+
+from mutabot.model.alternative import RUNTIME, Choice
+
+
+class Bomb(Exception):  # noqa: N818  # the name that the literature gives it
+    """A statement that was replaced by a bomb was reached."""
+
+
+class ZeroValue(Exception):  # noqa: N818  # as above: failOnZero
+    """An expression that must not be zero for its mutant to survive was zero."""
+
+
+class Switch:
+    """A place that is on.
+
+    Attributes:
+        place: its number.
+        index: the alternative that is active there; None if the place is only watched.
+        watched: whether its next evaluation is to be told.
+    """
+
+    __slots__ = ("_before", "_code", "_owner", "index", "place", "watched")
+
+    def __init__(self, owner: Alternatives, place: int, index: int | None, watched: bool) -> None:
+        self._owner, self.place, self.index, self.watched = owner, place, index, watched
+        self._before: Any = _UNKNOWN
+        self._code: CodeType | None = None
+
+    def chosen(self) -> bool:
+        """Asked at every evaluation: whether an alternative stands for the original."""
+        return self._owner.reached(self)
+
+    # what instrumented text calls around an alternative, so that one sees whether it changed anything
+
+    def was(self, value: Any) -> Any:
+        """The original's value, which the alternative goes on with."""
+        self._before = value
+        return value
+
+    def became(self, value: Any, original: str = "") -> Any:
+        """The alternative's value; ``original`` is the original as text if computing it has no effect."""
+        before, self._before = self._before, _UNKNOWN
+        if before is _UNKNOWN and original:
+            before = self._value_of(original, sys._getframe(1))
+        self._owner.note(self.place, before, value)
+        return value
+
+    def _value_of(self, original: str, frame: FrameType) -> Any:
+        try:
+            if self._code is None:
+                self._code = compile(original, "<original>", "eval")
+            return eval(self._code, frame.f_globals, frame.f_locals)
+        except Exception:  # what the original would have raised; the alternative did not
+            return _UNKNOWN
+
+
+_UNKNOWN = object()
+
+
+class Alternatives:
+    """All places of the program, and which of their alternatives is active.
+
+    Attributes:
+        active: index of the active alternative by place; more than one for mutants of higher order.
+        hits: evaluations of each place that was on.
+        idle: evaluations of each active place at which the alternative had the value of the original.
+        examples: value of the original and of the alternative when they first differed, by place.
+        on_place: told the number of a watched place before its value is computed; it may activate one of
+            the place's alternatives, which then stands for the original at once.
+        on_act: told the number of an active place when its alternative is known to change something, or
+            may do so, for the first time since ``start``.
+        switches: what instrumented program text looks at; item 0 is this object.
+    """
+
+    def __init__(self, size: int) -> None:
+        """``size``: the largest number of a place."""
+        self.active: dict[int, int] = {}
+        self.hits: dict[int, int] = {}
+        self.idle: dict[int, int] = {}
+        self.examples: dict[int, tuple[Any, Any]] = {}
+        self._told: set[int] = set()
+        self.on_place: Callable[[int], None] | None = None
+        self.on_act: Callable[[int], None] | None = None
+        self.switches: list[Any] = [self, *([False] * size)]
+
+    def install(self) -> None:
+        """Let instrumented program text find its switches."""
+        setattr(builtins, RUNTIME, self.switches)
+
+    def remove(self) -> None:
+        """Switch everything off; program text that is already instrumented goes on as the original."""
+        self.active = {}
+        self._set(frozenset())
+
+    def start(self) -> None:
+        """A new test begins: count anew."""
+        for counts in (self.hits, self.idle, self.examples, self._told):
+            counts.clear()
+
+    def acted(self, place: int) -> int:
+        """Evaluations at which the active alternative changed something, or raised."""
+        return self.hits.get(place, 0) - self.idle.get(place, 0)
+
+    def note(self, place: int, before: Any, after: Any) -> None:
+        """An alternative has its value; compare it with the original's, where that is known."""
+        if before is not _UNKNOWN and _is_same(before, after):
+            self.idle[place] = self.idle.get(place, 0) + 1
+            return
+        if before is not _UNKNOWN:
+            self.examples.setdefault(place, (before, after))
+        self.tell(place)
+
+    def tell(self, place: int) -> None:
+        """An alternative changed something, or may have."""
+        if place not in self._told:
+            self._told.add(place)
+            if self.on_act is not None:
+                self.on_act(place)
+
+    def activate(self, *choices: Choice) -> None:
+        """Make these alternatives, and no others, stand for the original."""
+        watched = self.watched
+        self.active = {choice.place: choice.index for choice in choices}
+        self._set(watched)
+
+    def watch(self, places: Iterable[int]) -> None:
+        """Tell the next evaluation of each of these places, once, and of no other."""
+        self._set(frozenset(places))
+
+    @property
+    def watched(self) -> frozenset[int]:
+        """Places whose next evaluation will be told."""
+        return frozenset(switch.place for switch in self.switches[1:] if switch and switch.watched)
+
+    def reached(self, switch: Switch) -> bool:
+        """A place that is on is evaluated; whether an alternative stands for it."""
+        place = switch.place
+        self.hits[place] = self.hits.get(place, 0) + 1
+        if switch.watched:
+            switch.watched = False
+            if switch.index is None:
+                self.switches[place] = False
+            if self.on_place is not None:
+                self.on_place(place)
+        return place in self.active
+
+    def _set(self, watched: frozenset[int]) -> None:
+        on = watched | self.active.keys()
+        for place in range(1, len(self.switches)):
+            self.switches[place] = (
+                Switch(self, place, self.active.get(place), place in watched) if place in on else False
+            )
+
+    # what templates call
+
+    def bomb(self) -> NoReturn:
+        """The statement that stood here is replaced by one that raises."""
+        for place in self.active:
+            self.tell(place)
+        raise Bomb("the mutant's bomb went off")
+
+    def absolute(self, value: Any) -> Any:
+        """``abs``, whatever the program calls by that name."""
+        return abs(value)
+
+    def fail_on_zero(self, value: Any) -> Any:
+        """The value itself; raises ZeroValue if it is zero, or if one of several is."""
+        equal = value == 0
+        if equal.any() if hasattr(equal, "any") else equal:
+            raise ZeroValue("the value is zero")
+        return value
+
+
+def _is_same(before: Any, after: Any) -> bool:
+    """Whether two values are the same to any program: equal, and of one type."""
+    if type(before) is not type(after):
+        return False
+    try:
+        equal = before == after
+        return bool(equal.all()) if hasattr(equal, "all") else bool(equal)
+    except Exception:  # values that cannot be compared are told apart by nobody
+        return False

@@ -1,0 +1,104 @@
+"""Import hook: program files are compiled with their alternatives in them.
+
+Every way to import a source file asks ``SourceFileLoader.get_code`` for the code: the import statement,
+``importlib``, ``runpy.run_module``. That is where the hook sits; loader, spec and module stay what they
+are without it. No compiled file is read or written for an instrumented module.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable
+from importlib.machinery import SourceFileLoader
+from types import CodeType, ModuleType
+from typing import Any, cast
+
+from mutabot.model.alternative import Instrumentation, ProgramText
+
+from .alternatives import Alternatives
+from .instrument import MismatchError, compile_text
+from .recording import Recording
+
+GetCode = Callable[[SourceFileLoader, str], CodeType | None]
+
+
+class ImportHook:
+    """The hook for one process.
+
+    Attributes:
+        alternatives: the switches of the instrumented text; idle in a recording.
+        recording: what was seen, if this is a recording; else None.
+        imported: files that were instrumented, relative to the root.
+        problems: files that were not, with the reason.
+    """
+
+    def __init__(self, root: str, instrumentation: Instrumentation) -> None:
+        texts = instrumentation.texts
+        places = [place for text in texts for place in text.places]
+        size = max((place.number for place in places), default=0)
+        self.alternatives = Alternatives(size)
+        self.alternatives.activate(*instrumentation.active)
+        self.imported: list[str] = []
+        self.problems: dict[str, str] = {}
+        self.recording: Recording | None = None
+        if instrumentation.record:
+            self.recording = Recording(size, {place.number: place.text for place in places if place.variable})
+        self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
+        self._real_paths: dict[str, str] = {}
+        self._original: GetCode | None = None
+
+    def install(self) -> None:
+        """Instrument the program's files from now on; files imported before are told as problems."""
+        (self.recording or self.alternatives).install()
+        for module in list(sys.modules.values()):
+            text = self._text_of(_file_of(module))
+            if text is not None:
+                self.problems[text.file] = "it was imported before mutabot could look at it"
+        # get_code is inherited; it is put where the inherited one is found last
+        self._original = cast(GetCode, SourceFileLoader.get_code)
+        original, hook = self._original, self
+
+        def get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
+            path = self.get_filename(fullname)
+            text = hook._text_of(path)
+            if text is None:
+                return original(self, fullname)
+            return hook._compiled(text, self.get_data(path), path) or original(self, fullname)
+
+        SourceFileLoader.get_code = get_code  # type: ignore[method-assign, assignment]
+
+    def remove(self) -> None:
+        """Import as ever from now on; text that is instrumented goes on as the original."""
+        if self._original is not None:
+            if "get_code" in vars(SourceFileLoader):
+                del SourceFileLoader.get_code
+            self._original = None
+        (self.recording or self.alternatives).remove()
+
+    def _text_of(self, path: str) -> ProgramText | None:
+        real = self._real_paths.get(path)
+        if real is None:
+            real = self._real_paths[path] = os.path.realpath(path)
+        return self._texts.get(real)
+
+    def _compiled(self, text: ProgramText, source: bytes, path: str) -> CodeType | None:
+        if hashlib.sha256(source).hexdigest() != text.digest:
+            self.problems[text.file] = "it has changed since its mutants were made"
+            return None
+        try:
+            code = compile_text(source, path, text, record=self.recording is not None)
+        except (MismatchError, RecursionError, SyntaxError, ValueError) as error:
+            self.problems[text.file] = f"it cannot be instrumented: {error}"
+            return None
+        self.imported.append(text.file)
+        return code
+
+
+def _file_of(module: Any) -> str:
+    """A module's file; empty if it has none. Modules that are loaded when first used stay asleep."""
+    if not isinstance(module, ModuleType):
+        return ""
+    file = object.__getattribute__(module, "__dict__").get("__file__")
+    return file if isinstance(file, str) else ""

@@ -1,0 +1,139 @@
+"""What a baseline sees at each place of the program: kinds of values, and variables of the same type.
+
+In a recording the text of a place ``E`` with number ``p`` becomes ``__mutabot__[p](E)``. A place is looked
+at a few times per test; from then on the function there hands the value through, as cheap as a call can be.
+"""
+
+from __future__ import annotations
+
+import builtins
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from types import FrameType
+from typing import Any
+
+from mutabot.model.alternative import RUNTIME, Sighting
+
+from .kinds import is_variable, kind_of
+
+#: evaluations per test at which a place is looked at
+LOOKS = 20
+#: the same for the variables around a variable, which takes longer
+LOOKS_AROUND = 3
+
+
+def hand_through(value: Any) -> Any:
+    """What stands at places that have been looked at often enough."""
+    return value
+
+
+class Recording:
+    """All places of the program, and what was seen there.
+
+    Attributes:
+        switches: what instrumented program text calls, by number of the place.
+    """
+
+    def __init__(self, size: int, variables: Mapping[int, str]) -> None:
+        """``size``: the largest number of a place; ``variables``: names of the places that are variables."""
+        self._witnesses = [_Witness(self, place, variables.get(place)) for place in range(1, size + 1)]
+        self.switches: list[Callable[[Any], Any]] = [hand_through, *self._witnesses]
+
+    def install(self) -> None:
+        """Let instrumented program text find its switches."""
+        setattr(builtins, RUNTIME, self.switches)
+
+    def remove(self) -> None:
+        """Look no more."""
+        self.switches[1:] = [hand_through] * len(self._witnesses)
+
+    def start(self) -> None:
+        """A new test begins: look at every place anew."""
+        for witness in self._witnesses:
+            witness.looks = witness.looks_around = 0
+        self.switches[1:] = self._witnesses
+
+    def reached(self) -> frozenset[int]:
+        """Places that were reached since the start of the test."""
+        return frozenset(witness.place for witness in self._witnesses if witness.looks)
+
+    def sightings(self) -> tuple[Sighting, ...]:
+        """What was seen so far, over all tests, by place."""
+        return tuple(witness.sighting() for witness in self._witnesses if witness.hits)
+
+
+class _Witness:
+    """Looks at one place.
+
+    Attributes:
+        place: its number.
+        looks, looks_around: since the start of the test.
+        hits: evaluations that were looked at, over all tests.
+    """
+
+    __slots__ = (
+        "_kinds",
+        "_owner",
+        "_types",
+        "_variable",
+        "_variables",
+        "hits",
+        "looks",
+        "looks_around",
+        "place",
+    )
+
+    def __init__(self, owner: Recording, place: int, variable: str | None) -> None:
+        self._owner, self.place, self._variable = owner, place, variable
+        self.hits = self.looks = self.looks_around = 0
+        self._types: set[type] = set()
+        self._kinds: set[str] = set()
+        self._variables: set[str] | None = None
+
+    def __call__(self, value: Any) -> Any:
+        self.hits += 1
+        self.looks += 1
+        if self.looks >= LOOKS:
+            self._owner.switches[self.place] = hand_through
+        kind = type(value)
+        if kind not in self._types:
+            self._types.add(kind)
+            self._kinds.add(kind_of(value))
+            self.looks_around = 0
+        if self._variable is not None and self.looks_around < LOOKS_AROUND:
+            self.looks_around += 1
+            self._look_around(value, sys._getframe(1))
+        return value
+
+    def sighting(self) -> Sighting:
+        """What was seen."""
+        return Sighting(
+            self.place, self.hits, tuple(sorted(self._kinds)), tuple(sorted(self._variables or ()))
+        )
+
+    def _look_around(self, value: Any, frame: FrameType) -> None:
+        names = set(_alike(value, frame)) - {self._variable} if is_variable(value) else set()
+        self._variables = names if self._variables is None else self._variables & names
+
+
+def _alike(value: Any, frame: FrameType) -> Iterator[str]:
+    """Names around a frame's instruction with a value of exactly this type.
+
+    Of the function's own names and the module's: to mention a name of a function further out would make
+    it a part of this one. So inside another function only such names of the module count as this one uses,
+    since any other could be one of the function around it.
+    """
+    kind, code = type(value), frame.f_code
+    for name, other in list(frame.f_locals.items()):
+        if type(other) is kind and _is_plain(name):
+            yield name
+    own = {*code.co_varnames, *code.co_cellvars, *code.co_freevars}
+    allowed = code.co_names if "<locals>" in code.co_qualname else frame.f_globals
+    for name, other in list(frame.f_globals.items()):
+        if type(other) is kind and _is_plain(name) and name in allowed and name not in own:
+            yield name
+
+
+def _is_plain(name: str) -> bool:
+    """Whether a program would use this name; comprehensions have names of their own."""
+    return name.isidentifier() and not name.startswith("__")
