@@ -22,6 +22,9 @@ HEAD = """\
 The operators of textbooks change the text of a program and know nothing of robots. They are here to be
 compared with those that do ([operators](operators.md)).
 
+**Not part of campaigns yet:** places, alternatives and instrumentation are there and tested; `mutabot run`
+does not plant them so far.
+
 No file is changed for it. While the program is imported, each place with alternatives is compiled as *the
 original, unless an alternative is chosen*, with the lines and columns of your text: tracebacks and
 `inspect.getsource` show what you wrote. There is no function around anything, so short circuits, chained
