@@ -227,3 +227,26 @@ def test_an_exception_is_known_by_the_name_it_was_re_exported_as(make_stage: Mak
     stage = make_stage(RE_EXPORTING, HANDLES_REFUSAL.format(0.5), VOCABULARY)
     _, activation = stage.mutated("reverse", "x")
     assert activation.evidence.refusal is not None
+
+
+def test_an_argument_that_cannot_be_read_does_not_hide_later_calls(make_stage: Make) -> None:
+    """An operation must never stay under way: mutants of all later calls would seem to do nothing."""
+    program = """
+        import robot
+
+        class Odd:
+            @property
+            def x(self):
+                raise RuntimeError("not now")
+
+        def run():
+            try:
+                robot.move(Odd())
+            except RuntimeError:
+                pass
+            robot.dance()
+    """
+    vocabulary = VOCABULARY.replace("arguments.x =", 'arguments."x.x" =')
+    stage = make_stage(ROBOT, program, vocabulary)
+    stage.run(stage.session())
+    assert [seen.operation.partition(":")[2] for seen in stage.sites()] == ["dance"]

@@ -192,18 +192,20 @@ class Session:
     ) -> Any:
         __tracebackhide__ = True
         token = _under_way.set(True)
-        call = door.call(wrapped, instance, args, kwargs)
-        reply: Reply | None = None
         try:
-            mutated = self._mutant_for(located[0], call)
-            if mutated is not None:
-                result, reply = mutated.run(door, call)
-                return result
-            reply = door.reply(call, door.perform(call, call))
-            return reply.payload
+            call = door.call(wrapped, instance, args, kwargs)
+            reply: Reply | None = None
+            try:
+                mutated = self._mutant_for(located[0], call)
+                if mutated is not None:
+                    result, reply = mutated.run(door, call)
+                    return result
+                reply = door.reply(call, door.perform(call, call))
+                return reply.payload
+            finally:
+                self._record(located, call, reply)
         finally:
             _under_way.reset(token)
-            self._record(located, call, reply)
 
     async def _observe_async(
         self,
@@ -216,18 +218,20 @@ class Session:
     ) -> Any:
         __tracebackhide__ = True
         token = _under_way.set(True)
-        call = door.call(wrapped, instance, args, kwargs)
-        reply: Reply | None = None
         try:
-            mutated = self._mutant_for(located[0], call)
-            if mutated is not None:
-                result, reply = await mutated.run_async(door, call)
-                return result
-            reply = door.reply(call, await door.perform(call, call))
-            return reply.payload
+            call = door.call(wrapped, instance, args, kwargs)
+            reply: Reply | None = None
+            try:
+                mutated = self._mutant_for(located[0], call)
+                if mutated is not None:
+                    result, reply = await mutated.run_async(door, call)
+                    return result
+                reply = door.reply(call, await door.perform(call, call))
+                return reply.payload
+            finally:
+                self._record(located, call, reply)
         finally:
             _under_way.reset(token)
-            self._record(located, call, reply)
 
     def _mutant_for(self, span: Span, call: Call) -> Activation | None:
         if self.trunk is not None:
