@@ -9,6 +9,23 @@ from .verdict import By, Verdict
 
 
 @dataclass(frozen=True, slots=True)
+class Kill:
+    """One test that noticed a mutant.
+
+    Attributes:
+        test: node id.
+        by: what noticed it.
+        exception: type of the exception that ended the test, as ``module:Name``.
+        message: first lines of that exception's text.
+    """
+
+    test: str
+    by: By
+    exception: str | None = None
+    message: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Outcome:
     """The end of one mutant in one round.
 
@@ -35,6 +52,11 @@ class Outcome:
             None without probes.
         divergence: what ended otherwise than in the original, one line each, worst first.
         engine: ``replay`` or ``branch``.
+        complete: whether every test that reaches the mutant was run, also after one had noticed it.
+        kills: the tests that noticed it, in the order in which they ran: all of them if ``complete``, else
+            the first at most.
+        commands: operations with which the deciding test had commanded the robot until it ended; None if
+            that is not known.
     """
 
     mutant: str
@@ -57,6 +79,9 @@ class Outcome:
     distance: float | None = None
     divergence: tuple[str, ...] = ()
     engine: str = "replay"
+    complete: bool = False
+    kills: tuple[Kill, ...] = ()
+    commands: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
