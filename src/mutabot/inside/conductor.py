@@ -28,7 +28,6 @@ from .locate import Locator
 from .pipe import Held, Pipe
 from .probes import take
 from .session import Session
-from .unrewritten import unrewritten
 
 if TYPE_CHECKING:
     from .forkserver import Commission, ForkServer
@@ -70,10 +69,9 @@ class Conductor:
         # what the program draws while it is imported is the same in all rounds: a fork server imports it once
         seeds.seed_all(seeds.derive(job.seed, "import"))
         if job.serving is not None:
-            with unrewritten():
-                from .forkserver import ForkServer  # noqa: PLC0415  # of no use to other jobs
+            from .forkserver import ForkServer  # noqa: PLC0415  # of no use to other jobs
 
-                preload((*BUILT_IN, *CONTROLS))
+            preload((*BUILT_IN, *CONTROLS))
             pipe = Pipe(descriptor)
             conductor = cls(job, pipe, ForkServer(job.serving, pipe, os.path.join(home, LOG)))
         else:
@@ -84,8 +82,7 @@ class Conductor:
 
     def _begin(self, home: str) -> None:
         if self.job.branching is not None:
-            with unrewritten():  # once, and not in every branch
-                preload({mutant.operator for mutant in self.job.branching.mutants})
+            preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
             self.grow(self.job.branching, os.path.join(home, LOG))
 
     def grow(self, branching: Branching, log_file: str) -> None:
