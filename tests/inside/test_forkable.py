@@ -6,12 +6,18 @@ import ctypes.util
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from mutabot.inside.forkable import loaded_libraries, why_not
 
-ASK = "from mutabot.inside.forkable import open_sockets, why_not; known = open_sockets()\n{}\nprint(why_not((), known))"
+ASK = """
+from mutabot.inside.forkable import open_sockets, why_not
+known = open_sockets()
+{}
+print(why_not((), known))
+"""
 
 
 def asked(code: str) -> str:
@@ -45,7 +51,7 @@ def test_graphics_library_is_noticed_however_it_was_loaded() -> None:
 
 
 def test_all_mapped_libraries_are_known() -> None:
-    with open("/proc/self/maps", encoding="utf-8") as file:
+    with Path("/proc/self/maps").open(encoding="utf-8") as file:
         mapped = {os.path.realpath(line.split()[-1]) for line in file if ".so" in line}
     assert mapped <= {os.path.realpath(os.fsdecode(name)) for name in loaded_libraries() if name}
 
