@@ -38,7 +38,7 @@ bench: $(READY)
 	$(RUN) benchmarks/instrumentation.py
 	$(RUN) benchmarks/cell_speed.py
 	$(RUN) benchmarks/paper_seeds.py
-	$(RUN) benchmarks/engines.py
+	$(RUN) benchmarks/engines.py --output docs/data/engines.json --page docs/engines.md
 	$(RUN) benchmarks/interval_coverage.py
 	$(RUN) benchmarks/pick_and_place_seeds.py
 

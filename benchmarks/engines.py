@@ -7,7 +7,12 @@ Four ways to run the same mutants, in one go on the same machine:
   replay   a fresh process per mutant and round, with the tests that reach the site
   fresh    a fresh pytest per mutant and round with the whole suite until a test fails, as general tools do it
 
+The physics bound of a row is the least time in which its steps can be simulated here: steps, divided by the
+rate of the bare engine on one core, divided by cores. Efficiency is that bound divided by the wall time. The
+peak of memory is that of the largest process.
+
 Usage: python benchmarks/engines.py [--examples paper …] [--engines branch …] [--limit N] [--output FILE]
+                                    [--page FILE]
 """
 
 from __future__ import annotations
@@ -21,7 +26,7 @@ import shutil
 import statistics
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -46,6 +51,11 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "pick_and_place": {"selection": None, "rounds": 1},
     "scales": {"selection": None, "rounds": 1},
 }
+HEADINGS = (
+    "example", "engine", "mutants × rounds", "wall s", "CPU s", "steps", "per second", "peak MB",
+    "efficiency",
+)  # fmt: skip
+MARK = "<!-- Written by `make bench` (benchmarks/engines.py) from here on. -->"
 ENGINES = ("branch", "fork", "replay", "fresh")
 #: physics steps per simulated second of mutabot.cells
 STEPS_PER_SECOND = 500
@@ -90,17 +100,57 @@ def main() -> None:
     parser.add_argument("--engines", nargs="+", default=list(ENGINES), choices=ENGINES)
     parser.add_argument("--limit", type=int, default=None, help="mutants per example at most")
     parser.add_argument("--output", type=Path, default=None)
+    parser.add_argument("--page", type=Path, default=None, help="page whose last part is written anew")
     options = parser.parse_args()
     rate = raw_step_rate(len(os.sched_getaffinity(0)))
     rows = [
-        measure(example, engine, options.limit, rate)
+        apart(measure, example, engine, options.limit, rate)
         for example in options.examples
         for engine in options.engines
     ]
     show(rows, rate)
+    if options.page is not None:
+        write_page(options.page, rows, rate)
     if options.output is not None:
         data = {"raw_steps_per_second": rate, "rows": [row.data for row in rows]}
         options.output.write_text(json.dumps(data, indent=1), encoding="utf-8")
+
+
+def write_page(page: Path, rows: list[Row], rate: float) -> None:
+    """Put the table at the end of a page, after the mark."""
+    kept = page.read_text(encoding="utf-8").partition(MARK)[0]
+    lines = [
+        f"{kept}{MARK}",
+        "",
+        f"On {len(os.sched_getaffinity(0))} cores, in one run; bare physics: {rate:,.0f} steps/s on each.",
+        "",
+        f"| {' | '.join(HEADINGS)} |",
+        f"|---|---|{'---:|' * (len(HEADINGS) - 2)}",
+        *(f"| {' | '.join(cells(row))} |" for row in rows),
+        "",
+        *ratios(rows),
+    ]
+    page.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def ratios(rows: list[Row]) -> Iterator[str]:
+    """How many times faster branching is than the other ways."""
+    walls = {(row.example, row.engine): row.wall for row in rows}
+    for example in dict.fromkeys(row.example for row in rows):
+        if (example, "branch") in walls:
+            others = [
+                f"{walls[example, engine] / walls[example, 'branch']:.1f} times as fast as {engine}"
+                for engine in ENGINES[1:]
+                if (example, engine) in walls
+            ]
+            if others:
+                yield f"- {example}: branch is {', '.join(others)}."
+
+
+def apart(function: Callable[..., Row], *arguments: Any) -> Row:
+    """Call it in a process of its own, so that memory is its own as well."""
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        return pool.apply(function, arguments)
 
 
 def measure(example: str, engine: str, limit: int | None, rate: float) -> Row:
@@ -201,30 +251,28 @@ def step_bare(inputs: list[Any]) -> float:
     return max(rates)
 
 
+def cells(row: Row) -> list[str]:
+    """What stands in the columns of a table."""
+    data = row.data
+    efficiency = "" if data["efficiency"] is None else f"{data['efficiency']:.2f}"
+    steps = "" if row.bound is None else f"{row.simulated * STEPS_PER_SECOND:,.0f}"
+    return [
+        row.example, row.engine, str(row.outcomes), f"{row.wall:.1f}", f"{row.cpu:.1f}", steps,
+        f"{data['per_second']:.1f}", f"{row.memory:.0f}", efficiency,
+    ]  # fmt: skip
+
+
 def show(rows: list[Row], rate: float) -> None:
     """Print the table."""
     table = Table(title=f"raw physics: {rate:,.0f} steps/s on each core")
-    headings = (
-        "example",
-        "engine",
-        "outcomes",
-        "wall s",
-        "CPU s",
-        "simulated s",
-        "outcomes/s",
-        "peak MB",
-        "efficiency",
-    )
-    for heading in headings:
+    for heading in HEADINGS:
         table.add_column(heading, justify="left" if heading in ("example", "engine") else "right")
     for row in rows:
-        data = row.data
-        efficiency = "" if data["efficiency"] is None else f"{data['efficiency']:.2f}"
-        table.add_row(
-            row.example, row.engine, str(row.outcomes), f"{row.wall:.1f}", f"{row.cpu:.1f}",
-            f"{row.simulated:.0f}", f"{data['per_second']:.1f}", f"{row.memory:.0f}", efficiency,
-        )  # fmt: skip
-    Console(width=110).print(table)
+        table.add_row(*cells(row))
+    console = Console(width=110)
+    console.print(table)
+    for line in ratios(rows):
+        console.print(line)
 
 
 if __name__ == "__main__":
