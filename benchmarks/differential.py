@@ -62,7 +62,7 @@ class Row:
         mutants: number of mutants.
         mutant_rounds: number of outcomes compared.
         outcomes: number of (mutant, test, round) that these stand for.
-        branched: outcomes that really came from branches, and not from a fall-back to replay.
+        fallen_back: mutant-rounds that did not come from branches, because it was not safe to fork.
         disagreements: where the engines differ.
         seconds: what each engine took, baseline included.
     """
@@ -72,7 +72,7 @@ class Row:
     mutants: int
     mutant_rounds: int
     outcomes: int
-    branched: int
+    fallen_back: int
     disagreements: tuple[Disagreement, ...]
     seconds: Mapping[str, float]
 
@@ -103,14 +103,14 @@ def compare(example: str, rounds: int) -> Row:
             with Journal.open(run_campaign(request_for(folder, engine, rounds), Silent())) as journal:
                 found[engine] = {(one.mutant, one.round): one for one in journal.outcomes()}
             seconds[engine] = round(time.monotonic() - began, 1)
-    branched = found["branch"].values()
+    branched = found["branch"].values()  # some of them may have fallen back to replay
     return Row(
         example=example,
         rounds=rounds,
         mutants=len({one.mutant for one in branched}),
         mutant_rounds=len(found["branch"]),
         outcomes=sum(one.tests for one in branched),
-        branched=sum(one.engine == "branch" for one in branched),
+        fallen_back=sum(bool(one.tests) and one.engine != "branch" for one in branched),
         disagreements=tuple(disagreements(found["branch"], found["replay"])),
         seconds=seconds,
     )
@@ -148,11 +148,11 @@ def facts(outcome: Outcome | None) -> dict[str, Any]:
 def show(rows: list[Row]) -> None:
     """Print the table, and each disagreement below it."""
     table = Table(title="branch and replay on the same mutants")
-    for heading in ("example", "rounds", "mutants", "mutant-rounds", "(mutant, test, round)", "branched",
+    for heading in ("example", "rounds", "mutants", "mutant-rounds", "(mutant, test, round)", "fallen back",
                     "branch s", "replay s", "disagreements"):  # fmt: skip
         table.add_column(heading, justify="left" if heading == "example" else "right")
     for row in rows:
-        numbers = (row.rounds, row.mutants, row.mutant_rounds, row.outcomes, row.branched)
+        numbers = (row.rounds, row.mutants, row.mutant_rounds, row.outcomes, row.fallen_back)
         seconds = (f"{row.seconds[engine]:.1f}" for engine in ENGINES)
         table.add_row(row.example, *map(str, numbers), *seconds, str(len(row.disagreements)))
     console = Console(width=130)
