@@ -130,11 +130,17 @@ class Baseline:
 
 
 def take_baseline(
-    request: Request, workers: Workers, progress: Progress, *, repetitions: int = REPETITIONS
+    request: Request,
+    workers: Workers,
+    progress: Progress,
+    *,
+    repetitions: int = REPETITIONS,
+    may_share: bool = False,
 ) -> tuple[Baseline, list[Result]]:
     """Run the suite on the original and look at what it does.
 
-    With one repetition the second run is left to the trunks of the branch engine.
+    With one repetition the second run is left to the trunks of the branch engine. ``may_share``: whether
+    imports and collection may be done once for all runs.
 
     Returns the baseline and the raw results, first repetitions first.
 
@@ -144,7 +150,7 @@ def take_baseline(
     load_all()  # a broken plug-in is told now rather than after the baseline
     progress.stage("baseline", request.rounds * repetitions)
     results: dict[tuple[int, int], Result] = {}
-    for result in workers.run(_tasks(request, repetitions)):
+    for result in workers.run(_tasks(request, repetitions, may_share)):
         run: _Run = result.task.key
         results[run.round, run.repetition] = result
         _refuse(result)
@@ -159,13 +165,12 @@ def take_baseline(
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
 
 
-def _tasks(request: Request, repetitions: int) -> Iterator[Task]:
+def _tasks(request: Request, repetitions: int, may_share: bool) -> Iterator[Task]:
     for repetition in range(repetitions):
         for round in range(request.rounds):
             inspect = (round, repetition) == (0, 0)
-            yield Task(
-                _Run(round, repetition), request.job(round, record=True, inspect=inspect), startup=300.0
-            )
+            job = request.job(round, record=True, inspect=inspect)
+            yield Task(_Run(round, repetition), job, startup=300.0, may_share=may_share)
 
 
 def _refuse(result: Result) -> None:

@@ -152,7 +152,7 @@ class _Trunk:
         budgets = {test: baseline.budget(round, test, factor) for test in in_order}
         job = request.job(round, tests=in_order, record=True, budgets=budgets, branching=branching)
         patience = 2.0 * longest + _PATIENCE
-        return Task(round, job, {}, patience, patience, is_trunk=True)
+        return Task(round, job, {}, patience, patience, is_trunk=True, may_share=True)
 
     def take(self, line: Line, remainder: Remainder) -> Iterator[Outcome]:
         """Sort in a report line; yields the outcomes that it settles."""

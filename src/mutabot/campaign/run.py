@@ -147,7 +147,13 @@ def check(request: Request, progress: Progress) -> CheckReport:
 
 
 def _baseline(request: Request, workers: Workers, progress: Progress) -> tuple[Baseline, list[Result]]:
-    return take_baseline(request, workers, progress, repetitions=repetitions_for(request))
+    branches = engine_of(request) == "branch"
+    taken = take_baseline(
+        request, workers, progress, repetitions=repetitions_for(request), may_share=branches
+    )
+    if workers.unshared is not None:
+        progress.note(f"each run starts anew, imports and collection included: {workers.unshared}")
+    return taken
 
 
 def selected(request: Request, plan: Plan, baseline: Baseline) -> Plan:

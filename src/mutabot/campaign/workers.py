@@ -6,18 +6,12 @@ worker alone. Workers are process groups of their own, so that ending one ends a
 
 from __future__ import annotations
 
-import contextlib
-import json
 import os
 import selectors
-import signal
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from importlib.util import find_spec
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -33,21 +27,13 @@ from mutabot.model import (
     TestEnd,
     TestStart,
     TokensHeld,
-    to_data,
 )
-from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, Line, line_from_data
+from mutabot.model.job import Line
 
+from .forkserver import Copy, ForkServer
+from .processes import Home, LineReader, Spawned, refuse_full_disk
 from .tokens import TokenPool
 
-#: plug-ins that would run tests elsewhere, again, or in another order, and how to stop each
-_SWITCHED_OFF = {
-    "xdist": ("-p", "no:xdist"),
-    "pytest_rerunfailures": ("-p", "no:rerunfailures"),
-    "flaky": ("-p", "no:flaky"),
-    "pytest_randomly": ("-p", "no:randomly"),
-    "pytest_random_order": ("-p", "no:random_order"),
-    "pytest_cov": ("-p", "no:cov"),
-}
 #: seconds a worker may take until its first test begins, at least
 STARTUP_SECONDS = 60.0
 
@@ -63,6 +49,7 @@ class Task:
         deadline: wall-clock seconds for any other test.
         startup: wall-clock seconds until the first test begins.
         is_trunk: whether it branches: it then runs on a token of the pool.
+        may_share: whether it may begin as a copy of a fork server instead of in a fresh process.
     """
 
     key: Any
@@ -71,6 +58,7 @@ class Task:
     deadline: float = 600.0
     startup: float = STARTUP_SECONDS
     is_trunk: bool = False
+    may_share: bool = False
 
 
 @dataclass(slots=True)
@@ -136,6 +124,10 @@ class Workers:
         jobs: how many run side by side.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
+
+    Attributes:
+        pool: the tokens of trunks and branches.
+        unshared: why tasks that might have begun as copies of a fork server did not; None if they did.
     """
 
     def __init__(self, root: Path, arguments: Iterable[str], jobs: int) -> None:
@@ -144,6 +136,8 @@ class Workers:
         self._jobs = max(1, jobs)
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
+        self._server: ForkServer | None = None
+        self.unshared: str | None = None
         self.pool = TokenPool(self._jobs)
         home = root / ".mutabot"
         try:
@@ -165,6 +159,8 @@ class Workers:
             worker.kill()
             worker.close(self._selector)
         self._workers.clear()
+        if self._server is not None:
+            self._end_server(self._server)
         self._selector.close()
         self.pool.close()
         self._folder.cleanup()
@@ -197,32 +193,63 @@ class Workers:
         return self.pool.take()
 
     def _start(self, task: Task) -> None:
-        descriptors = self.pool.descriptors if task.is_trunk else ()
-        worker = _Worker(task, self._root, self._arguments, Path(self._folder.name), descriptors)
+        home = Home.make(Path(self._folder.name), task.job)
+        reading, writing = os.pipe()
+        try:
+            worker = _Worker(task, home, reading, self._process(task, home, writing))
+        finally:
+            os.close(writing)
         worker.watch(self._selector)
         self._workers.append(worker)
 
+    def _process(self, task: Task, home: Home, writing: int) -> Spawned | Copy:
+        server = self._server_for(task) if task.may_share else None
+        copy = server.copy(home, writing) if server is not None else None
+        if copy is not None:
+            return copy
+        descriptors = self.pool.descriptors if task.is_trunk else ()
+        return Spawned(self._root, self._arguments, home, writing, descriptors)
+
+    def _server_for(self, task: Task) -> ForkServer | None:
+        """The fork server for such a task; None if there can be none."""
+        if self._server is not None and not self._server.serves(task.job):
+            self._end_server(self._server)
+        if self._server is None and self.unshared is None:
+            server = ForkServer(
+                task.job, self._root, self._arguments, Path(self._folder.name), self.pool.descriptors
+            )
+            self._server = server
+            self._selector.register(server.pipe, selectors.EVENT_READ, server)
+            self.unshared = server.wait_until_ready(task.startup)
+            if self.unshared is not None:
+                self._end_server(server)
+        return self._server
+
+    def _end_server(self, server: ForkServer) -> None:
+        self._selector.unregister(server.pipe)
+        server.close()
+        self._server = None
+
     def _wait(self, *, for_token: bool) -> Iterator[Result | tuple[Task, Line]]:
         timeout = max(0.0, min(worker.until for worker in self._workers) - time.monotonic())
+        if any(worker.has_ended for worker in self._workers):
+            timeout = 0.0  # a fork server may have told so while it was asked for something else
         if for_token and len(self._workers) < self._jobs:
             self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
         ready = self._selector.select(timeout)
         if self.pool.reading in self._selector.get_map():
             self._selector.unregister(self.pool.reading)
         for key, _ in ready:
-            worker: _Worker | None = key.data
-            if worker is None:
-                continue
-            if key.fd == worker.pipe:
-                for line in worker.read():
-                    yield worker.task, line
-            else:
-                worker.exited = True
+            if isinstance(key.data, ForkServer):
+                key.data.listen()
+            elif isinstance(key.data, _Worker) and key.fd == key.data.pipe:
+                for line in key.data.read():
+                    yield key.data.task, line
         now = time.monotonic()
         for worker in list(self._workers):
-            if now >= worker.until and not worker.exited:
+            if now >= worker.until and not worker.has_ended:
                 worker.expire()
-            if worker.exited:
+            if worker.has_ended:
                 yield from self._finish(worker)
 
     def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Line]]:
@@ -230,6 +257,8 @@ class Workers:
         lines, result = worker.finish(self._selector)
         for line in lines:
             yield worker.task, line
+        if result.end is None:
+            refuse_full_disk(Path(self._folder.name))
         if worker.task.is_trunk:
             self.pool.give_back(result.held)  # what a trunk that died had not given back itself
         yield result
@@ -238,68 +267,39 @@ class Workers:
 class _Worker:
     """One running worker process."""
 
-    def __init__(
-        self, task: Task, root: Path, arguments: tuple[str, ...], folder: Path, descriptors: tuple[int, ...]
-    ) -> None:
+    def __init__(self, task: Task, home: Home, pipe: int, process: Spawned | Copy) -> None:
         self.task = task
         self.result = Result(task, held=1 if task.is_trunk else 0)
-        self.exited = False
-        self._buffer = b""
+        self.pipe = pipe
+        self._lines = LineReader(pipe)
+        self._home, self._process = home, process
         self._started = time.monotonic()
         self.until = self._started + task.startup
-        self._home = Path(tempfile.mkdtemp(dir=folder))
-        job_file = self._home / "job.json"
-        job_file.write_text(json.dumps(to_data(task.job)), encoding="utf-8")
-        self._log = self._home / "log.txt"
-        self.pipe, writing = os.pipe()
-        os.set_blocking(self.pipe, False)
-        try:
-            with self._log.open("wb") as log:
-                self._process = subprocess.Popen(
-                    command(arguments, self._home),
-                    cwd=root,
-                    env=environment(job_file, writing),
-                    stdin=subprocess.DEVNULL,
-                    stdout=log,
-                    stderr=subprocess.STDOUT,
-                    pass_fds=(writing, *descriptors),
-                    start_new_session=True,
-                )
-        finally:
-            os.close(writing)
-        self._pidfd = os.pidfd_open(self._process.pid)
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the process is gone."""
+        return self._process.exit_code is not None
 
     def watch(self, selector: selectors.BaseSelector) -> None:
         selector.register(self.pipe, selectors.EVENT_READ, self)
-        selector.register(self._pidfd, selectors.EVENT_READ, self)
+        if self._process.pidfd is not None:
+            selector.register(self._process.pidfd, selectors.EVENT_READ, self)
 
     def read(self) -> list[Line]:
         """Take what the pipe holds."""
-        taken: list[Line] = []
-        while True:
-            try:
-                data = os.read(self.pipe, 1 << 16)
-            except BlockingIOError:
-                return taken
-            if not data:
-                return taken
-            *texts, self._buffer = (self._buffer + data).split(b"\n")
-            taken.extend(line for text in texts if (line := self._take(text)) is not None)
+        lines = self._lines.read()
+        for line in lines:
+            self._take(line)
+        return lines
 
-    def _take(self, text: bytes) -> Line | None:
-        if not text:
-            return None
-        try:
-            line = line_from_data(json.loads(text))
-        except (ValueError, KeyError, TypeError):
-            return None  # cut off: its writer was killed while it wrote
+    def _take(self, line: Line) -> None:
         self.result.take(line)
         if isinstance(line, TestEnd):
             self.until = time.monotonic() + self.task.startup
         elif isinstance(line, TestStart) or self.task.is_trunk:
             running = self.result.running or ""
             self.until = time.monotonic() + self.task.deadlines.get(running, self.task.deadline)
-        return line
 
     def expire(self) -> None:
         """The wall clock ran out: end the process group."""
@@ -308,55 +308,25 @@ class _Worker:
             self.result.overdue = f"no end after {limit:.0f} s of wall clock"
         else:
             self.result.overdue = f"no test begun or finished within {self.task.startup:.0f} s"
-        self.kill()
-        self._process.wait()
-        self.exited = True
+        self._process.end()
 
     def kill(self) -> None:
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.kill()
 
     def finish(self, selector: selectors.BaseSelector) -> tuple[list[Line], Result]:
         """Collect the rest of a process that has ended: its last lines, and what became of it."""
-        self.result.exit_code = self._process.wait()
-        self.kill()  # whatever it left behind
+        self.result.exit_code = self._process.end()
         lines = self.read()
-        self.result.wall = time.monotonic() - self._started
-        self.result.log = self._log.read_bytes()[-4000:].decode("utf-8", "replace")
+        self.result.wall = time.monotonic() - self._started + self._process.startup
+        self.result.log = self._home.log_text()
         self.close(selector)
         return lines, self.result
 
     def close(self, selector: selectors.BaseSelector) -> None:
-        for descriptor in (self.pipe, self._pidfd):
-            selector.unregister(descriptor)
-            os.close(descriptor)
-        self._process.wait()
-        for file in sorted(self._home.rglob("*"), reverse=True):
-            file.rmdir() if file.is_dir() else file.unlink()
-        self._home.rmdir()
-
-
-def command(arguments: tuple[str, ...], home: Path) -> list[str]:
-    """The command line of a worker."""
-    off = [word for module, words in _SWITCHED_OFF.items() if find_spec(module) for word in words]
-    # the native traceback is the one that pytest need not parse any source for: that took a killed mutant
-    # longer than all else together
-    own = ["--maxfail=0", "--tb=native", "-o", f"cache_dir={home / 'cache'}"]
-    return [sys.executable, "-m", "pytest", "-p", "mutabot", *off, *arguments, *own]
-
-
-def environment(job_file: Path, pipe: int) -> dict[str, str]:
-    """The environment of a worker.
-
-    Nothing is written beside the user's sources, and hashing and numeric libraries behave the same in
-    every worker. Settings of the user's own take precedence.
-    """
-    settings = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    return {
-        "PYTHONHASHSEED": "0",
-        **settings,
-        **os.environ,
-        "PYTHONDONTWRITEBYTECODE": "1",
-        JOB_VARIABLE: str(job_file),
-        PIPE_VARIABLE: str(pipe),
-    }
+        selector.unregister(self.pipe)
+        if self._process.pidfd is not None:
+            selector.unregister(self._process.pidfd)
+        os.close(self.pipe)
+        self._process.end()
+        self._process.release()
+        self._home.remove()

@@ -61,6 +61,7 @@ if "numpy" not in sys.modules:
     # A cell has no use for a pool of linear-algebra threads, and a process with threads is not safe to fork.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+_LIBRARIES = ("mujoco", "numpy", "mink", "ruckig")
 _LAZY = {
     "Cell": "cell",
     "current": "cell",
@@ -95,7 +96,7 @@ def __getattr__(name: str) -> object:
     try:
         module = importlib.import_module(f".{_LAZY[name]}", __name__)
     except ModuleNotFoundError as error:
-        if error.name in ("mujoco", "numpy"):
+        if error.name in _LIBRARIES:
             raise SimulatorMissing(error.name) from error
         raise
     value = getattr(module, name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Sequence
 
 import mujoco
@@ -45,6 +46,9 @@ class Arm:
         self._stop: ProtectiveStop | None = None
         self._lag = np.array(kinova.SERVO_LAG)
         self._torque_limit = np.array(EXTERNAL_TORQUE_LIMIT)
+        # views of the physics' own memory
+        self._joints = simulation.data.qpos[: kinova.JOINT_COUNT]
+        self._external = simulation.data.qfrc_constraint[: kinova.JOINT_COUNT]
         simulation.before_tick.append(self._drive)
         simulation.after_tick.append(self._guard)
 
@@ -191,20 +195,21 @@ class Arm:
             self._stream = None
 
     def _following_error(self) -> Array:
-        error: Array = self._setpoint - self._simulation.data.qpos[: kinova.JOINT_COUNT]
+        error: Array = self._setpoint - self._joints
         return error
 
     def _guard(self) -> None:
         """Protective stop: the check that the arm's controller makes at every tick."""
         if self._stop is not None:
             return
-        external = self._simulation.data.qfrc_constraint[: kinova.JOINT_COUNT]
-        pressed = bool((np.abs(external) > self._torque_limit).any())
+        external = self._external
+        # seven numbers: plain Python is quicker than numpy here, and this runs at every tick
+        pressed = any(map(operator.gt, map(abs, external.tolist()), EXTERNAL_TORQUE_LIMIT))
         self._pressed_ticks = self._pressed_ticks + 1 if pressed else 0
         if pressed and self._pressed_ticks == 1:
             self._first_contact = strongest_contact(self._simulation)
         error = self._following_error()
-        lagging = float(np.abs(error).max()) > FOLLOWING_ERROR_LIMIT
+        lagging = max(map(abs, error.tolist())) > FOLLOWING_ERROR_LIMIT
         if self._pressed_ticks < 2 and not lagging:
             return
         joint = int(np.argmax(np.abs(external) / self._torque_limit if pressed else np.abs(error)))

@@ -1,25 +1,21 @@
 """Forward and inverse kinematics of the arm: joint paths that keep the tool on a straight line.
 
-Forward kinematics comes from MuJoCo, inverse kinematics from mink. mink is imported at the first
-straight-line motion: it brings scipy and would make every start slower.
+Forward kinematics comes from MuJoCo, inverse kinematics from mink.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import mink
 import mujoco
 import numpy as np
 
 from . import kinova, model
-from .errors import MotionRefused, SimulatorMissing
+from .errors import MotionRefused
 from .geometry import Array, rotation_about, rotation_vector
 from .trajectory import Spline
-
-if TYPE_CHECKING:
-    import mink
 
 LIMIT_MARGIN = 0.005
 """How far the planner stays away from each joint limit, rad."""
@@ -207,11 +203,6 @@ class _Solver:
     """mink set up for this arm: the tool's pose first, near a posture second, inside the joint limits."""
 
     def __init__(self) -> None:
-        try:
-            import mink  # noqa: PLC0415  (see the module's docstring)
-        except ImportError as error:
-            raise SimulatorMissing(str(error.name)) from error
-        self._mink = mink
         arm = model.build_arm()
         arm.jnt_range[:, 0] += LIMIT_MARGIN
         arm.jnt_range[:, 1] -= LIMIT_MARGIN
@@ -230,14 +221,14 @@ class _Solver:
         transform = np.eye(4)
         transform[:3, :3] = rotation
         transform[:3, 3] = position
-        self._frame.set_target(self._mink.SE3.from_matrix(transform))
+        self._frame.set_target(mink.SE3.from_matrix(transform))
         self._posture.set_target(near)
         configuration = self._configuration
         configuration.update(np.clip(guess, self._lower, self._upper) if limited else guess)
         limits = self._limits if limited else []
         tasks = (self._frame, self._posture)
         for _ in range(_ITERATIONS):
-            velocity = self._mink.solve_ik(configuration, tasks, 1.0, "daqp", limits=limits)
+            velocity = mink.solve_ik(configuration, tasks, 1.0, "daqp", limits=limits)
             configuration.integrate_inplace(velocity, 1.0)
             error = self._frame.compute_error(configuration)
             if (

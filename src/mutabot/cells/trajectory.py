@@ -11,9 +11,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import ruckig
 
 from . import kinova
-from .errors import SimulatorMissing
 from .geometry import Array
 
 _GRID = 0.01
@@ -148,10 +148,6 @@ def _ruckig(
     start: Array, end: Array, speed: Array, acceleration: Array, jerk: Array
 ) -> tuple[Array, Array, Array, Array]:
     """Times (n,), positions, speeds and accelerations (n, dof) of the fastest motion from rest to rest."""
-    try:
-        import ruckig  # noqa: PLC0415  (not needed before the first motion)
-    except ImportError as error:
-        raise SimulatorMissing("ruckig") from error
     count = len(start)
     request = ruckig.InputParameter(count)
     request.current_position, request.target_position = start.tolist(), end.tolist()

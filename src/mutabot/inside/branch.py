@@ -21,6 +21,7 @@ from mutabot.operators import operator
 
 from .forkable import open_sockets, why_not
 from .isolate import Foot, isolate_files
+from .lifeline import ALONE
 from .pipe import Pipe
 from .tokens import Tokens
 
@@ -28,7 +29,7 @@ from .tokens import Tokens
 #: unlike any that a program would leave with by itself
 DECIDED = 113
 #: exit code of a branch that could not report
-FAILED = 115
+FAILED = ALONE
 #: exit code of a branch whose test leaves its mutant alive
 ALIVE = 114
 

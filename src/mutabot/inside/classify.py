@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from types import TracebackType
+from types import FrameType
 
 import pytest
 
@@ -104,7 +104,8 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
     # An assertion is a check if the tests made it. Code of helper libraries says nothing, so the frame
     # nearest to the raise decides that is the tests', the program's or an operation's.
     folder = os.path.dirname(os.path.realpath(test_file)) + os.sep
-    for filename in _files_from_the_raise(error.__traceback__):
+    for frame, _ in _from_the_raise(error):
+        filename = locator.real(frame.f_code.co_filename)
         if filename.startswith(_INSIDE):
             return False
         role = locator.role(filename)
@@ -115,22 +116,21 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
     return True
 
 
-def _files_from_the_raise(traceback: TracebackType | None) -> list[str]:
-    files = []
+def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
+    """The frames that the exception came through and the lines they were at, innermost first."""
+    frames = []
+    traceback = error.__traceback__
     while traceback is not None:
-        files.append(os.path.realpath(traceback.tb_frame.f_code.co_filename))
+        frames.append((traceback.tb_frame, traceback.tb_lineno))
         traceback = traceback.tb_next
-    return files[::-1]
+    return frames[::-1]
 
 
 def _place(error: BaseException, locator: Locator) -> str | None:
     """The innermost line that is the user's own: the file lies under the root and is not installed."""
-    place = None
-    traceback = error.__traceback__
-    while traceback is not None:
-        filename = traceback.tb_frame.f_code.co_filename
+    for frame, line in _from_the_raise(error):
+        filename = frame.f_code.co_filename
         relative = locator.relative(filename)
         if not relative.startswith("..") and "site-packages" not in relative and not filename.startswith("<"):
-            place = f"{relative}:{traceback.tb_lineno}"
-        traceback = traceback.tb_next
-    return place
+            return f"{relative}:{line}"
+    return None

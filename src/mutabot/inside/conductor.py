@@ -2,41 +2,51 @@
 
 from __future__ import annotations
 
-import ctypes
+import gc
 import json
 import os
-import select
-import signal
+import sys
 import time
+import traceback
 from collections.abc import Generator
 from dataclasses import replace
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from mutabot.model import BranchEnd, Branching, Job, SessionEnd, TestEnd, TestStart, from_data
+from mutabot.operators.registry import BUILT_IN, CONTROLS, preload
 
 from . import seeds
 from .activate import Evidence
 from .branch import ALIVE, DECIDED, FAILED, Trunk
 from .classify import Ending, classify
+from .lifeline import die_with_parent, nobody_listens
 from .limits import limit_memory
 from .locate import Locator
-from .pipe import Pipe
+from .pipe import Held, Pipe
 from .probes import take
 from .session import Session
+from .unrewritten import unrewritten
 
-_PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
+if TYPE_CHECKING:
+    from .forkserver import Commission, ForkServer
+
+#: where a process keeps what it prints, in its home
+LOG = "log.txt"
 
 
 class Conductor:
     """Pytest's hooks for one job."""
 
-    def __init__(self, job: Job, pipe: Pipe) -> None:
+    def __init__(self, job: Job, pipe: Pipe, server: ForkServer | None = None) -> None:
         self.job = job
         self.locator = Locator(job.root, job.program, job.oracle)
-        self.session = Session(job, pipe, self.locator.locate)
+        self._held = Held()
+        self.session = Session(job, pipe if server is None else self._held, self.locator.locate)
         self._pipe = pipe
+        self._server = server
         self._ending: Ending | None = None
         self._outcome = "passed"
         self._probes: dict[str, Any] = {}
@@ -54,19 +64,29 @@ class Conductor:
         if nobody_listens(descriptor):  # the controller died before the kernel was asked
             os._exit(FAILED)
         home = os.path.dirname(job_file)
-        with open(job_file, encoding="utf-8") as file:
-            job = from_data(Job, json.load(file))
+        job = read_job(job_file)
         if job.memory is not None:
             limit_memory(job.memory)
-        seeds.seed_all(seeds.derive(job.seed, job.round, "session"))
-        lock = None
-        if job.branching is not None:
-            lock = os.open(os.path.join(home, "lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
-        conductor = cls(job, Pipe(descriptor, lock))
+        # what the program draws while it is imported is the same in all rounds: a fork server imports it once
+        seeds.seed_all(seeds.derive(job.seed, "import"))
+        if job.serving is not None:
+            with unrewritten():
+                from .forkserver import ForkServer  # noqa: PLC0415  # of no use to other jobs
+
+                preload((*BUILT_IN, *CONTROLS))
+            pipe = Pipe(descriptor)
+            conductor = cls(job, pipe, ForkServer(job.serving, pipe, os.path.join(home, LOG)))
+        else:
+            conductor = cls(job, pipe_of(job, home, descriptor))
         conductor.session.install()
-        if job.branching is not None:
-            conductor.grow(job.branching, os.path.join(home, "log.txt"))
+        conductor._begin(home)
         return conductor
+
+    def _begin(self, home: str) -> None:
+        if self.job.branching is not None:
+            with unrewritten():  # once, and not in every branch
+                preload({mutant.operator for mutant in self.job.branching.mutants})
+            self.grow(self.job.branching, os.path.join(home, LOG))
 
     def grow(self, branching: Branching, log_file: str) -> None:
         """Be a trunk: fork a branch for every live mutant."""
@@ -81,6 +101,9 @@ class Conductor:
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Keep the job's tests, in the job's order."""
         self._collected = tuple(item.nodeid for item in items)
+        self._select(items)
+
+    def _select(self, items: list[pytest.Item]) -> None:
         if self.job.tests is None:
             return
         by_id = {item.nodeid: item for item in items}
@@ -93,6 +116,58 @@ class Conductor:
         """Note what could not be collected."""
         if report.failed:
             self._errors.append(f"{report.nodeid}: {str(report.longrepr)[-1500:]}")
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:
+        """All tests are collected: run them, or fork a copy of this process for every job."""
+        commission = self._server.serve() if self._server is not None else None
+        if self._server is not None and commission is None:
+            session.items.clear()
+        if commission is None:
+            seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
+            result = yield
+            drop_idle_plugins(session.config)
+            return result
+        return (yield from self._run_copy(session, commission))
+
+    def _run_copy(self, session: pytest.Session, commission: Commission) -> Generator[None, Any, Any]:
+        """A copy of the fork server runs its job and ends."""
+        from .forkserver import leave  # noqa: PLC0415  # see above
+
+        status = int(pytest.ExitCode.INTERNAL_ERROR)
+        try:
+            self._take_on(session, commission)
+            yield
+            status = int(bool(session.testsfailed))
+            self._say_goodbye(status)
+        except BaseException as error:
+            status = self._say_why(error)
+        finally:
+            leave(status)
+
+    def _take_on(self, session: pytest.Session, commission: Commission) -> None:
+        """Become the session of a job."""
+        job = read_job(os.path.join(commission.home, "job.json"))
+        self.job, self._server, self._pid = job, None, os.getpid()
+        self._pipe = pipe_of(job, commission.home, commission.descriptor)
+        self.session.take_on(job, self._pipe)
+        for line in self._held.lines:
+            self._pipe.send(line)
+        self._select(session.items)
+        cache = getattr(session.config, "cache", None)
+        if cache is not None:  # what one job keeps there, others must not find
+            cache._cachedir = Path(commission.home, "cache")
+        self._begin(commission.home)
+        seeds.seed_all(seeds.derive(job.seed, job.round, "session"))
+
+    def _say_why(self, error: BaseException) -> int:
+        """A copy's tests were interrupted: its end, as pytest would tell it."""
+        status = int(getattr(error, "returncode", None) or pytest.ExitCode.INTERRUPTED)
+        if not isinstance(error, pytest.exit.Exception | pytest.Session.Interrupted | pytest.Session.Failed):
+            traceback.print_exception(error)
+            status = int(pytest.ExitCode.INTERNAL_ERROR)
+        self._say_goodbye(status)
+        return status
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
@@ -147,26 +222,32 @@ class Conductor:
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, exitstatus: int) -> None:
-        """Everything has run: check the vocabulary if asked to, wait for branches, and say goodbye."""
+        """Everything has run."""
+        if self._server is None:
+            self._say_goodbye(int(exitstatus))
+
+    def _say_goodbye(self, status: int) -> None:
+        """Wait for branches, check the vocabulary if asked to, and report the end."""
         if self.session.trunk is not None:
             self.session.trunk.finish()
         if self.job.inspect:
             self.session.inspect_targets()
-        self._pipe.send(SessionEnd(int(exitstatus), self._collected, tuple(self._errors)))
+        self._pipe.send(SessionEnd(status, self._collected, tuple(self._errors)))
 
     def _start_clocks(self) -> None:
         self._started = (time.perf_counter(), time.process_time())
 
     def _become_branch(self) -> None:
         """In a branch, right after the fork: it finishes its test and takes down nothing that is shared."""
-        die_with_parent()
-        if os.getppid() != self._pid:  # the trunk died before the kernel was asked
-            os._exit(FAILED)
+        die_with_parent(self._pid)
         self._start_clocks()
         meter = self.session.meter
         self._shared = meter.simulated if meter is not None else None
         assert self._item is not None
         keep_shared_fixtures(self._item)
+        gc.freeze()  # what is never looked at stays shared with the trunk
+        # nobody reads a branch's traceback, and to lay one out takes longer than most branches
+        self._item.config.option.tbstyle = "value"
 
     def _leave_if_branch(self, error: BaseException | None) -> None:
         """A branch has finished its test: report and go, without running anything of the trunk's."""
@@ -226,6 +307,27 @@ class Conductor:
         )
 
 
+def read_job(file_name: str) -> Job:
+    """The job in a file."""
+    with open(file_name, encoding="utf-8") as file:
+        job: Job = from_data(Job, json.load(file))
+    return job
+
+
+def pipe_of(job: Job, home: str, descriptor: int) -> Pipe:
+    """The pipe of a job; a trunk shares it with its branches."""
+    if job.branching is None:
+        return Pipe(descriptor)
+    return Pipe(descriptor, os.open(os.path.join(home, "lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC))
+
+
+def drop_idle_plugins(config: pytest.Config) -> None:
+    """Hypothesis's plugin imports all of hypothesis for its summary, even if no test has used it."""
+    plugin = config.pluginmanager.get_plugin("hypothesispytest")
+    if plugin is not None and "hypothesis" not in sys.modules:
+        config.pluginmanager.unregister(plugin)
+
+
 class _Parent:
     """Stands for a next test in the same place: nothing above the present test is taken down for it."""
 
@@ -245,16 +347,3 @@ def keep_shared_fixtures(item: pytest.Item) -> None:
         teardown(_Parent(item))  # type: ignore[arg-type]  # only its chain is looked at
 
     state.teardown_exact = teardown_own  # type: ignore[method-assign]  # in this process alone
-
-
-def nobody_listens(descriptor: int) -> bool:
-    """Whether the reading end of the pipe is gone."""
-    poll = select.poll()
-    poll.register(descriptor, select.POLLERR)
-    return any(event & select.POLLERR for _, event in poll.poll(0))
-
-
-def die_with_parent() -> None:
-    """Ask the kernel to end this process when the controller dies, however that happens."""
-    libc = ctypes.CDLL(None, use_errno=True)
-    libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)

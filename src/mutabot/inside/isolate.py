@@ -27,14 +27,15 @@ class Foot:
         random.setstate(self._random)
 
 
-def isolate_files(log: tuple[int, int] | None) -> None:
-    """In the branch: stop writing where the trunk writes.
+def isolate_files(log: tuple[int, int] | None, instead: int | None = None) -> None:
+    """In a process that was just forked: stop writing where its parent writes.
 
-    Deleted temporary files, such as those that pytest captures output in, share one position between trunk
-    and branch; the branch goes on with private copies. What leads to the trunk's log leads nowhere.
+    Deleted temporary files, such as those that pytest captures output in, share one position between parent
+    and child; the child goes on with private copies. What leads to the parent's log leads elsewhere.
 
     Args:
-        log: device and inode of the trunk's log; None if there is none.
+        log: device and inode of the parent's log; None if there is none.
+        instead: descriptor of the child's own log; None for nowhere.
     """
     nowhere = os.open(os.devnull, os.O_WRONLY)
     copies: dict[tuple[int, int], int] = {}
@@ -46,7 +47,8 @@ def isolate_files(log: tuple[int, int] | None) -> None:
             continue
         identity = (status.st_dev, status.st_ino)
         if identity == log:
-            os.dup2(nowhere, descriptor, inheritable=os.get_inheritable(descriptor))
+            target = nowhere if instead is None else instead
+            os.dup2(target, descriptor, inheritable=os.get_inheritable(descriptor))
         elif stat.S_ISREG(status.st_mode) and status.st_nlink == 0 and _is_written(descriptor):
             if identity not in copies:
                 copies[identity] = _copy(descriptor)

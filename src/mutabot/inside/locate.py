@@ -33,6 +33,7 @@ class Locator:
         self._places = sorted(places, key=lambda place: -len(place[0]))
         self._roles: dict[str, Role | None] = {}
         self._spans: dict[tuple[CodeType, int], Span] = {}
+        self._real: dict[str, str] = {}
 
     def locate(self, frame: FrameType | None) -> tuple[Span, Role] | None:
         """Span and role of the call that is running in ``frame`` or the nearest frame around it."""
@@ -48,12 +49,19 @@ class Locator:
         try:
             return self._roles[filename]
         except KeyError:
-            role = self._roles[filename] = self._find_role(os.path.realpath(filename))
+            role = self._roles[filename] = self._find_role(self.real(filename))
             return role
 
     def relative(self, filename: str) -> str:
         """The path relative to the root, with forward slashes."""
-        return os.path.relpath(os.path.realpath(filename), self._root).replace(os.sep, "/")
+        return os.path.relpath(self.real(filename), self._root).replace(os.sep, "/")
+
+    def real(self, filename: str) -> str:
+        """The path without symbolic links; looked up once."""
+        path = self._real.get(filename)
+        if path is None:
+            path = self._real[filename] = os.path.realpath(filename)
+        return path
 
     def _find_role(self, path: str) -> Role | None:
         for place, role in self._places:

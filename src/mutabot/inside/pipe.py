@@ -49,6 +49,17 @@ class Pipe:
             os._exit(70)
 
 
+class Held:
+    """Stands for the pipe of a process that does not know its job yet: keeps the lines."""
+
+    def __init__(self) -> None:
+        self.lines: list[Line] = []
+
+    def send(self, line: Line) -> None:
+        """Keep one line."""
+        self.lines.append(line)
+
+
 def plain(value: Any) -> Any:
     """JSON-like stand-in for a value that JSON does not know."""
     if hasattr(value, "tolist"):

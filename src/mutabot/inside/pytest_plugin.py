@@ -26,7 +26,10 @@ def pytest_load_initial_conftests() -> None:
     if JOB_VARIABLE in os.environ and _conductor is None:
         # tests that start pytest themselves must not find the job again
         job, pipe = os.environ.pop(JOB_VARIABLE), os.environ.pop(PIPE_VARIABLE)
-        from .conductor import Conductor  # noqa: PLC0415  # a sleeping plugin costs nothing
+        from .unrewritten import unrewritten  # noqa: PLC0415  # a sleeping plugin costs nothing
+
+        with unrewritten():
+            from .conductor import Conductor  # noqa: PLC0415
 
         _conductor = Conductor.from_files(job, int(pipe))
 

@@ -33,7 +33,7 @@ from .branch import Trunk
 from .door import Door
 from .intercept import Handler, Interception, NotFoundError, resolve
 from .limits import ClockReader, Meter
-from .pipe import Pipe
+from .pipe import Held, Pipe
 from .record import Recorder
 from .seeds import derive
 
@@ -58,7 +58,7 @@ class Session:
     """
 
     job: Job
-    pipe: Pipe
+    pipe: Pipe | Held
     locate: Callable[[FrameType | None], tuple[Span, Role] | None]
     recorder: Recorder = field(init=False)
     interception: Interception = field(init=False)
@@ -95,6 +95,10 @@ class Session:
         assert operation is not None
         refusals = frozenset((*operation.refusals, *self.job.vocabulary.refusals))
         self.activation = Activation(mutant, operation, refusals, self._acted, self._in_mutated_call)
+
+    def take_on(self, job: Job, pipe: Pipe) -> None:
+        """Go on with a job of the same program and vocabulary. What was installed stays."""
+        self.job, self.pipe = job, pipe
 
     def start_test(self, test: str) -> None:
         """A test begins, before its fixtures."""

@@ -17,9 +17,12 @@ from .job import BranchDied as BranchDied
 from .job import BranchEnd as BranchEnd
 from .job import Branching as Branching
 from .job import Budget as Budget
+from .job import Copied as Copied
+from .job import CopyEnded as CopyEnded
 from .job import Job as Job
 from .job import MutatedCall as MutatedCall
 from .job import Problem as Problem
+from .job import Serving as Serving
 from .job import SessionEnd as SessionEnd
 from .job import SiteSeen as SiteSeen
 from .job import TestEnd as TestEnd

@@ -76,6 +76,7 @@ class Job:
         inspect: whether to check every callable of the vocabulary at the end, also those that no test
             imported.
         branching: set for a trunk: fork a branch for each live mutant at its site.
+        serving: set for a fork server: the socket over which jobs come. It runs no test itself.
     """
 
     root: str
@@ -92,6 +93,7 @@ class Job:
     memory: int | None = None
     inspect: bool = False
     branching: Branching | None = None
+    serving: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,6 +266,28 @@ class Problem:
 
 
 @dataclass(frozen=True, slots=True)
+class Serving:
+    """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``."""
+
+    reason: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Copied:
+    """A fork server has forked a copy of itself, process ``pid``, for the job that came last."""
+
+    pid: int
+
+
+@dataclass(frozen=True, slots=True)
+class CopyEnded:
+    """A copy of a fork server has ended, with an exit code that is negative for a signal."""
+
+    pid: int
+    exit_code: int
+
+
+@dataclass(frozen=True, slots=True)
 class SessionEnd:
     """The session has ended in an orderly way.
 
@@ -289,6 +313,9 @@ Line = (
     | Unbranched
     | TokensHeld
     | Problem
+    | Serving
+    | Copied
+    | CopyEnded
     | SessionEnd
 )
 _LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Line)}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -54,6 +56,13 @@ def names() -> list[str]:
 def load_all() -> list[Operator]:
     """All operators that make mutants. Raises OperatorError for a plug-in that is of no use."""
     return [operator(name) for name in names()]
+
+
+def preload(wanted: Iterable[str]) -> None:
+    """Load these operators as far as they can be; who needs one that cannot is told then."""
+    for name in wanted:
+        with suppress(OperatorError):
+            operator(name)
 
 
 @cache

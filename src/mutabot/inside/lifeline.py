@@ -1,0 +1,27 @@
+"""No process outlives the one it works for, however that one ends."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import select
+import signal
+
+#: exit code of a process that found nobody to work for
+ALONE = 115
+_PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
+
+
+def die_with_parent(parent: int | None = None) -> None:
+    """Ask the kernel to end this process when its parent dies; end it now if ``parent`` is already gone."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+    if parent is not None and os.getppid() != parent:  # it died before the kernel was asked
+        os._exit(ALONE)
+
+
+def nobody_listens(descriptor: int) -> bool:
+    """Whether the reading end of a pipe is gone."""
+    poll = select.poll()
+    poll.register(descriptor, select.POLLERR)
+    return any(event & select.POLLERR for _, event in poll.poll(0))
