@@ -12,12 +12,9 @@ import select
 import signal
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, field
 
-from mutabot.errors import OperatorError
 from mutabot.model import BranchDied, Branching, Mutant, Span, TokensHeld, Unbranched
-from mutabot.operators import operator
 
 from .forkable import open_sockets, why_not
 from .isolate import Foot, isolate_files
@@ -89,13 +86,6 @@ class Trunk:
         for mutant in self.branching.mutants:
             key = (mutant.site.span, mutant.operation, mutant.pattern)
             self._live.setdefault(key, []).append(mutant)
-        self._load_operators()
-
-    def _load_operators(self) -> None:
-        """Import now what each branch would else import again; a failure is the concern of the branch."""
-        for name in {mutant.operator for mutant in self.branching.mutants}:
-            with suppress(OperatorError):
-                operator(name)
 
     def start_test(self, test: str) -> None:
         """A test begins."""
