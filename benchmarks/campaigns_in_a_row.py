@@ -125,6 +125,7 @@ class Series:
     Attributes:
         home: folder of the projects.
         chance: tells when campaigns are interrupted.
+        tell: told what is not as it must be, at once.
         faults: what was not as it must be.
         ends: how many campaigns ended how.
         seconds: what an undisturbed campaign took, by project and engine.
@@ -133,6 +134,7 @@ class Series:
 
     home: Path
     chance: random.Random
+    tell: Callable[[str], None]
     faults: list[str] = field(default_factory=list)
     ends: Counter[str] = field(default_factory=Counter)
     seconds: dict[tuple[str, str], float] = field(default_factory=dict)
@@ -252,6 +254,7 @@ class Series:
     def _expect(self, is_so: bool, otherwise: str) -> bool:
         if not is_so:
             self.faults.append(otherwise)
+            self.tell(f"FAULT: {otherwise}")
         return is_so
 
     def expect_nothing_new(self, where: str, before: set[str], after: set[str]) -> None:
@@ -321,7 +324,7 @@ def _difference(found: dict[str, str], expected: dict[str, str]) -> dict[str, tu
 
 def run(home: Path, count: int, seed: int, tell: Callable[[str], None]) -> dict[str, Any]:
     """So many campaigns; what came of it."""
-    series = Series(home, random.Random(seed))
+    series = Series(home, random.Random(seed), tell)
     series.write()
     files, shared = series.files(), own_entries("/dev/shm")
     series._here("plain", "branch", None, "the first campaign")  # what is opened only once is open now
@@ -386,9 +389,9 @@ def show(found: dict[str, Any]) -> None:
         counts = Counter(text.partition(" in ")[0].removesuffix(" by None") for text in outcomes.values())
         print(f"  {project}: {_counts(counts)}")
     print("open descriptors: {before} before, {after} after".format(**found["descriptors"]))
-    for fault in found["faults"]:
-        print(f"FAULT: {fault}")
-    if not found["faults"]:
+    if found["faults"]:
+        print(f"{len(found['faults'])} faults, see above")
+    else:
         print("nothing is left: no process, no descriptor, no temporary file")
 
 
