@@ -202,7 +202,8 @@ class Series:
         except subprocess.TimeoutExpired:
             process.send_signal(number)
         _, said = process.communicate()
-        if process.returncode in (130, -number):  # it says so itself, or was too young to
+        too_young = said.rstrip().endswith("KeyboardInterrupt")  # to say so itself
+        if process.returncode in (130, -number) or too_young:
             self.ends[f"ended by {number.name}"] += 1
         elif self._expect(process.returncode in (0, 5), f"{what}: {process.returncode}: {said[-500:]}"):
             self._finished(project, what)
@@ -366,6 +367,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name:
         home, temporary = Path(name).resolve() / "projects", Path(name).resolve() / "tmp"
         temporary.mkdir()
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have had it ignored
         # All temporary files go to a folder of our own: others may be at work in the system's.
         os.environ["TMPDIR"] = tempfile.tempdir = str(temporary)
         found = run(home, given.count, given.seed, tell)
