@@ -42,9 +42,13 @@ bench: $(READY)
 	$(RUN) benchmarks/interval_coverage.py
 	$(RUN) benchmarks/pick_and_place_seeds.py
 
-## slow: kill the controller at 30 random moments and finish by resuming
+## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the
+## examples; ten thousand mutants; 200 campaigns in a row
 stress: $(READY)
 	$(RUN) benchmarks/kill_and_resume.py --kills 30
+	$(RUN) benchmarks/differential.py
+	$(RUN) benchmarks/ten_thousand.py
+	$(RUN) benchmarks/campaigns_in_a_row.py --count 200
 
 $(READY): requirements.lock pyproject.toml tools/setup.sh
 	PYTHON=$(PYTHON) VENV=$(VENV) sh tools/setup.sh

@@ -127,7 +127,7 @@ class _Trunk:
         self._passed: set[str] = set()
         self._failed: set[str] = set()
         self._waiting: dict[str, set[str]] = {}
-        self._trunk_sites: dict[int, SiteSeen] = {}
+        self._trunk_places: dict[int, Place] = {}
 
     def add(self, mutant: Mutant, tests: tuple[str, ...]) -> None:
         """A mutant to branch in these tests."""
@@ -166,7 +166,7 @@ class _Trunk:
             case Unbranched():
                 remainder.reasons.setdefault(line.test, line.reason)
             case SiteSeen():
-                self._trunk_sites[line.index] = line
+                self._trunk_places[line.index] = place_of(line, self._sources)
             case TestEnd():
                 yield from self._test_ended(line, remainder)
 
@@ -223,8 +223,7 @@ class _Trunk:
 
     def _compare_with_baseline(self, end: TestEnd) -> None:
         key = (self._round, end.test)
-        places = {index: place_of(seen, self._sources) for index, seen in self._trunk_sites.items()}
-        found = observation(end, places)
+        found = observation(end, self._trunk_places)
         probes = self._request.vocabulary.probes
         if not compare(self._baseline.observations[key], found, probes).indistinguishable:
             self._baseline.restless.add(key)

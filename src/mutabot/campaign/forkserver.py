@@ -14,6 +14,7 @@ from pathlib import Path
 
 from mutabot.model import Copied, CopyEnded, Job, Serving
 
+from .interruption import interruptible
 from .processes import Home, LineReader, Spawned, kill_group
 
 #: seconds that a server may take to answer, and to end, once its tests are collected
@@ -90,7 +91,8 @@ class ForkServer:
 
     def wait_until_ready(self, seconds: float) -> str | None:
         """Wait until the tests are collected. Returns why it cannot serve, or None if it can."""
-        self._listen_until(lambda: self.serving is not None, seconds)
+        with interruptible():
+            self._listen_until(lambda: self.serving is not None, seconds)
         self.startup = time.monotonic() - self._started
         if self.serving is None:
             return "the process that was to collect the tests did not get there"

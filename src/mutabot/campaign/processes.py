@@ -167,7 +167,9 @@ def _line(text: bytes) -> Line | None:
 def command(arguments: Iterable[str], home: Path) -> list[str]:
     """The command line of a worker."""
     off = [word for module, words in _SWITCHED_OFF.items() if find_spec(module) for word in words]
-    own = ["--maxfail=0", "--tb=short", "-o", f"cache_dir={home / 'cache'}"]
+    # the native traceback is the one that pytest need not parse any source for: that took a killed mutant
+    # longer than all else together
+    own = ["--maxfail=0", "--tb=native", "-o", f"cache_dir={home / 'cache'}"]
     return [sys.executable, "-m", "pytest", "-p", "mutabot", *off, *arguments, *own]
 
 

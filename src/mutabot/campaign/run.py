@@ -19,6 +19,7 @@ from .baseline import Baseline, take_baseline
 from .branching import Remainder
 from .dependencies import Dependencies, Snapshot
 from .engine import engine_of, repetitions_for, run_mutants, try_controls
+from .interruption import interruptions_kept
 from .journal import Journal
 from .lock import at_work
 from .plan import Plan, make_plan
@@ -41,7 +42,10 @@ def run_campaign(request: Request, progress: Progress) -> Path:
     Raises ConfigurationError, BaselineError, NothingToDoError, ControlError, JournalError.
     """
     started = time.monotonic()
-    with Journal.create(request.journal_path, meta=_meta(request), fresh=request.fresh) as journal:
+    with (
+        interruptions_kept(),
+        Journal.create(request.journal_path, meta=_meta(request), fresh=request.fresh) as journal,
+    ):
         try:
             with _disk_told(request), _workers(request) as workers:
                 _run(request, workers, progress, journal)
@@ -172,6 +176,7 @@ def selected(request: Request, plan: Plan, baseline: Baseline) -> Plan:
 @contextmanager
 def _workers(request: Request) -> Iterator[Workers]:
     with (
+        interruptions_kept(),
         at_work(request.journal_path.parent),
         Workers(request.root, request.arguments, request.jobs) as workers,
     ):

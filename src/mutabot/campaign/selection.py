@@ -10,6 +10,8 @@ from pathlib import Path
 from mutabot.errors import SelectionError, nearest_name
 from mutabot.model import LeftOut, Mutant
 
+_WILD = re.compile(r"[*?]")
+
 
 def select(
     mutants: Sequence[Mutant],
@@ -34,8 +36,8 @@ def select(
     if selection_file is not None:
         chosen = _from_file(selection_file, chosen, set_aside)
     wanted = _fitting(only, chosen, set_aside, "--only") if only else {mutant.id for mutant in chosen}
-    unwanted = _fitting(skip, chosen, set_aside, "--skip")
-    return [mutant for mutant in chosen if mutant.id in wanted - unwanted]
+    wanted -= _fitting(skip, chosen, set_aside, "--skip")
+    return [mutant for mutant in chosen if mutant.id in wanted]
 
 
 def fits(pattern: str, mutant: Mutant) -> bool:
@@ -61,8 +63,12 @@ def is_like(pattern: str, text: str) -> bool:
 def _from_file(file: Path, mutants: Sequence[Mutant], set_aside: Sequence[str]) -> list[Mutant]:
     found: dict[str, Mutant] = {}
     unknown: list[str] = []
+    by_id = {mutant.id: mutant for mutant in mutants}
     for pattern in _patterns(file):
-        here = [mutant for mutant in mutants if is_like(pattern, mutant.id)]
+        if pattern in by_id and not _WILD.search(pattern):  # as nearly all are, be there thousands
+            here = [by_id[pattern]]
+        else:
+            here = [mutant for mutant in mutants if is_like(pattern, mutant.id)]
         if not here and not any(is_like(pattern, other) for other in set_aside):
             unknown.append(pattern)
         for mutant in here:

@@ -184,6 +184,8 @@ def look_again(
     if engine_of(request) == "branch":  # only now have the trunks given the second opinion
         for line in flaky.tests:
             progress.note(f"set aside as flaky: {line}")
+    if not (request.verify or request.confirm):
+        return
     by_id = {mutant.id: mutant for mutant in mutants}
     outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
     chosen = choose(outcomes.values(), request.verify, request.seed)

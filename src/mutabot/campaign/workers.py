@@ -31,6 +31,7 @@ from mutabot.model import (
 from mutabot.model.job import Line
 
 from .forkserver import Copy, ForkServer
+from .interruption import interruptible
 from .processes import Home, LineReader, Spawned, refuse_full_disk
 from .tokens import TokenPool
 
@@ -197,6 +198,9 @@ class Workers:
         reading, writing = os.pipe()
         try:
             worker = _Worker(task, home, reading, self._process(task, home, writing))
+        except BaseException:
+            os.close(reading)
+            raise
         finally:
             os.close(writing)
         worker.watch(self._selector)
@@ -236,7 +240,8 @@ class Workers:
             timeout = 0.0  # a fork server may have told so while it was asked for something else
         if for_token and len(self._workers) < self._jobs:
             self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
-        ready = self._selector.select(timeout)
+        with interruptible():
+            ready = self._selector.select(timeout)
         if self.pool.reading in self._selector.get_map():
             self._selector.unregister(self.pool.reading)
         for key, _ in ready:

@@ -1,0 +1,190 @@
+"""Do both engines find the same? Every mutant of every example by ``branch`` and by ``replay``, side by side.
+
+Compared of each (mutant, round): verdict, what noticed it, the test, the message, and all else that an
+outcome says but what it cost. The tests of a mutant run one after the other until one decides, so two equal
+outcomes stand for as many equal (mutant, test, round) outcomes as tests were run.
+
+Use: ``python benchmarks/differential.py [--examples paper …] [--rounds N] [--json]``. Each example runs in
+a copy. The exit code is 1 if the engines disagree anywhere, or if there is nothing to compare.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from mutabot.campaign.configuration import load_configuration
+from mutabot.campaign.journal import Journal
+from mutabot.campaign.request import Request
+from mutabot.campaign.run import run_campaign
+from mutabot.model import Outcome, to_data
+from mutabot.vocabulary import load
+
+ROOT = Path(__file__).resolve().parent.parent
+#: example to its rounds; one round of pick_and_place takes replay minutes
+EXAMPLES = {"paper": 5, "pick_and_place": 1, "scales": 1}
+ENGINES = ("branch", "replay")
+#: what two engines may differ in: what an outcome cost, and who found it
+COST = {"wall", "cpu", "shared", "engine"}
+
+Key = tuple[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Disagreement:
+    """A fact about a mutant in a round that the engines tell differently."""
+
+    mutant: str
+    round: int
+    fact: str
+    branch: Any
+    replay: Any
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """What came of one example.
+
+    Attributes:
+        example, rounds: what was run.
+        mutants: number of mutants.
+        mutant_rounds: number of outcomes compared.
+        outcomes: number of (mutant, test, round) that these stand for.
+        fallen_back: mutant-rounds that did not come from branches, because it was not safe to fork.
+        disagreements: where the engines differ.
+        seconds: what each engine took, baseline included.
+    """
+
+    example: str
+    rounds: int
+    mutants: int
+    mutant_rounds: int
+    outcomes: int
+    fallen_back: int
+    disagreements: tuple[Disagreement, ...]
+    seconds: Mapping[str, float]
+
+
+class Silent:
+    """A progress that says nothing."""
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        """Ignore it."""
+
+    def advance(self, line: str | None = None) -> None:
+        """Ignore it."""
+
+    def note(self, text: str) -> None:
+        """Ignore it."""
+
+
+def compare(example: str, rounds: int) -> Row:
+    """Run one example with both engines in the same copy of it."""
+    found: dict[str, dict[Key, Outcome]] = {}
+    seconds: dict[str, float] = {}
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name).resolve() / example
+        ignored = shutil.ignore_patterns(".mutabot", "__pycache__")
+        shutil.copytree(ROOT / "examples" / example, folder, ignore=ignored)
+        for engine in ENGINES:
+            began = time.monotonic()
+            with Journal.open(run_campaign(request_for(folder, engine, rounds), Silent())) as journal:
+                found[engine] = {(one.mutant, one.round): one for one in journal.outcomes()}
+            seconds[engine] = round(time.monotonic() - began, 1)
+    branched = found["branch"].values()  # some of them may have fallen back to replay
+    return Row(
+        example=example,
+        rounds=rounds,
+        mutants=len({one.mutant for one in branched}),
+        mutant_rounds=len(found["branch"]),
+        outcomes=sum(one.tests for one in branched),
+        fallen_back=sum(bool(one.tests) and one.engine != "branch" for one in branched),
+        disagreements=tuple(disagreements(found["branch"], found["replay"])),
+        seconds=seconds,
+    )
+
+
+def request_for(folder: Path, engine: str, rounds: int) -> Request:
+    """The campaign: all mutants, and nothing taken over from the other engine."""
+    configuration = load_configuration(folder)
+    vocabulary = load(configuration.vocabulary, configuration.root)
+    jobs = len(os.sched_getaffinity(0))
+    return Request(
+        configuration, vocabulary, rounds, configuration.seed, jobs,
+        engine="auto" if engine == "branch" else engine, fresh=True,
+    )  # fmt: skip
+
+
+def disagreements(branch: Mapping[Key, Outcome], replay: Mapping[Key, Outcome]) -> list[Disagreement]:
+    """Every fact in which the outcomes of the engines differ."""
+    found = []
+    for mutant, number in sorted({*branch, *replay}):
+        pair = [facts(outcomes.get((mutant, number))) for outcomes in (branch, replay)]
+        for fact in dict.fromkeys([*pair[0], *pair[1]]):
+            first, second = (one.get(fact) for one in pair)
+            if first != second:
+                found.append(Disagreement(mutant, number, fact, first, second))
+    return found
+
+
+def facts(outcome: Outcome | None) -> dict[str, Any]:
+    """Everything about an outcome but its cost."""
+    data = {"verdict": "no outcome"} if outcome is None else to_data(outcome)
+    return {name: value for name, value in data.items() if name not in COST}
+
+
+def show(rows: list[Row]) -> None:
+    """Print the table, and each disagreement below it."""
+    table = Table(title="branch and replay on the same mutants")
+    for heading in ("example", "rounds", "mutants", "mutant-rounds", "(mutant, test, round)", "fallen back",
+                    "branch s", "replay s", "disagreements"):  # fmt: skip
+        table.add_column(heading, justify="left" if heading == "example" else "right")
+    for row in rows:
+        numbers = (row.rounds, row.mutants, row.mutant_rounds, row.outcomes, row.fallen_back)
+        seconds = (f"{row.seconds[engine]:.1f}" for engine in ENGINES)
+        table.add_row(row.example, *map(str, numbers), *seconds, str(len(row.disagreements)))
+    console = Console(width=130)
+    console.print(table)
+    for row in rows:
+        for one in row.disagreements:
+            place = f"{row.example}: {one.mutant}, round {one.round + 1}, {one.fact}"
+            console.print(f"{place}:\n  branch: {one.branch!r}\n  replay: {one.replay!r}", markup=False)
+    outcomes = sum(row.outcomes for row in rows)
+    wrong = len({(row.example, one.mutant, one.round) for row in rows for one in row.disagreements})
+    total = sum(row.mutant_rounds for row in rows)
+    console.print(
+        f"{total - wrong} of {total} mutant-rounds agree, over {outcomes} (mutant, test, round) outcomes"
+    )
+
+
+def main() -> int:
+    """The command."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--examples", nargs="+", default=list(EXAMPLES), choices=list(EXAMPLES))
+    parser.add_argument("--rounds", type=int, help="the same for all examples; by default 5, 1 and 1")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
+    given = parser.parse_args()
+    rows = [compare(example, given.rounds or EXAMPLES[example]) for example in given.examples]
+    if given.json:
+        print(json.dumps([asdict(row) for row in rows], indent=2))
+    else:
+        show(rows)
+    return 0 if all(row.outcomes and not row.disagreements for row in rows) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
