@@ -40,6 +40,7 @@ bench: $(READY)
 	$(RUN) benchmarks/paper_seeds.py
 	$(RUN) benchmarks/engines.py
 	$(RUN) benchmarks/interval_coverage.py
+	$(RUN) benchmarks/sample_coverage.py
 	$(RUN) benchmarks/pick_and_place_seeds.py
 
 ## slow: kill the controller at 30 random moments and finish by resuming

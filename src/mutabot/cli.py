@@ -26,9 +26,11 @@ from mutabot.cli_options import (
     Jobs,
     Json,
     MinScore,
+    OnePerSite,
     Only,
     Round,
     Rounds,
+    Sample,
     Seed,
     Selection,
     Skip,
@@ -95,6 +97,8 @@ def list_(
     only: Only = None,
     skip: Skip = None,
     selection: Selection = None,
+    sample: Sample = None,
+    one_per_site: OnePerSite = False,
     rounds: Rounds = None,
     seed: Seed = None,
     jobs: Jobs = None,
@@ -107,8 +111,9 @@ def list_(
     from mutabot.report.listing import plan_data, print_plan
 
     request = _request(
-        context.obj, only=only, skip=skip, selection=selection, rounds=rounds, seed=seed, jobs=jobs
-    )
+        context.obj, only=only, skip=skip, selection=selection, sample=sample, one_per_site=one_per_site,
+        rounds=rounds, seed=seed, jobs=jobs,
+    )  # fmt: skip
     with _progress() as progress:
         mutants, left_out = plan_only(request, progress)
     if json:
@@ -123,6 +128,8 @@ def run(
     only: Only = None,
     skip: Skip = None,
     selection: Selection = None,
+    sample: Sample = None,
+    one_per_site: OnePerSite = False,
     rounds: Rounds = None,
     seed: Seed = None,
     jobs: Jobs = None,
@@ -138,8 +145,9 @@ def run(
     from mutabot.campaign.run import run_campaign
 
     request = _request(
-        context.obj, only=only, skip=skip, selection=selection, rounds=rounds, seed=seed, jobs=jobs,
-        engine=engine, fresh=fresh, verify=verify, confirm=confirm,
+        context.obj, only=only, skip=skip, selection=selection, sample=sample, one_per_site=one_per_site,
+        rounds=rounds, seed=seed, jobs=jobs, engine=engine, fresh=fresh, verify=verify,
+        confirm=confirm,
     )  # fmt: skip
     with _progress() as progress:
         journal_path = run_campaign(request, progress)
@@ -254,13 +262,22 @@ def _usage_or_crash(error: Exception) -> int:
     return INTERNAL_ERROR
 
 
-def _request(project: Path, *, selection: Path | None = None, engine: str = "auto", **given: Any) -> Request:
+def _request(
+    project: Path,
+    *,
+    selection: Path | None = None,
+    sample: str | None = None,
+    engine: str = "auto",
+    **given: Any,
+) -> Request:
+    from mutabot.campaign import sampling
     from mutabot.campaign.configuration import load_configuration
     from mutabot.campaign.request import Request
     from mutabot.vocabulary import load
 
     if engine not in ENGINES:
         raise UsageError(unknown_name_text("engine", engine, ENGINES))
+    size = sampling.Sample.parse(sample) if sample is not None else None
     configuration = load_configuration(project)
     if selection is None and configuration.selection is not None:
         selection = configuration.root / configuration.selection
@@ -279,6 +296,8 @@ def _request(project: Path, *, selection: Path | None = None, engine: str = "aut
         fresh=bool(given.get("fresh")),
         verify=given.get("verify") or 0,
         confirm=bool(given.get("confirm")),
+        sample=size,
+        one_per_site=bool(given.get("one_per_site")),
     )
 
 

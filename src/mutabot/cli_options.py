@@ -35,6 +35,17 @@ Skip = Annotated[list[str] | None, typer.Option("--skip", metavar="WHICH", help=
 Selection = Annotated[
     Path | None, typer.Option("--selection", metavar="FILE", help="File with one mutant id per line.")
 ]
+Sample = Annotated[
+    str | None,
+    typer.Option(
+        "--sample",
+        metavar="SIZE",
+        help="Only a random sample: 10% of each family and role, or 50 of each family.",
+    ),
+]
+OnePerSite = Annotated[
+    bool, typer.Option("--one-per-site", help="Only one mutant per family and site, chosen at random.")
+]
 Rounds = Annotated[int | None, typer.Option("--rounds", min=1, help="Repetitions, each with its own seeds.")]
 Seed = Annotated[int | None, typer.Option("--seed", min=0, help="The campaign's seed.")]
 Jobs = Annotated[int | None, typer.Option("-j", "--jobs", min=1, help="Processes at a time.")]
