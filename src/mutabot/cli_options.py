@@ -10,6 +10,7 @@ import typer
 from mutabot import __version__
 
 ENGINES = ("auto", "branch", "replay")
+FAMILIES = ("robot", "classical", "text")
 
 
 def _print_version(wanted: bool) -> None:
@@ -50,6 +51,21 @@ Rounds = Annotated[int | None, typer.Option("--rounds", min=1, help="Repetitions
 Seed = Annotated[int | None, typer.Option("--seed", min=0, help="The campaign's seed.")]
 Jobs = Annotated[int | None, typer.Option("-j", "--jobs", min=1, help="Processes at a time.")]
 Engine = Annotated[str, typer.Option("--engine", help=f"What runs the mutants: {' or '.join(ENGINES)}.")]
+Families = Annotated[
+    list[str] | None,
+    typer.Option("--family", metavar="NAME", help=f"A family: {', '.join(FAMILIES)}. Repeatable."),
+]
+NoOracle = Annotated[
+    bool,
+    typer.Option(
+        "--no-oracle", help="Run a second time with every assertion off: what a score is then worth."
+    ),
+]
+Picture = Annotated[
+    Path | None,
+    typer.Option("--picture", metavar="FILE", help="Draw the ends as bars: FILE.svg or FILE.png."),
+]
+Stored = Annotated[bool, typer.Option("--results", help="Run nothing; show what the last comparison found.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Run everything again, also outcomes that still hold.")]
 Verify = Annotated[
     int,

@@ -14,7 +14,8 @@ from mutabot.model import By, Kill, Mutant, Outcome, Role, Verdict
 
 TESTS = tuple(f"tests/test_mission.py::test_{letter}" for letter in "abc")
 #: family and role -> number of mutants, and weights of: killed by check, by exception, by exception before
-#: any command, survived, indistinguishable, refused, invalid, no effect, not covered, time-out, unstable, error
+#: any command, survived, indistinguishable, refused, invalid, no effect, not covered, time-out, unstable,
+#: error
 KINDS = {
     ("robot", Role.PROGRAM): (30, (50, 10, 0, 20, 8, 10, 0, 2, 0, 2, 1, 1)),
     ("robot", Role.ORACLE): (12, (70, 0, 0, 10, 20, 0, 0, 0, 0, 0, 0, 0)),

@@ -19,7 +19,7 @@ from mutabot.cli import main
 from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
 
-COMMANDS = ("init", "check", "list", "run", "results", "show", "replay")
+COMMANDS = ("init", "check", "list", "run", "compare", "results", "show", "replay")
 
 
 @pytest.fixture

@@ -24,18 +24,18 @@ from mutabot.model import By, Outcome, Verdict
 
 
 class End(StrEnum):
-    """How a mutant ended in a round, in the order in which mutants come to nothing or are found."""
+    """How a mutant ended in a round, from what says most about the tests to what says nothing of them."""
 
-    INVALID = "invalid"  # no program or no command: it does not compile, a word is unknown
-    BEFORE = "exception before any command"  # killed by an exception before a command reached the robot
-    REFUSED = "refused"  # the robot refused the mutated command
-    NO_EFFECT = "no effect"  # it changed no value at any hit
-    INDISTINGUISHABLE = "indistinguishable"  # survived, and the world ended as the original's
-    NOT_COVERED = "not covered"  # no test reaches it
-    SURVIVED = "survived"  # survived, and something ended otherwise than in the original
     CHECK = "killed by check"
     EXCEPTION = "killed by exception"  # after commands had reached the robot, or nobody knows whether
     TIMEOUT = "timeout"
+    SURVIVED = "survived"  # something ended otherwise than in the original, or nobody knows
+    NOT_COVERED = "not covered"  # no test reaches it
+    INDISTINGUISHABLE = "indistinguishable"  # survived, and the world ended as the original's
+    NO_EFFECT = "no effect"  # it changed no value at any hit
+    REFUSED = "refused"  # the robot refused the mutated command
+    BEFORE = "exception before any command"  # killed by an exception before a command reached the robot
+    INVALID = "invalid"  # no program or no command: it does not compile, a word is unknown
     UNSTABLE = "unstable"
     ERROR = "error"
 
