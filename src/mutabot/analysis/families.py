@@ -19,11 +19,15 @@ from .score import RoundScores
 from .statistics import Interval, crossed, wilson
 from .subsumption import Redundancy
 
-#: ends that speak of one weakness, as the published study names them
+_BROKEN = frozenset({End.INVALID, End.BEFORE})
+_IMPOSSIBLE = frozenset({End.REFUSED})
+_NO_DIFFERENCE = frozenset({End.NO_EFFECT, End.INDISTINGUISHABLE})
+#: ends that speak of one weakness, as the published study names them, and of any
 WEAKNESSES: Mapping[str, frozenset[End]] = {
-    "broken": frozenset({End.INVALID, End.BEFORE}),
-    "impossible": frozenset({End.REFUSED}),
-    "no_difference": frozenset({End.NO_EFFECT, End.INDISTINGUISHABLE}),
+    "broken": _BROKEN,
+    "impossible": _IMPOSSIBLE,
+    "no_difference": _NO_DIFFERENCE,
+    "any": _BROKEN | _IMPOSSIBLE | _NO_DIFFERENCE,
 }
 Key = tuple[str, str]
 
