@@ -204,7 +204,7 @@ def compare(
         found = cli_compare.read(_journal_path(context.obj, COMPARISON).parent)
     else:
         request = _request(
-            context.obj, families=family or FAMILIES, only=only, skip=skip, selection=selection,
+            context.obj, only=only, skip=skip, family=family or FAMILIES, order=1, selection=selection,
             sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
             fresh=fresh, configured_selection=False,
         )  # fmt: skip
@@ -322,7 +322,6 @@ def _request(
     selection: Path | None = None,
     sample: str | None = None,
     engine: str = "auto",
-    families: Sequence[str] = ("robot",),
     configured_selection: bool = True,
     **given: Any,
 ) -> Request:
@@ -333,9 +332,6 @@ def _request(
 
     if engine not in ENGINES:
         raise UsageError(unknown_name_text("engine", engine, ENGINES))
-    unknown = [name for name in families if name not in FAMILIES]
-    if unknown:
-        raise UsageError(unknown_name_text("family", unknown[0], FAMILIES))
     size = sampling.Sample.parse(sample) if sample is not None else None
     configuration = load_configuration(project)
     if selection is None and configuration.selection is not None and configured_selection:
@@ -355,10 +351,19 @@ def _request(
         fresh=bool(given.get("fresh")),
         verify=given.get("verify") or 0,
         confirm=bool(given.get("confirm")),
-        families=tuple(dict.fromkeys(families)),
+        families=_families(given.get("family")) or ("robot",),
         sample=size,
         one_per_site=bool(given.get("one_per_site")),
     )
+
+
+def _families(given: Sequence[str] | None) -> tuple[str, ...]:
+    """The families of the command line, in the order of their numbers."""
+    named = [name.strip() for text in given or () for name in text.split(",") if name.strip()]
+    for name in named:
+        if name not in FAMILIES:
+            raise UsageError(unknown_name_text("family", name, FAMILIES))
+    return tuple(family for family in FAMILIES if family in named)
 
 
 def _found(selection: Path, root: Path) -> Path:

@@ -33,6 +33,14 @@ Only = Annotated[
     ),
 ]
 Skip = Annotated[list[str] | None, typer.Option("--skip", metavar="WHICH", help="All but these, likewise.")]
+Families = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--family",
+        metavar="NAME",
+        help=f"Families of mutants: {', '.join(FAMILIES)}. Repeatable, or with commas.",
+    ),
+]
 Selection = Annotated[
     Path | None, typer.Option("--selection", metavar="FILE", help="File with one mutant id per line.")
 ]
@@ -51,10 +59,6 @@ Rounds = Annotated[int | None, typer.Option("--rounds", min=1, help="Repetitions
 Seed = Annotated[int | None, typer.Option("--seed", min=0, help="The campaign's seed.")]
 Jobs = Annotated[int | None, typer.Option("-j", "--jobs", min=1, help="Processes at a time.")]
 Engine = Annotated[str, typer.Option("--engine", help=f"What runs the mutants: {' or '.join(ENGINES)}.")]
-Families = Annotated[
-    list[str] | None,
-    typer.Option("--family", metavar="NAME", help=f"A family: {', '.join(FAMILIES)}. Repeatable."),
-]
 NoOracle = Annotated[
     bool,
     typer.Option(

@@ -30,6 +30,11 @@ def test_there_is_a_column_for_each_family_and_role_in_the_order_asked_for(compa
     ]  # fmt: skip
 
 
+def test_the_program_stands_before_the_oracle_whichever_the_plan_has_first(results: Results) -> None:
+    turned = compare(replace(results, mutants=results.mutants[::-1]))
+    assert [one.role for one in turned.families if one.name == "robot"] == ["program", "oracle"]
+
+
 def test_every_outcome_has_one_end_and_every_end_is_there(comparison: Comparison) -> None:
     for family in comparison.families:
         assert set(family.ends) == set(End)

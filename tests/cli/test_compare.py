@@ -82,7 +82,7 @@ def test_options_reach_the_campaign(fake: Campaigns, project: Path) -> None:
     words = "--family text --family robot --family text --rounds 5 --seed 3 -j 1 --engine replay --fresh"
     assert main(["compare", *words.split(), "--one-per-site", "--only", "AOR", "--skip", "3"]) == 0
     (request,) = fake.requests
-    assert request.families == ("text", "robot")
+    assert request.families == ("robot", "text")
     assert (request.rounds, request.seed, request.jobs) == (5, 3, 1)
     assert (request.engine, request.fresh, request.one_per_site) == ("replay", True, True)
     assert (request.only, request.skip) == (("AOR",), ("3",))
@@ -108,7 +108,7 @@ def test_a_run_has_the_robot_family_alone_and_the_usual_journal(fake: Campaigns)
     "arguments",
     [
         ["--family", "robots"],
-        ["--family", ""],
+        ["--family", "robot,all"],
         ["--sample", "0"],
         ["--sample", "abc"],
         ["--picture", "ends.jpg"],

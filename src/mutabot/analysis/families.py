@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from mutabot.campaign.sampling import Drawing
-from mutabot.model import Outcome
+from mutabot.model import Outcome, Role
 
 from .ends import End, Properties, end_of, properties_of
 from .results import MutantResult, Results
@@ -199,11 +199,15 @@ def compare(results: Results, without_oracle: Results | None = None) -> Comparis
 
 
 def _keys(results: Results) -> list[Key]:
-    """Families in the order in which they were asked for, each with its roles; those without mutants too."""
-    found = dict.fromkeys(_key(one) for one in results.mutants)
+    """Families in the order in which they were asked for, those without mutants too; the program first."""
+    found = {_key(one) for one in results.mutants}
     asked = results.meta.get("families") or ()
-    names = dict.fromkeys([*asked, *(name for name, _ in found)])
-    return [key for name in names for key in [key for key in found if key[0] == name] or [(name, "program")]]
+    names = dict.fromkeys([*asked, *(one.mutant.family for one in results.mutants)])
+    keys: list[Key] = []
+    for name in names:
+        roles = [role for role in Role if (name, role.value) in found]
+        keys += [(name, role.value) for role in roles or [Role.PROGRAM]]
+    return keys
 
 
 def _key(result: MutantResult) -> Key:
