@@ -43,6 +43,8 @@ _OWN_LINE = re.compile(r"\S+\.py:[^:]+:.+#\d+:.+:.+")  # a mutant's id, as selec
 #: installed packages that have no say in how a test ends
 _TOOLS = {"black", "hatchling", "isort", "mypy", "pip", "pre-commit", "ruff", "setuptools", "uv", "wheel"}
 _CONFIGURATIONS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "setup.cfg", "conftest.py")
+#: what our own pictures hold near their beginning; see ``mutabot.report.picture``
+_PICTURES, _PICTURE = {".svg", ".png"}, b"written by mutabot compare"
 _WRITTEN = "written by the tests themselves"
 _HASH = "#"
 
@@ -250,7 +252,7 @@ def _counted(request: Request, before: Snapshot, after: Snapshot) -> dict[str, s
     written = after.touched_since(before)
     counted = {}
     for name, file in after.files.items():
-        if name in own or (name.endswith(".txt") and _is_selection(request.root / name)):
+        if name in own or _is_ours(request.root / name):
             continue
         is_result = name in written and not name.endswith(".py")
         counted[name] = _WRITTEN if is_result else file.digest
@@ -259,6 +261,21 @@ def _counted(request: Request, before: Snapshot, after: Snapshot) -> dict[str, s
 
 def _relative(path: Path, root: Path) -> str:
     return Path(os.path.relpath(path.resolve(), root)).as_posix()
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether it is a file for or by mutabot, which no robot program reads."""
+    if path.suffix in _PICTURES:
+        return _is_picture(path)
+    return path.suffix == ".txt" and _is_selection(path)
+
+
+def _is_picture(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return _PICTURE in file.read(1000)
+    except OSError:
+        return False
 
 
 def _is_selection(path: Path) -> bool:

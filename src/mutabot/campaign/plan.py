@@ -14,6 +14,7 @@ from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.driving import Passage, rehearse
 
 from .baseline import Baseline, Hit, Place
+from .sampling import Drawing
 
 #: recorded calls per place that are tried out; calls of one place are much alike
 TRIED = 200
@@ -21,10 +22,15 @@ TRIED = 200
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Mutants to run, and what is left out."""
+    """Mutants to run, and what is left out.
+
+    Attributes:
+        drawing: how the mutants were drawn from the selected ones; None if all of these are there.
+    """
 
     mutants: list[Mutant]
     left_out: list[LeftOut]
+    drawing: Drawing | None = None
 
 
 def make_plan(baseline: Baseline, vocabulary: Vocabulary) -> Plan:

@@ -25,6 +25,7 @@ from .lock import at_work
 from .plan import Plan, make_plan
 from .request import CheckReport, Progress, Request
 from .reuse import reuse
+from .sampling import DRAWING, draw
 from .selection import select
 from .verify import look_again, refuse_flaky
 from .workers import Result, Workers
@@ -170,7 +171,10 @@ def selected(request: Request, plan: Plan, baseline: Baseline) -> Plan:
     mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
     if not mutants:
         raise NothingToDoError("the selection leaves no mutant to run")
-    return Plan(mutants, plan.left_out)
+    if request.sample is None and not request.one_per_site:
+        return Plan(mutants, plan.left_out)
+    drawn, drawing = draw(mutants, request.seed, sample=request.sample, one_per_site=request.one_per_site)
+    return Plan(drawn, plan.left_out, drawing)
 
 
 @contextmanager
@@ -198,6 +202,8 @@ def _write_beginning(journal: Journal, request: Request, results: Sequence[Resul
     files = {mutant.site.span.file for mutant in plan.mutants}
     sources = {file: (request.root / file).read_text(encoding="utf-8", errors="replace") for file in files}
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
+    if plan.drawing is not None:
+        journal.set_meta(DRAWING, to_data(plan.drawing))
 
 
 def _note_unstable(baseline: Baseline, progress: Progress) -> None:
@@ -219,6 +225,9 @@ def _meta(request: Request) -> dict[str, Any]:
         "rounds": request.rounds,
         "engine": engine_of(request),
         "jobs": request.jobs,
+        "families": list(request.families),
+        "every_test": request.every_test,
+        "no_oracle": request.no_oracle,
         "started": time.time(),
         "vocabulary": to_data(request.vocabulary),
     }

@@ -269,11 +269,15 @@ def _key(pair: Pair) -> tuple[str, int]:
     return pair[0].id, pair[1]
 
 
-def _end(outcome: Outcome) -> tuple[Any, ...]:
-    message = outcome.message
+def without_accidents(message: str | None) -> str | None:
+    """A message without what differs between equal runs in different processes."""
     for pattern, text in _ACCIDENTAL if message is not None else ():
         message = pattern.sub(text, message or "")
-    return outcome.verdict, outcome.by, outcome.test, message
+    return message
+
+
+def _end(outcome: Outcome) -> tuple[Any, ...]:
+    return outcome.verdict, outcome.by, outcome.test, without_accidents(outcome.message)
 
 
 def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> Disagreement | None:
