@@ -17,7 +17,6 @@ import pytest
 from mutabot.model import BranchEnd, Branching, Job, SessionEnd, TestEnd, TestStart, from_data
 
 from . import seeds
-from .activate import Evidence
 from .branch import ALIVE, DECIDED, FAILED, Trunk
 from .classify import Ending, classify
 from .limits import limit_memory
@@ -89,6 +88,40 @@ class Conductor:
             self._errors.append(f"tests that were there before are gone: {', '.join(missing)}")
         items[:] = [by_id[test] for test in self.job.tests if test in by_id]
 
+    @pytest.hookimpl(wrapper=True)
+    def pytest_make_collect_report(
+        self, collector: pytest.Collector
+    ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+        """Note whose doing it is that something cannot be collected."""
+        report = yield
+        call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
+        if report.failed and call is not None and call.excinfo is not None:
+            error = call.excinfo.value
+            is_wrapped = isinstance(error, collector.CollectError) and error.__cause__ is not None
+            self.import_failed(error.__cause__ if is_wrapped else error, collector.nodeid)
+        return report
+
+    def import_failed(self, error: BaseException | None, node: str) -> None:
+        """Test files cannot be imported. If the mutant did something meanwhile, their tests noticed it.
+
+        Args:
+            error: what was raised.
+            node: id of what could not be collected; empty for all there is.
+        """
+        evidence = self.session.evidence
+        if error is None or not evidence.is_of_text or not evidence.acted:
+            return
+        below = (f"{node}::", f"{node}/") if node not in ("", ".") else ("",)
+        tests = [test for test in self.job.tests or () if test.startswith(below)]
+        for test in tests[:1] if self.job.stop_at_kill else tests:
+            file = os.path.join(self.job.root, test.partition("::")[0])
+            ending = classify(error, "collect", file, self.locator, self.job.vocabulary, evidence)
+            end = TestEnd(
+                test, "failed", ending.by, ending.phase, ending.exception, ending.message, ending.place,
+                failure=ending.failure, hits=evidence.hits, acted=evidence.acted, example=evidence.example,
+            )  # fmt: skip
+            self._pipe.send(end)
+
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """Note what could not be collected."""
         if report.failed:
@@ -141,17 +174,14 @@ class Conductor:
                     str(item.path),
                     self.locator,
                     self.job.vocabulary,
-                    self._evidence,
+                    self.session.evidence,
                 )
         return report
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, exitstatus: int) -> None:
-        """Everything has run: check the vocabulary if asked to, wait for branches, and say goodbye."""
-        if self.session.trunk is not None:
-            self.session.trunk.finish()
-        if self.job.inspect:
-            self.session.inspect_targets()
+        """Everything has run: say what is left to say, and goodbye."""
+        self.session.finish()
         self._pipe.send(SessionEnd(int(exitstatus), self._collected, tuple(self._errors)))
 
     def _start_clocks(self) -> None:
@@ -189,17 +219,15 @@ class Conductor:
         self._pipe.send(BranchEnd(mutant, end, sites, self._shared))
         return DECIDED if end.is_decided else ALIVE
 
-    @property
-    def _evidence(self) -> Evidence:
-        activation = self.session.activation
-        return activation.evidence if activation is not None else Evidence()
-
     def _test_end(self, test: str) -> TestEnd:
-        session, evidence, ending = self.session, self._evidence, self._ending
+        session, evidence, ending = self.session, self.session.evidence, self._ending
         wall, cpu = time.perf_counter() - self._started[0], time.process_time() - self._started[1]
         meter = session.meter
         assert meter is not None
+        ended_by_refusal = ending is not None and ending.refused is not None
         refusal = str(evidence.refusal) if evidence.refusal is not None else None
+        if evidence.is_of_text and not ended_by_refusal:
+            refusal = None
         return TestEnd(
             test=test,
             outcome=self._outcome,
@@ -210,13 +238,14 @@ class Conductor:
             place=ending.place if ending else None,
             timeout=meter.exceeded,
             failure=evidence.failure or (ending.failure if ending else None),
-            invalid=evidence.invalid,
+            invalid=evidence.invalid or (evidence.is_unknown and ended_by_refusal),
             refused=refusal,
-            caught=refusal is not None and self._outcome == "failed" and not (ending and ending.refused),
+            caught=refusal is not None and self._outcome == "failed" and not ended_by_refusal,
             hits=evidence.hits,
             acted=evidence.acted,
             example=evidence.example,
             operations=meter.operations,
+            commands=session.commands,
             wall=wall,
             cpu=cpu,
             simulated=meter.simulated,
