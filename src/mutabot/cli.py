@@ -19,9 +19,11 @@ import typer
 
 from mutabot.cli_options import (
     ENGINES,
+    FAMILIES,
     All,
     Confirm,
     Engine,
+    Families,
     Fresh,
     Jobs,
     Json,
@@ -79,11 +81,17 @@ def init(
 
 
 @app.command(rich_help_panel=_SETUP)
-def check(context: typer.Context, json: Json = False, jobs: Jobs = None, rounds: Rounds = None) -> None:
+def check(
+    context: typer.Context,
+    json: Json = False,
+    jobs: Jobs = None,
+    rounds: Rounds = None,
+    family: Families = None,
+) -> None:
     """Try the whole set-up without running mutants."""
     from mutabot.campaign import run as campaign
 
-    request = _request(context.obj, jobs=jobs, rounds=rounds)
+    request = _request(context.obj, jobs=jobs, rounds=rounds, family=family)
     with _progress() as progress:
         report = campaign.check(request, progress)
     _print_json(report.data) if json else typer.echo("\n".join(report.lines))
@@ -94,6 +102,7 @@ def list_(
     context: typer.Context,
     only: Only = None,
     skip: Skip = None,
+    family: Families = None,
     selection: Selection = None,
     rounds: Rounds = None,
     seed: Seed = None,
@@ -107,7 +116,14 @@ def list_(
     from mutabot.report.listing import plan_data, print_plan
 
     request = _request(
-        context.obj, only=only, skip=skip, selection=selection, rounds=rounds, seed=seed, jobs=jobs
+        context.obj,
+        only=only,
+        skip=skip,
+        family=family,
+        selection=selection,
+        rounds=rounds,
+        seed=seed,
+        jobs=jobs,
     )
     with _progress() as progress:
         mutants, left_out = plan_only(request, progress)
@@ -122,6 +138,7 @@ def run(
     context: typer.Context,
     only: Only = None,
     skip: Skip = None,
+    family: Families = None,
     selection: Selection = None,
     rounds: Rounds = None,
     seed: Seed = None,
@@ -138,8 +155,8 @@ def run(
     from mutabot.campaign.run import run_campaign
 
     request = _request(
-        context.obj, only=only, skip=skip, selection=selection, rounds=rounds, seed=seed, jobs=jobs,
-        engine=engine, fresh=fresh, verify=verify, confirm=confirm,
+        context.obj, only=only, skip=skip, family=family, selection=selection, rounds=rounds, seed=seed,
+        jobs=jobs, engine=engine, fresh=fresh, verify=verify, confirm=confirm,
     )  # fmt: skip
     with _progress() as progress:
         journal_path = run_campaign(request, progress)
@@ -179,7 +196,10 @@ def replay(
         if round is not None and round > found.rounds:
             raise UsageError(f"there is no round {round}; the campaign has {found.rounds}")
         rounds = range(found.rounds) if round is None else [round - 1]
-        request = _request(path.parent.parent, rounds=found.rounds, seed=found.meta.get("seed"), jobs=jobs)
+        request = _request(
+            path.parent.parent, rounds=found.rounds, seed=found.meta.get("seed"), jobs=jobs,
+            family=found.meta.get("families"),
+        )  # fmt: skip
         with _progress() as progress:
             replayed = replay_one(request, journal, chosen, rounds, progress)
     if json:
@@ -279,7 +299,17 @@ def _request(project: Path, *, selection: Path | None = None, engine: str = "aut
         fresh=bool(given.get("fresh")),
         verify=given.get("verify") or 0,
         confirm=bool(given.get("confirm")),
+        families=_families(given.get("family")) or configuration.families,
     )
+
+
+def _families(given: Sequence[str] | None) -> tuple[str, ...]:
+    """The families of the command line, in the order of their numbers."""
+    named = [name.strip() for text in given or () for name in text.split(",") if name.strip()]
+    for name in named:
+        if name not in FAMILIES:
+            raise UsageError(unknown_name_text("family", name, FAMILIES))
+    return tuple(family for family in FAMILIES if family in named)
 
 
 def _found(selection: Path, root: Path) -> Path:

@@ -10,6 +10,7 @@ import typer
 from mutabot import __version__
 
 ENGINES = ("auto", "branch", "replay")
+FAMILIES = ("robot", "classical", "text")
 
 
 def _print_version(wanted: bool) -> None:
@@ -32,6 +33,14 @@ Only = Annotated[
     ),
 ]
 Skip = Annotated[list[str] | None, typer.Option("--skip", metavar="WHICH", help="All but these, likewise.")]
+Families = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--family",
+        metavar="NAME",
+        help=f"Families of mutants: {', '.join(FAMILIES)}. Repeatable, or with commas.",
+    ),
+]
 Selection = Annotated[
     Path | None, typer.Option("--selection", metavar="FILE", help="File with one mutant id per line.")
 ]

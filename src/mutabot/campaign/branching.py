@@ -23,7 +23,7 @@ from mutabot.model import (
 )
 from mutabot.model.job import Line
 
-from .baseline import Baseline, Place, death, observation, place_of
+from .baseline import Baseline, death, observation, place_of
 from .comparison import Observation, compare
 from .judge import Death, Run, judge
 from .replay import Pair, wall_limit, without_tests
@@ -41,12 +41,14 @@ class Remainder:
 
     Attributes:
         pairs: mutants and rounds.
+        early: mutants that act while the program is imported, before a trunk could branch.
         reasons: test to why it was not safe to fork in it.
         suspects: (round, test) that passed in the baseline, but not in a trunk.
         notes: what else went wrong, in words.
     """
 
     pairs: list[Pair] = field(default_factory=list)
+    early: list[Pair] = field(default_factory=list)
     reasons: dict[str, str] = field(default_factory=dict)
     suspects: list[tuple[int, str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -70,10 +72,12 @@ def branch(
     """
     trunks: dict[int, _Trunk] = {}
     for mutant, round in pairs:
-        place = Place(mutant.site, mutant.operation, mutant.pattern)
-        tests = (only or {}).get(mutant.id) or baseline.selection(round, place)
+        tests = (only or {}).get(mutant.id) or baseline.judges(round, mutant)
         if not tests:
             yield without_tests(baseline, mutant, round)
+            continue
+        if baseline.program.is_early(mutant):
+            remainder.early.append((mutant, round))
             continue
         if round not in trunks:
             trunks[round] = _Trunk(request, baseline, round)
@@ -140,17 +144,29 @@ class _Trunk:
         in_order = tuple(test for test in baseline.by_cost(round) if test in self._needed)
         walls = {test: wall_limit(request, baseline, round, test) for test in in_order}
         longest = max(walls.values(), default=0.0)
+        mutants = tuple(branches.mutant for branches in self._open.values())
+        program = baseline.program
+        choices = {mutant.id: program.choices(mutant) for mutant in mutants}
         branching = Branching(
-            mutants=tuple(branches.mutant for branches in self._open.values()),
+            mutants=mutants,
             tests={mutant: branches.tests for mutant, branches in self._open.items()},
             tokens=tokens,
             walls=walls,
             wall=longest,
             at_start=at_start,
+            choices={mutant: found for mutant, found in choices.items() if found},
+            every_test=request.every_test,
         )
         factor = request.configuration.timeout_factor
         budgets = {test: baseline.budget(round, test, factor) for test in in_order}
-        job = request.job(round, tests=in_order, record=True, budgets=budgets, branching=branching)
+        job = request.job(
+            round,
+            tests=in_order,
+            record=True,
+            budgets=budgets,
+            branching=branching,
+            instrumentation=program.instrumentation(mutants),
+        )
         patience = 2.0 * longest + _PATIENCE
         return Task(round, job, {}, patience, patience, is_trunk=True)
 

@@ -52,6 +52,7 @@ class Run:
         wall: seconds spent on it.
         shared: simulated seconds that it did not have to spend, since the original had.
         engine: ``replay`` or ``branch``.
+        problem: why the mutant was not there at all, or None.
     """
 
     mutant: Mutant
@@ -63,6 +64,7 @@ class Run:
     wall: float = 0.0
     shared: float | None = None
     engine: str = "replay"
+    problem: str | None = None
 
 
 def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
@@ -96,6 +98,8 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
 
 def _ruling(run: Run) -> Ruling:
     """Verdict, the test that decided it, and the reason in words."""
+    if run.problem is not None:
+        return Verdict.ERROR, None, run.problem
     acted = False
     refused: TestEnd | None = None
     for end in run.ends:

@@ -26,6 +26,9 @@ class Request:
         fresh: whether to run everything, also what an earlier campaign has found.
         verify: how many outcomes to run once more in fresh processes, and compare.
         confirm: whether to run survivors and time-outs once more.
+        families: families of the mutants to plant.
+        every_test: whether to run each mutant in every test that reaches it, also after one noticed it.
+        no_oracle: whether to switch off all checks of the tests.
     """
 
     configuration: Configuration
@@ -40,6 +43,9 @@ class Request:
     fresh: bool = False
     verify: int = 0
     confirm: bool = False
+    families: tuple[str, ...] = ("robot",)
+    every_test: bool = False
+    no_oracle: bool = False
 
     @property
     def root(self) -> Path:
@@ -66,6 +72,7 @@ class Request:
             seed=self.seed,
             round=round,
             memory=self.configuration.memory,
+            no_oracle=self.no_oracle,
             **details,
         )
 

@@ -57,7 +57,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
 def _run(request: Request, workers: Workers, progress: Progress, journal: Journal) -> None:
     before = Snapshot.take(request.root)
     baseline, results = _baseline(request, workers, progress)
-    whole = make_plan(baseline, request.vocabulary)
+    whole = make_plan(baseline, request.vocabulary, request.families)
     plan = selected(request, whole, baseline)
     _write_beginning(journal, request, results, plan)
     _note_unstable(baseline, progress)
@@ -132,7 +132,7 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
     """Baseline and plan, without running a mutant."""
     with _workers(request) as workers:
         baseline, _ = _baseline(request, workers, progress)
-    plan = selected(request, make_plan(baseline, request.vocabulary), baseline)
+    plan = selected(request, make_plan(baseline, request.vocabulary, request.families), baseline)
     return plan.mutants, plan.left_out
 
 
@@ -140,7 +140,7 @@ def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running mutants."""
     with _workers(request) as workers:
         baseline, _ = _baseline(request, workers, progress)
-        plan = make_plan(baseline, request.vocabulary)
+        plan = make_plan(baseline, request.vocabulary, request.families)
         mutants = selected(request, plan, baseline).mutants
         controls, remainder = try_controls(request, baseline, workers, progress, mutants)
     return _report(request, baseline, plan, mutants, controls, remainder)
@@ -208,6 +208,7 @@ def _meta(request: Request) -> dict[str, Any]:
         "rounds": request.rounds,
         "engine": engine_of(request),
         "jobs": request.jobs,
+        "families": list(request.families),
         "started": time.time(),
         "vocabulary": to_data(request.vocabulary),
     }

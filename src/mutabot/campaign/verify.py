@@ -15,10 +15,11 @@ from typing import Any
 from mutabot.errors import ControlError, SelectionError, UnstableError
 from mutabot.model import Mutant, Outcome, Verdict, to_data
 
-from .baseline import Baseline, Place, take_baseline
+from .baseline import Baseline, take_baseline
 from .controls import run_controls
 from .engine import engine_of
 from .journal import Journal
+from .places import Place
 from .plan import make_plan
 from .replay import Pair, replay
 from .request import Progress, Request
@@ -285,9 +286,9 @@ def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> Disagreeme
 
 def _as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant:
     """The mutant in the program as it is now: edits elsewhere move it."""
-    if Place(mutant.site, mutant.operation, mutant.pattern) in baseline.hits:
+    if Place.of(mutant) in baseline.hits:
         return mutant
-    planned = make_plan(baseline, request.vocabulary).mutants
+    planned = make_plan(baseline, request.vocabulary, request.families).mutants
     now = next((one for one in planned if one.id == mutant.id), None)
     if now is None:
         problem = f"the program has changed: no test reaches {mutant.id} any more"

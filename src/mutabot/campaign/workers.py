@@ -27,11 +27,14 @@ from mutabot.model import (
     Acted,
     Job,
     MutatedCall,
+    NotInstrumented,
+    PlacesReached,
     Problem,
     SessionEnd,
     SiteSeen,
     TestEnd,
     TestStart,
+    TextsSeen,
     TokensHeld,
     to_data,
 )
@@ -80,7 +83,10 @@ class Result:
     Attributes:
         task: its task.
         sites, ends, problems: what it reported.
-        acted: tests in which its mutant did something.
+        acted: tests in which its mutant did something; the empty one stands for before any test.
+        reached: places of the program text by test, likewise.
+        seen: what a recording saw of the program text.
+        not_instrumented: files whose mutants cannot run, with the reason.
         in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
         held: tokens that it and its branches held when it was last heard of.
         running: test that was under way when it ended, or None.
@@ -96,6 +102,9 @@ class Result:
     ends: list[TestEnd] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     acted: list[str] = field(default_factory=list)
+    reached: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    seen: TextsSeen | None = None
+    not_instrumented: dict[str, str] = field(default_factory=dict)
     in_mutated_call: bool = False
     held: int = 0
     running: str | None = None
@@ -114,6 +123,12 @@ class Result:
                 self.running = line.test
             case Acted() if line.mutant is None:
                 self.acted.append(line.test)
+            case PlacesReached():
+                self.reached[line.test] = line.places
+            case TextsSeen():
+                self.seen = line
+            case NotInstrumented():
+                self.not_instrumented[line.file] = line.reason
             case MutatedCall() if line.mutant is None:
                 self.in_mutated_call = line.began
             case TokensHeld():
