@@ -99,8 +99,9 @@ class _Branches:
         mutant: the mutant.
         tests: the tests that judge it, in order.
         ends, observations: its tests that have ended.
-        death: set if one of its branches died.
-        acted, in_mutated_call: what its last branch said.
+        deaths: set for the tests in which its branch died.
+        acted: tests in which it has changed something.
+        calling: tests in which it was in the midst of a mutated call when it was last heard of.
         shared: simulated seconds its branches inherited.
     """
 
@@ -108,14 +109,13 @@ class _Branches:
     tests: tuple[str, ...]
     ends: dict[str, TestEnd] = field(default_factory=dict)
     observations: dict[str, Observation] = field(default_factory=dict)
-    death: Death | None = None
-    acted: bool = False
-    in_mutated_call: bool = False
+    deaths: dict[str, Death] = field(default_factory=dict)
+    acted: set[str] = field(default_factory=set)
+    calling: set[str] = field(default_factory=set)
     shared: float | None = None
 
     def take(self, line: BranchEnd) -> None:
         self.ends[line.end.test] = line.end
-        self.acted = self.in_mutated_call = False
         if line.shared is not None:
             self.shared = (self.shared or 0.0) + line.shared
 
@@ -206,13 +206,13 @@ class _Trunk:
         branches = self._open[line.mutant]
         code = line.exit_code
         how = f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
-        branches.death = Death(
+        branches.deaths[line.test] = Death(
             text=f"{line.overdue or how} during {line.test}",
             test=line.test,
             signal=-code if code < 0 and line.overdue is None else None,
             overdue=line.overdue is not None,
-            acted=branches.acted,
-            in_mutated_call=branches.in_mutated_call,
+            acted=line.test in branches.acted,
+            in_mutated_call=line.test in branches.calling,
         )
         yield from self._settle(line.mutant)
 
@@ -221,9 +221,11 @@ class _Trunk:
         if branches is None:
             return
         if isinstance(line, Acted):
-            branches.acted = True
+            branches.acted.add(line.test)
+        elif line.began:
+            branches.calling.add(line.test)
         else:
-            branches.in_mutated_call = line.began
+            branches.calling.discard(line.test)
 
     def _test_ended(self, end: TestEnd, remainder: Remainder) -> Iterator[Outcome]:
         """The trunk has run a test: the second opinion on the original."""
@@ -252,17 +254,17 @@ class _Trunk:
         for test in branches.tests:
             if test in self._failed:
                 return  # replay will find out what is the matter with this test
-            dead = branches.death is not None and branches.death.test == test
-            if test not in branches.ends and not dead:
+            death = branches.deaths.get(test)
+            if test not in branches.ends and death is None:
                 return
             if test not in self._passed:
                 self._waiting.setdefault(test, set()).add(mutant)
                 return
-            if dead:
-                run.death = branches.death
-                break
-            run.ends.append(branches.ends[test])
-            if branches.ends[test].is_decided:
+            if death is not None:
+                run.death = run.death or death
+            else:
+                run.ends.append(branches.ends[test])
+            if not self._request.every_test and (death is not None or branches.ends[test].is_decided):
                 break
         run.observations = branches.observations
         run.wall = sum(end.wall for end in run.ends)

@@ -6,7 +6,7 @@ import signal
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from mutabot.model import By, Mutant, Outcome, TestEnd, Verdict
+from mutabot.model import By, Kill, Mutant, Outcome, TestEnd, Verdict
 
 from .baseline import Baseline
 from .comparison import Observation, compare, farthest
@@ -46,7 +46,7 @@ class Run:
     Attributes:
         mutant, round: which.
         tests: the tests that judge it, in order.
-        ends: how they ended, in this order, up to the one that decided.
+        ends: how they ended, in this order, up to the one that decided; all of them where each is to run.
         observations: what is compared of each test that passed.
         death: set if a process did not live to the end of its tests.
         wall: seconds spent on it.
@@ -92,6 +92,9 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
         simulated=sum(simulated) if simulated else None,
         shared=run.shared,
         engine=run.engine,
+        complete=request.every_test and {end.test for end in run.ends} == set(run.tests),
+        kills=_kills(run, message)[: None if request.every_test else 1] if verdict.is_killed else (),
+        commands=end.commands if end is not None else None,
     )
     return _compared(outcome, run, request, baseline) if verdict is Verdict.SURVIVED else outcome
 
@@ -102,7 +105,7 @@ def _ruling(run: Run) -> Ruling:
         return Verdict.ERROR, None, run.problem
     acted = False
     refused: TestEnd | None = None
-    for end in run.ends:
+    for end in _before_death(run):
         acted = acted or end.acted > 0
         if end.failure is not None:
             return Verdict.ERROR, end, end.failure
@@ -121,6 +124,29 @@ def _ruling(run: Run) -> Ruling:
     if refused is not None:
         return Verdict.REFUSED, refused, refused.refused
     return _ruling_on_survivor(run, acted)
+
+
+def _before_death(run: Run) -> list[TestEnd]:
+    """The tests up to the one in which the process died, if it did: what comes after decides nothing."""
+    if run.death is None or run.death.test not in run.tests:
+        return run.ends
+    before = set(run.tests[: run.tests.index(run.death.test)])
+    return [end for end in run.ends if end.test in before]
+
+
+def _kills(run: Run, message: str | None) -> tuple[Kill, ...]:
+    """The tests that noticed the mutant, in their order; a crash is noticed by the test it ended."""
+    found: list[Kill] = []
+    acted = False
+    for end in run.ends:
+        acted = acted or end.acted > 0
+        if acted and end.notices:
+            found.append(Kill(end.test, end.by or By.EXCEPTION, end.exception, end.timeout or end.message))
+    death = run.death
+    if death is not None and death.test is not None and _ruling_on_death(death, acted)[0].is_killed:
+        found.append(Kill(death.test, By.EXCEPTION, None, message))
+    order = {test: number for number, test in enumerate(run.tests)}
+    return tuple(sorted(found, key=lambda kill: order.get(kill.test, -1)))
 
 
 def _ruling_on_death(death: Death, acted: bool) -> Ruling:

@@ -21,6 +21,7 @@ from .branch import ALIVE, DECIDED, FAILED, Trunk
 from .classify import Ending, classify
 from .limits import limit_memory
 from .locate import Locator
+from .no_oracle import NoOracle
 from .pipe import Pipe
 from .probes import take
 from .session import Session
@@ -45,6 +46,7 @@ class Conductor:
         self._pid = os.getpid()
         self._shared: float | None = None
         self._item: pytest.Item | None = None
+        self._no_oracle: NoOracle | None = None
 
     @classmethod
     def from_files(cls, job_file: str, descriptor: int) -> Conductor:
@@ -63,6 +65,8 @@ class Conductor:
             lock = os.open(os.path.join(home, "lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
         conductor = cls(job, Pipe(descriptor, lock))
         conductor.session.install()
+        if job.no_oracle:
+            conductor.switch_off_checks()
         if job.branching is not None:
             conductor.grow(job.branching, os.path.join(home, "log.txt"))
         return conductor
@@ -71,6 +75,11 @@ class Conductor:
         """Be a trunk: fork a branch for every live mutant."""
         log = os.stat(log_file)
         self.session.trunk = Trunk(branching, self._pipe, (log.st_dev, log.st_ino), self._become_branch)
+
+    def switch_off_checks(self) -> None:
+        """Let tests check nothing."""
+        self._no_oracle = NoOracle(self.job.root, self.locator)
+        self._no_oracle.install()
 
     def seed_of(self, name: str) -> int:
         """The seed of a test or shared fixture in this round."""
@@ -87,6 +96,12 @@ class Conductor:
         if missing:
             self._errors.append(f"tests that were there before are gone: {', '.join(missing)}")
         items[:] = [by_id[test] for test in self.job.tests if test in by_id]
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_pycollect_makemodule(self, module_path: Any) -> None:
+        """A test file is about to be imported."""
+        if self._no_oracle is not None:
+            self._no_oracle.note_tests(str(module_path))
 
     @pytest.hookimpl(wrapper=True)
     def pytest_make_collect_report(
@@ -166,17 +181,23 @@ class Conductor:
         if report.skipped and self._outcome == "passed":
             self._outcome = "skipped"
         if report.failed and self._outcome != "failed":
-            self._outcome = "failed"
-            if call.excinfo is not None:
-                self._ending = classify(
-                    call.excinfo.value,
-                    call.when,
-                    str(item.path),
-                    self.locator,
-                    self.job.vocabulary,
-                    self.session.evidence,
-                )
+            ending = self._classified(item, call)
+            if not self.job.no_oracle or (ending is not None and not ending.is_mere_check):
+                self._outcome, self._ending = "failed", ending
         return report
+
+    def _classified(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Ending | None:
+        """What ended the test; None if nothing was raised, as where a test passes that was to fail."""
+        if call.excinfo is None:
+            return None
+        return classify(
+            call.excinfo.value,
+            call.when,
+            str(item.path),
+            self.locator,
+            self.job.vocabulary,
+            self.session.evidence,
+        )
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, exitstatus: int) -> None:

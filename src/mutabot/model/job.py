@@ -279,6 +279,14 @@ class TestEnd:
     probes: Mapping[str, Any] = field(default_factory=dict)
 
     @property
+    def notices(self) -> bool:
+        """Whether this test noticed its mutant, provided that the mutant had changed anything."""
+        if self.failure is not None or self.invalid:
+            return False
+        is_refused = self.refused is not None and not self.caught
+        return self.timeout is not None or (self.outcome == "failed" and not is_refused)
+
+    @property
     def is_decided(self) -> bool:
         """Whether this test alone decides about its mutant, so that no other test needs to run."""
         if self.failure is not None or self.invalid or self.timeout is not None:
