@@ -29,6 +29,8 @@ from mutabot.cli_options import (
     Json,
     MinScore,
     Only,
+    Order,
+    Pairs,
     Round,
     Rounds,
     Seed,
@@ -103,6 +105,8 @@ def list_(
     only: Only = None,
     skip: Skip = None,
     family: Families = None,
+    order: Order = None,
+    pairs: Pairs = None,
     selection: Selection = None,
     rounds: Rounds = None,
     seed: Seed = None,
@@ -120,6 +124,8 @@ def list_(
         only=only,
         skip=skip,
         family=family,
+        order=order,
+        pairs=pairs,
         selection=selection,
         rounds=rounds,
         seed=seed,
@@ -139,6 +145,8 @@ def run(
     only: Only = None,
     skip: Skip = None,
     family: Families = None,
+    order: Order = None,
+    pairs: Pairs = None,
     selection: Selection = None,
     rounds: Rounds = None,
     seed: Seed = None,
@@ -155,8 +163,9 @@ def run(
     from mutabot.campaign.run import run_campaign
 
     request = _request(
-        context.obj, only=only, skip=skip, family=family, selection=selection, rounds=rounds, seed=seed,
-        jobs=jobs, engine=engine, fresh=fresh, verify=verify, confirm=confirm,
+        context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs,
+        selection=selection, rounds=rounds, seed=seed, jobs=jobs, engine=engine, fresh=fresh,
+        verify=verify, confirm=confirm,
     )  # fmt: skip
     with _progress() as progress:
         journal_path = run_campaign(request, progress)
@@ -198,7 +207,8 @@ def replay(
         rounds = range(found.rounds) if round is None else [round - 1]
         request = _request(
             path.parent.parent, rounds=found.rounds, seed=found.meta.get("seed"), jobs=jobs,
-            family=found.meta.get("families"),
+            family=found.meta.get("families"), order=found.meta.get("order"),
+            every_test=found.meta.get("every_test"), no_oracle=found.meta.get("no_oracle"),
         )  # fmt: skip
         with _progress() as progress:
             replayed = replay_one(request, journal, chosen, rounds, progress)
@@ -300,6 +310,10 @@ def _request(project: Path, *, selection: Path | None = None, engine: str = "aut
         verify=given.get("verify") or 0,
         confirm=bool(given.get("confirm")),
         families=_families(given.get("family")) or configuration.families,
+        order=given.get("order") or configuration.order,
+        pairs=given.get("pairs") or configuration.pairs,
+        every_test=bool(given.get("every_test")),
+        no_oracle=bool(given.get("no_oracle")),
     )
 
 

@@ -68,6 +68,8 @@ class Settings(BaseModel):
     min_score: Annotated[float, Field(ge=0, le=100)] | None = None
     pytest_args: _Texts = ()
     families: _Families = ("robot",)
+    order: Literal[1, 2] = 1
+    pairs: Annotated[int, Field(ge=1)] = 200
 
 
 class Configuration(Settings):
@@ -89,6 +91,8 @@ class Configuration(Settings):
         min_score: score in percent below which a run fails; None for no limit.
         pytest_args: further pytest arguments.
         families: families of the mutants to plant: ``robot``, ``classical``, ``text``.
+        order: how many mutants are one: 1 or 2.
+        pairs: how many mutants of the second order to plant, chosen by the seed.
         root: absolute path of the project.
         file: the file it was read from, relative to ``root``.
     """

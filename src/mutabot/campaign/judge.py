@@ -72,7 +72,7 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
     verdict, end, message = _ruling(run)
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
     by = end.by if end is not None else By.EXCEPTION
-    died_at_work = run.death is not None and (run.death.acted or run.death.in_mutated_call)
+    died_at_work = end is None and run.death is not None and (run.death.acted or run.death.in_mutated_call)
     outcome = Outcome(
         mutant=run.mutant.id,
         round=run.round,
@@ -109,12 +109,15 @@ def _ruling(run: Run) -> Ruling:
         acted = acted or end.acted > 0
         if end.failure is not None:
             return Verdict.ERROR, end, end.failure
+        if end.partly and not acted and end.is_decided:
+            return Verdict.NO_EFFECT, end, "the test ended before more than one of the two had acted"
         if end.invalid:
             return Verdict.INVALID, end, end.message
         if end.timeout is not None:
             return (Verdict.TIMEOUT if acted else Verdict.UNSTABLE), end, end.timeout
         if end.refused is not None and not end.caught:
-            refused = refused or end
+            if acted or not end.partly:
+                refused = refused or end
         elif end.outcome == "failed":
             if acted:
                 return Verdict.KILLED, end, end.message
@@ -160,6 +163,8 @@ def _ruling_on_death(death: Death, acted: bool) -> Ruling:
 def _ruling_on_survivor(run: Run, acted: bool) -> Ruling:
     if acted:
         return Verdict.SURVIVED, None, None
+    if any(end.partly for end in run.ends):
+        return Verdict.NO_EFFECT, None, "only one of the two changed anything"
     if any(end.hits for end in run.ends):
         return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
     return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"

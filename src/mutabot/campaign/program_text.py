@@ -27,6 +27,12 @@ from .workers import Result
 FAMILIES = ("classical", "text")
 
 
+def family_of(mutant: str) -> str:
+    """The family of the mutant with this id: operators on the program text are known by name."""
+    operator = mutant.rpartition(":")[2].partition("=")[0]
+    return next((family for family in FAMILIES if operator in names(family)), "robot")
+
+
 def read_texts(
     root: Path, program: Iterable[str], families: Iterable[str]
 ) -> tuple[tuple[ProgramText, ...], dict[str, str]]:

@@ -29,6 +29,8 @@ class Request:
         families: families of the mutants to plant.
         every_test: whether to run each mutant in every test that reaches it, also after one noticed it.
         no_oracle: whether to switch off all checks of the tests.
+        order: how many mutants are one: 1 or 2.
+        pairs: how many mutants of the second order to plant.
     """
 
     configuration: Configuration
@@ -46,6 +48,8 @@ class Request:
     families: tuple[str, ...] = ("robot",)
     every_test: bool = False
     no_oracle: bool = False
+    order: int = 1
+    pairs: int = 200
 
     @property
     def root(self) -> Path:

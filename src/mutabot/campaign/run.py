@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import platform
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
@@ -21,7 +22,9 @@ from .dependencies import Dependencies, Snapshot
 from .engine import engine_of, repetitions_for, run_mutants, try_controls
 from .journal import Journal
 from .lock import at_work
+from .pairs import pairs
 from .plan import Plan, make_plan
+from .program_text import family_of
 from .request import CheckReport, Progress, Request
 from .reuse import reuse
 from .selection import select
@@ -77,7 +80,14 @@ def _run(request: Request, workers: Workers, progress: Progress, journal: Journa
         look_again(request, baseline, workers, progress, plan.mutants, journal)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
-    journal.tidy(mutant.id for mutant in whole.mutants)
+    _tidy(request, journal, whole)
+
+
+def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
+    """Forget mutants that the program has no longer; of other families and orders nothing is known now."""
+    if request.order == 1:
+        others = {mutant for mutant, _ in journal.kept() if family_of(mutant) not in request.families}
+        journal.tidy([*others, *(mutant.id for mutant in whole.mutants)])
 
 
 def _collected(results: Sequence[Result]) -> set[str]:
@@ -160,6 +170,10 @@ def selected(request: Request, plan: Plan, baseline: Baseline) -> Plan:
     mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
     if not mutants:
         raise NothingToDoError("the selection leaves no mutant to run")
+    if request.order == 2:
+        mutants = pairs(baseline, mutants, request.pairs, request.seed)
+        if not mutants:
+            raise NothingToDoError("no test reaches two mutants of this selection at different places")
     return Plan(mutants, plan.left_out)
 
 
@@ -173,6 +187,10 @@ def _workers(request: Request) -> Iterator[Workers]:
 
 
 def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
+    of_text = Counter(item.reason for item in baseline.program.left_out)
+    if of_text:
+        reason, count = of_text.most_common(1)[0]
+        return f"no mutants: all {len(plan.left_out)} are left out, {count} of them because {reason}"
     if not baseline.hits:
         files = ", ".join((*request.configuration.program, *request.configuration.oracle))
         return f"no mutants: no test reaches a call of the vocabulary's operations in {files}"
@@ -209,6 +227,10 @@ def _meta(request: Request) -> dict[str, Any]:
         "engine": engine_of(request),
         "jobs": request.jobs,
         "families": list(request.families),
+        "order": request.order,
+        "pairs": request.pairs,
+        "every_test": request.every_test,
+        "no_oracle": request.no_oracle,
         "started": time.time(),
         "vocabulary": to_data(request.vocabulary),
     }

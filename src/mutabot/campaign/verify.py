@@ -19,6 +19,7 @@ from .baseline import Baseline, take_baseline
 from .controls import run_controls
 from .engine import engine_of
 from .journal import Journal
+from .pairs import pair
 from .places import Place
 from .plan import make_plan
 from .replay import Pair, replay
@@ -288,9 +289,10 @@ def _as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutan
     """The mutant in the program as it is now: edits elsewhere move it."""
     if Place.of(mutant) in baseline.hits:
         return mutant
-    planned = make_plan(baseline, request.vocabulary, request.families).mutants
-    now = next((one for one in planned if one.id == mutant.id), None)
-    if now is None:
-        problem = f"the program has changed: no test reaches {mutant.id} any more"
+    planned = {one.id: one for one in make_plan(baseline, request.vocabulary, request.families).mutants}
+    gone = next((one.id for one in mutant.singles if one.id not in planned), None)
+    if gone is not None:
+        problem = f"the program has changed: no test reaches {gone} any more"
         raise SelectionError(problem, unknown=[mutant.id])
-    return replace(now, number=mutant.number)
+    now = [planned[one.id] for one in mutant.singles]
+    return pair(mutant.number, *now) if mutant.parts else replace(now[0], number=mutant.number)

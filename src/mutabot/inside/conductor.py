@@ -264,6 +264,7 @@ class Conductor:
             caught=refusal is not None and self._outcome == "failed" and not ended_by_refusal,
             hits=evidence.hits,
             acted=evidence.acted,
+            partly=evidence.is_partial and not evidence.acted,
             example=evidence.example,
             operations=meter.operations,
             commands=session.commands,

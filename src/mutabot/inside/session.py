@@ -72,6 +72,7 @@ class Session:
     test: str = ""
     _doors: list[Door] = field(default_factory=list)
     _told: set[tuple[str, str]] = field(default_factory=set)
+    _parts: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         self.recorder = Recorder(self._site_seen)
@@ -79,7 +80,7 @@ class Session:
 
     def install(self) -> None:
         """Put the interception of the whole vocabulary in place, and the mutant with it."""
-        self.texts = Texts.of(self.job, self.pipe)
+        self.texts = Texts.of(self.job, self.pipe, partial(self._acted, ""))
         vocabulary = self.job.vocabulary
         for operation in vocabulary.operations:
             reading = vocabulary.operation(operation.current) if operation.current is not None else None
@@ -99,7 +100,8 @@ class Session:
             operation = self.job.vocabulary.operation(single.operation)
             if operation is not None:
                 refusals = self._refusals(operation)
-                made = Activation(single, operation, refusals, self._acted, self._in_mutated_call)
+                on_act = partial(self._acted, single.id)
+                made = Activation(single, operation, refusals, on_act, self._in_mutated_call)
                 self.activations.append(made)
 
     def _refusals(self, operation: Operation) -> frozenset[str]:
@@ -121,6 +123,7 @@ class Session:
     def start_test(self, test: str) -> None:
         """A test begins, before its fixtures."""
         self.test = test
+        self._parts.clear()
         self.meter = Meter(self.job.budgets.get(test, Budget()))
         self.recorder.start()
         for door in self._doors:
@@ -323,7 +326,7 @@ class Session:
         self.activate(mutant)
         self._start_activations()
         if self.texts is not None:
-            self.texts.become(mutant.id, choices)
+            self.texts.become(choices)
 
     def _record(self, located: tuple[Span, Role], call: Call, reply: Reply | None) -> None:
         span, role = located
@@ -347,8 +350,13 @@ class Session:
 
         return handle
 
-    def _acted(self) -> None:
-        self.pipe.send(Acted(self.test, self.branch))
+    def _acted(self, part: str) -> None:
+        """A part of the mutant changed something; the one of the program text has no name."""
+        self._parts.add(part)
+        if self.texts is not None and self.texts.is_mutant and not self.texts.has_acted:
+            return
+        if all(activation.mutant.id in self._parts for activation in self.activations):
+            self.pipe.send(Acted(self.test, self.branch))
 
     def _in_mutated_call(self, began: bool) -> None:
         self.pipe.send(MutatedCall(self.test, began, self.branch))

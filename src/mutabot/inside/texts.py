@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from mutabot.model import Acted, Call, Choice, Job, NotInstrumented, PlacesReached, TextsSeen
+from mutabot.model import Call, Choice, Job, NotInstrumented, PlacesReached, TextsSeen
 
 from .activate import Evidence, is_named
 from .import_hook import ImportHook
@@ -21,15 +21,16 @@ class Texts:
     What happens while the program is imported, before any test, holds for every test after it: each test
     counts it as its own.
 
-    Attributes:
+    Args:
         hook: what instruments the program's files.
-        branch: id of the mutant that this process was forked to be; None in all others.
+        pipe: where reports go.
+        on_act: told when all active alternatives have changed something in a test.
     """
 
-    def __init__(self, hook: ImportHook, pipe: Pipe) -> None:
+    def __init__(self, hook: ImportHook, pipe: Pipe, on_act: Callable[[], None]) -> None:
         self.hook = hook
-        self.branch: str | None = None
         self._pipe = pipe
+        self._on_act = on_act
         self._test = ""
         self._begun = False
         self._early: _Counts = {}
@@ -39,14 +40,14 @@ class Texts:
         hook.alternatives.on_act = self._acted
 
     @classmethod
-    def of(cls, job: Job, pipe: Pipe) -> Texts | None:
+    def of(cls, job: Job, pipe: Pipe, on_act: Callable[[], None]) -> Texts | None:
         """Instrument the program from now on; None if the job leaves its text alone."""
         if job.instrumentation is None:
             return None
         hook = ImportHook(
             job.root, job.instrumentation, lambda file, why: pipe.send(NotInstrumented(file, why))
         )
-        texts = cls(hook, pipe)
+        texts = cls(hook, pipe, on_act)
         hook.install()
         return texts
 
@@ -79,9 +80,8 @@ class Texts:
             sightings = self.hook.recording.sightings()
             self._pipe.send(TextsSeen(tuple(self.hook.imported), sightings))
 
-    def become(self, mutant: str, choices: tuple[Choice, ...]) -> None:
+    def become(self, choices: tuple[Choice, ...]) -> None:
         """In a branch that was just forked: let these alternatives stand in the text from now on."""
-        self.branch = mutant
         alternatives = self.hook.alternatives
         alternatives.on_place = None
         alternatives.watch(())
@@ -89,7 +89,7 @@ class Texts:
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
-        if self.is_mutant and self._has_acted() and is_named(error, refusals):
+        if self.is_mutant and self.has_acted and is_named(error, refusals):
             self._refusal = error
             # the vocabulary says what commands there are; this is none of them
             self._unknown = call.operation.message is not None and call.pattern is None
@@ -102,6 +102,7 @@ class Texts:
         return Evidence(
             hits=min((hits for hits, _ in counts), default=0),
             acted=min((acted for _, acted in counts), default=0),
+            is_partial=any(acted for _, acted in counts),
             example=next(iter(examples.values()), self._early_example),
             refusal=self._refusal,
             is_of_text=True,
@@ -125,9 +126,11 @@ class Texts:
         alternatives = self.hook.alternatives
         return hits + alternatives.hits.get(place, 0), acted + alternatives.acted(place)
 
-    def _has_acted(self) -> bool:
+    @property
+    def has_acted(self) -> bool:
+        """Whether all active alternatives have changed something in this test, or before any."""
         return all(self._count(place)[1] for place in self.hook.alternatives.active)
 
     def _acted(self, place: int) -> None:
-        if self._has_acted():
-            self._pipe.send(Acted(self._test, self.branch))
+        if self.has_acted:
+            self._on_act()

@@ -242,6 +242,7 @@ class TestEnd:
         caught: whether the program handled that refusal, so that the test ended for another reason.
         hits: calls at the mutant's site (with its operation and pattern).
         acted: hits at which the mutant changed something.
+        partly: whether a part of a mutant of higher order changed something, and another did not.
         example: value before and after at the first hit at which it acted.
         operations: intercepted calls at any site.
         commands: operations that made the robot do something, from any site.
@@ -268,6 +269,7 @@ class TestEnd:
     caught: bool = False
     hits: int = 0
     acted: int = 0
+    partly: bool = False
     example: tuple[Any, ...] | None = None
     operations: int = 0
     commands: int = 0
