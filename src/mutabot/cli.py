@@ -31,6 +31,8 @@ from mutabot.cli_options import (
     NoOracle,
     OnePerSite,
     Only,
+    Order,
+    Pairs,
     Picture,
     Round,
     Rounds,
@@ -87,11 +89,17 @@ def init(
 
 
 @app.command(rich_help_panel=_SETUP)
-def check(context: typer.Context, json: Json = False, jobs: Jobs = None, rounds: Rounds = None) -> None:
+def check(
+    context: typer.Context,
+    json: Json = False,
+    jobs: Jobs = None,
+    rounds: Rounds = None,
+    family: Families = None,
+) -> None:
     """Try the whole set-up without running mutants."""
     from mutabot.campaign import run as campaign
 
-    request = _request(context.obj, jobs=jobs, rounds=rounds)
+    request = _request(context.obj, jobs=jobs, rounds=rounds, family=family)
     with _progress() as progress:
         report = campaign.check(request, progress)
     _print_json(report.data) if json else typer.echo("\n".join(report.lines))
@@ -102,6 +110,9 @@ def list_(
     context: typer.Context,
     only: Only = None,
     skip: Skip = None,
+    family: Families = None,
+    order: Order = None,
+    pairs: Pairs = None,
     selection: Selection = None,
     sample: Sample = None,
     one_per_site: OnePerSite = False,
@@ -117,8 +128,8 @@ def list_(
     from mutabot.report.listing import plan_data, print_plan
 
     request = _request(
-        context.obj, only=only, skip=skip, selection=selection, sample=sample, one_per_site=one_per_site,
-        rounds=rounds, seed=seed, jobs=jobs,
+        context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
+        sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
     )  # fmt: skip
     with _progress() as progress:
         mutants, left_out = plan_only(request, progress)
@@ -133,6 +144,9 @@ def run(
     context: typer.Context,
     only: Only = None,
     skip: Skip = None,
+    family: Families = None,
+    order: Order = None,
+    pairs: Pairs = None,
     selection: Selection = None,
     sample: Sample = None,
     one_per_site: OnePerSite = False,
@@ -151,9 +165,9 @@ def run(
     from mutabot.campaign.run import run_campaign
 
     request = _request(
-        context.obj, only=only, skip=skip, selection=selection, sample=sample, one_per_site=one_per_site,
-        rounds=rounds, seed=seed, jobs=jobs, engine=engine, fresh=fresh, verify=verify,
-        confirm=confirm,
+        context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
+        sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
+        fresh=fresh, verify=verify, confirm=confirm,
     )  # fmt: skip
     with _progress() as progress:
         journal_path = run_campaign(request, progress)
@@ -240,7 +254,11 @@ def replay(
         if round is not None and round > found.rounds:
             raise UsageError(f"there is no round {round}; the campaign has {found.rounds}")
         rounds = range(found.rounds) if round is None else [round - 1]
-        request = _request(path.parent.parent, rounds=found.rounds, seed=found.meta.get("seed"), jobs=jobs)
+        request = _request(
+            path.parent.parent, rounds=found.rounds, seed=found.meta.get("seed"), jobs=jobs,
+            family=found.meta.get("families"), order=found.meta.get("order"),
+            every_test=found.meta.get("every_test"), no_oracle=found.meta.get("no_oracle"),
+        )  # fmt: skip
         with _progress() as progress:
             replayed = replay_one(request, journal, chosen, rounds, progress)
     if json:
@@ -351,9 +369,13 @@ def _request(
         fresh=bool(given.get("fresh")),
         verify=given.get("verify") or 0,
         confirm=bool(given.get("confirm")),
-        families=_families(given.get("family")) or ("robot",),
+        families=_families(given.get("family")) or configuration.families,
         sample=size,
         one_per_site=bool(given.get("one_per_site")),
+        order=given.get("order") or configuration.order,
+        pairs=given.get("pairs") or configuration.pairs,
+        every_test=bool(given.get("every_test")),
+        no_oracle=bool(given.get("no_oracle")),
     )
 
 

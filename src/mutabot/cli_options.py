@@ -41,6 +41,10 @@ Families = Annotated[
         help=f"Families of mutants: {', '.join(FAMILIES)}. Repeatable, or with commas.",
     ),
 ]
+Order = Annotated[
+    int | None, typer.Option("--order", min=1, max=2, help="Mutants at once: 2 plants pairs of them.")
+]
+Pairs = Annotated[int | None, typer.Option("--pairs", min=1, help="How many pairs --order 2 plants.")]
 Selection = Annotated[
     Path | None, typer.Option("--selection", metavar="FILE", help="File with one mutant id per line.")
 ]

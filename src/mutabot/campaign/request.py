@@ -36,6 +36,8 @@ class Request:
         no_oracle: whether every assertion of the tests is switched off.
         sample: how many of the mutants to run, chosen at random; None for all.
         one_per_site: whether to run one mutant per site, chosen at random.
+        order: how many mutants are one: 1 or 2.
+        pairs: how many mutants of the second order to plant.
         journal: name of the journal's file in mutabot's folder.
     """
 
@@ -56,6 +58,8 @@ class Request:
     no_oracle: bool = False
     sample: Sample | None = None
     one_per_site: bool = False
+    order: int = 1
+    pairs: int = 200
     journal: str = JOURNAL
 
     @property
@@ -83,6 +87,7 @@ class Request:
             seed=self.seed,
             round=round,
             memory=self.configuration.memory,
+            no_oracle=self.no_oracle,
             **details,
         )
 
