@@ -19,7 +19,6 @@ from .console import between, heading, make_table, percent, plain
 from .excerpt import excerpt
 from .marks import mark_of
 
-
 #: facts that a mutant of the program text has not
 _OF_CALLS = ("operation", "quantity")
 
