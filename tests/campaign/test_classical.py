@@ -8,10 +8,11 @@ from typing import Any
 
 import pytest
 
+from mutabot.campaign.judge import Run, _ruling
 from mutabot.campaign.run import check, plan_only, run_campaign
 from mutabot.campaign.verify import same_end
 from mutabot.errors import NothingToDoError
-from mutabot.model import By, LeftOut, Outcome, Verdict
+from mutabot.model import By, LeftOut, Mutant, Outcome, Role, Site, Span, TestEnd, Verdict
 
 from .project import CONFIGURATION, Quiet, fingerprint, request_for, run, write_project
 
@@ -70,6 +71,20 @@ TESTS = """
 QUICK = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\npytest_args = ["-o", "pythonpath=."]\n'
 
 
+#: some of each kind, since every one of them is run in a process of its own as well
+SOME = (
+    "mission.py:right:arm.move_by#1:dx:reverse",
+    "mission.py:right:STEP / 2#1:*",
+    "mission.py:far:0.5 * factor#1:AOR*",
+    "mission.py:far:arm.move_by(0.5 * factor)#1:BSR",
+    "mission.py:careful:*",
+    "mission.py:count:total += 1#1:ASR=sub",
+    "mission.py:count:total < len(items)#1:ROR=ne",
+    "mission.py:unused:return x > 1#1:BSR",
+    "mission.py:<module>:*",
+)
+
+
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("classical")
@@ -81,7 +96,7 @@ def ends(project: Path) -> dict[str, dict[str, Outcome]]:
     """All outcomes, by engine and mutant."""
     before = fingerprint(project)
     found = {
-        engine: run(project, engine=engine, families=("robot", "classical"), fresh=True)
+        engine: run(project, engine=engine, families=("robot", "classical"), only=SOME, fresh=True)
         for engine in ("auto", "replay")
     }
     assert fingerprint(project) == before
@@ -177,7 +192,8 @@ def test_a_refusal_that_the_program_handles_is_no_refusal(tmp_path: Path) -> Non
             assert mission.careful(robot.Arm(-0.5))
     """
     for engine in ("auto", "replay"):
-        found = run(write_project(tmp_path, mission, tests), engine=engine, families=("classical",))
+        project = write_project(tmp_path, mission, tests)
+        found = run(project, engine=engine, families=("classical",), only=("UOI",), fresh=True)
         assert found["mission.py:careful:0.3#1:UOI=neg"].verdict is Verdict.SURVIVED
         negative = found["mission.py:careful:0.5 + 0.3#1:UOI=neg"]
         assert (negative.verdict, negative.by) == (Verdict.KILLED, By.CHECK)
@@ -234,7 +250,7 @@ def test_families_operators_and_ids_select(project: Path) -> None:
 
 def test_what_still_holds_is_reused_also_after_another_family_ran(tmp_path: Path) -> None:
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", SMALL)
-    only = ("BSR", "ROR")
+    only = ("BSR",)
     first = run(project, families=("classical",), only=only)
     other = Quiet()
     with pytest.raises(NothingToDoError):  # there is no call of the robot
@@ -261,7 +277,9 @@ SMALL = """
 def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path) -> None:
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", SMALL)
     for engine in ("auto", "replay"):
-        found = run(project, engine=engine, families=("classical",), every_test=True, fresh=True)
+        found = run(
+            project, engine=engine, families=("classical",), only=("ROR", "UOI"), every_test=True, fresh=True
+        )
         inverted = found["mission.py:near:x < 0.5#1:UOI=not"]
         assert inverted.complete
         assert [kill.test.rpartition("::")[2] for kill in inverted.kills] == ["test_near", "test_far"]
@@ -295,23 +313,28 @@ def test_without_the_oracle_only_exceptions_kill(tmp_path: Path) -> None:
     helper = {"tests/helper.py": "def check(value):\n    assert value\n", "tests/conftest.py": ""}
     configuration = QUICK.replace("pythonpath=.", "pythonpath=. tests")
     project = write_project(tmp_path, mission, tests, configuration=configuration, more=helper)
+    inverted = "mission.py:near:1 / (x - 0.5) < 0#1:UOI=not"
+    program = "mission.py:near:x >= 0#1:UOI=not"  # an assertion of the program is none of the tests'
+    bomb = "mission.py:near:return 1 / (x - 0.5) < 0#1:BSR"
     for engine in ("auto", "replay"):
-        wanted = {"engine": engine, "families": ("classical",), "fresh": True}
+        wanted = {
+            "engine": engine,
+            "families": ("classical",),
+            "only": (inverted, program, bomb),
+            "fresh": True,
+        }
         checked, unchecked = run(project, **wanted), run(project, **wanted, no_oracle=True)
         assert checked.keys() == unchecked.keys()
         assert not [mutant for mutant, one in unchecked.items() if one.by is By.CHECK]
-        inverted = "mission.py:near:1 / (x - 0.5) < 0#1:UOI=not"
         assert (checked[inverted].by, unchecked[inverted].verdict) == (By.CHECK, Verdict.SURVIVED)
-        program = "mission.py:near:x >= 0#1:UOI=not"  # an assertion of the program is none of the tests'
         assert (unchecked[program].verdict, unchecked[program].by) == (Verdict.KILLED, By.EXCEPTION)
-        bomb = "mission.py:near:return 1 / (x - 0.5) < 0#1:BSR"
         assert unchecked[bomb].verdict is Verdict.KILLED
 
 
 def test_two_mutants_at_once_count_only_if_both_act(project: Path) -> None:
-    wanted = {"families": ("robot", "classical"), "order": 2, "pairs": 30, "fresh": True}
+    wanted = {"families": ("robot", "classical"), "order": 2, "pairs": 15, "fresh": True}
     ends = {engine: run(project, engine=engine, only=ONLY, **wanted) for engine in ("auto", "replay")}
-    assert len(ends["auto"]) == 30
+    assert len(ends["auto"]) == 15
     assert all("+" in mutant for mutant in ends["auto"])
     different = {
         mutant: (first, ends["replay"][mutant])
@@ -370,3 +393,59 @@ def test_a_file_that_was_imported_too_early_is_left_out_with_the_reason(tmp_path
     (project / "pytest.ini").write_text("[pytest]\npythonpath = .\n", encoding="utf-8")
     with pytest.raises(NothingToDoError, match="imported before"):
         run(project, families=("classical",))
+
+
+def test_a_mutant_that_was_not_in_the_program_is_an_error() -> None:
+    mutant = Mutant(
+        1, "classical", "BSR", Site(Span("m.py", 1, 0, 1, 1, "f"), "x", 1, Role.PROGRAM), "", *NONE
+    )
+    ends = [TestEnd("t.py::test", "passed")]
+    run = Run(mutant, 0, ("t.py::test",), ends, problem="m.py: it has changed since its mutants were made")
+    assert _ruling(run) == (Verdict.ERROR, None, "m.py: it has changed since its mutants were made")
+
+
+NONE = (None, None, "", "")
+
+
+def test_a_text_that_is_no_program_is_invalid(tmp_path: Path) -> None:
+    mission = 'def three():\n    return eval("1+2")\n'
+    tests = "import mission\n\ndef test_it():\n    assert mission.three() == 3\n"
+    project = write_project(tmp_path, mission, tests)
+    found = run(project, families=("text",), only=("drop-character",))
+    last = found['mission.py:three:"1+2"#1:drop-character=3']
+    assert last.verdict is Verdict.INVALID
+    assert last.exception == "builtins:SyntaxError"
+    assert found['mission.py:three:"1+2"#1:drop-character=1'].verdict is Verdict.KILLED
+
+
+def test_a_command_that_the_vocabulary_does_not_know_is_invalid(tmp_path: Path) -> None:
+    robot = """
+        class Refused(Exception):
+            pass
+
+        def send(text):
+            word, _, number = text.partition("/")
+            if word != "lift" or not number.isdigit() or int(number) > 5:
+                raise Refused(text)
+    """
+    vocabulary = """
+        refusals = ["robot:Refused"]
+
+        [[operation]]
+        call = "robot:send"
+        message = "text"
+        patterns = [
+          { text = "lift/{height:g}", kind = "translation", axis = "z", unit = "cm", mode = "by" },
+        ]
+    """
+    mission = 'import robot\n\ndef run():\n    robot.send("lift/5")\n'
+    tests = "import mission\n\ndef test_it():\n    mission.run()\n"
+    project = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
+    ends = {
+        engine: run(project, engine=engine, families=("text",), fresh=True) for engine in ("auto", "replay")
+    }
+    found = {mutant.rpartition(":")[2]: one.verdict for mutant, one in ends["replay"].items()}
+    assert {one.verdict for one in ends["auto"].values()} == {Verdict.INVALID, Verdict.REFUSED}
+    assert all(same_end(one, ends["replay"][mutant]) for mutant, one in ends["auto"].items())
+    assert found["swap-characters=2"] is Verdict.INVALID
+    assert found["replace-character=6"] is Verdict.REFUSED  # lift/6: a command, and too high

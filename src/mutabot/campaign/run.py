@@ -280,7 +280,7 @@ def _report(
         f"controls  {controls} ended as they must",
         f"mutants   {len(mutants)}"
         + (f" selected of {len(plan.mutants)}" if len(mutants) != len(plan.mutants) else "")
-        + f", {len(plan.left_out)} left out because they would change nothing",
+        + f", {len(plan.left_out)} left out because they {_why_left_out(baseline)}",
     ]
     lines += [
         f"flaky     {test} in round {round + 1}: {why}" for (round, test), why in baseline.unstable.items()
@@ -304,6 +304,10 @@ def _report(
         "unused": never,
     }
     return CheckReport(lines, data)
+
+
+def _why_left_out(baseline: Baseline) -> str:
+    return "cannot matter" if baseline.program.left_out else "would change nothing"
 
 
 def _never_called(vocabulary: Vocabulary, baseline: Baseline) -> list[str]:

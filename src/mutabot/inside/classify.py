@@ -24,7 +24,10 @@ _INSIDE = os.path.dirname(os.path.realpath(__file__))
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """Why a test failed; the fields are those of ``TestEnd`` with the same names."""
+    """Why a test failed; the fields are those of ``TestEnd`` with the same names.
+
+    ``is_syntax`` says that some text was no program.
+    """
 
     by: By
     phase: str
@@ -34,6 +37,7 @@ class Ending:
     timeout: str | None = None
     failure: str | None = None
     refused: str | None = None
+    is_syntax: bool = False
 
     @property
     def is_mere_check(self) -> bool:
@@ -66,6 +70,7 @@ def classify(
         timeout=str(error) if isinstance(error, BudgetExceeded) else None,
         failure=_failure(error, vocabulary),
         refused=_refusal(error, evidence),
+        is_syntax=isinstance(error, SyntaxError),
     )
 
 

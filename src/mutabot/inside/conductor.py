@@ -19,6 +19,7 @@ from mutabot.model import BranchEnd, Branching, Job, SessionEnd, TestEnd, TestSt
 from mutabot.operators.registry import BUILT_IN, CONTROLS, preload
 
 from . import seeds
+from .activate import Evidence
 from .branch import ALIVE, DECIDED, FAILED, Trunk
 from .classify import Ending, classify
 from .lifeline import die_with_parent, nobody_listens
@@ -153,7 +154,8 @@ class Conductor:
             ending = classify(error, "collect", file, self.locator, self.job.vocabulary, evidence)
             end = TestEnd(
                 test, "failed", ending.by, ending.phase, ending.exception, ending.message, ending.place,
-                failure=ending.failure, hits=evidence.hits, acted=evidence.acted, example=evidence.example,
+                failure=ending.failure, invalid=_is_no_program(evidence, ending),
+                hits=evidence.hits, acted=evidence.acted, example=evidence.example,
             )  # fmt: skip
             self._pipe.send(end)
 
@@ -337,7 +339,7 @@ class Conductor:
             place=ending.place if ending else None,
             timeout=meter.exceeded,
             failure=evidence.failure or (ending.failure if ending else None),
-            invalid=evidence.invalid or (evidence.is_unknown and ended_by_refusal),
+            invalid=evidence.invalid or _is_no_program(evidence, ending),
             refused=refusal,
             caught=refusal is not None and self._outcome == "failed" and not ended_by_refusal,
             hits=evidence.hits,
@@ -374,6 +376,13 @@ def drop_idle_plugins(config: pytest.Config) -> None:
     plugin = config.pluginmanager.get_plugin("hypothesispytest")
     if plugin is not None and "hypothesis" not in sys.modules:
         config.pluginmanager.unregister(plugin)
+
+
+def _is_no_program(evidence: Evidence, ending: Ending | None) -> bool:
+    """Whether a mutant of the program text made a text that is no program or no command."""
+    if not evidence.is_of_text or ending is None:
+        return False
+    return ending.is_syntax or (evidence.is_unknown and ending.refused is not None)
 
 
 class _Parent:

@@ -74,6 +74,8 @@ class Texts:
         """The test is over."""
         if self.hook.recording is not None:
             self._tell_reached()
+        elif self.hook.alternatives.on_place is not None:
+            self.hook.alternatives.watch(())  # what is reached between tests belongs to none
 
     def finish(self) -> None:
         """All tests are over."""

@@ -19,6 +19,9 @@ from .console import between, heading, make_table, percent, plain
 from .excerpt import excerpt
 from .marks import mark_of
 
+#: facts that a mutant of the program text has not
+_OF_CALLS = ("operation", "quantity")
+
 
 def print_mutant(console: Console, result: MutantResult, source: str | None) -> None:
     """Print one mutant; ``source`` is the text of its file, or None if it is not known."""
@@ -68,7 +71,7 @@ def _facts(result: MutantResult) -> Table:
     table.add_column(overflow="fold")
     facts = {
         "id": mutant.id,
-        "place": f"{mutant.site.place} in {mutant.site.span.function}",
+        "place": "; ".join(f"{one.site.place} in {one.site.span.function}" for one in mutant.singles),
         "role": mutant.site.role.value,
         "operator": f"{mutant.operator} ({mutant.family})",
         "operation": mutant.operation + (f", command {mutant.pattern_name}" if mutant.pattern else ""),
@@ -77,7 +80,8 @@ def _facts(result: MutantResult) -> Table:
         "result": result.why,
     }
     for name, text in facts.items():
-        table.add_row(name, plain(text))
+        if mutant.operation or name not in _OF_CALLS:
+            table.add_row(name, plain(text))
     return table
 
 
