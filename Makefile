@@ -5,7 +5,7 @@ VENV   := .venv
 RUN    := $(VENV)/bin/python
 READY  := $(VENV)/.ready
 
-.PHONY: demo test check format docs bench stress clean
+.PHONY: demo test check format docs comparison bench stress clean
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
@@ -31,6 +31,15 @@ format: $(READY)
 docs: $(READY)
 	$(RUN) tools/make_docs.py
 	$(RUN) tools/make_classical_page.py
+	$(RUN) tools/make_comparison_page.py
+
+## compare the families of operators on the examples, and write docs/comparison.md from it
+comparison: $(READY)
+	for name in paper pick_and_place scales; do \
+	    $(VENV)/bin/mutabot -C examples/$$name compare --rounds 5 --no-oracle --json > $(VENV)/$$name.json || exit; \
+	done
+	$(RUN) tools/make_comparison_page.py \
+	    $(foreach name,paper pick_and_place scales,$(name)=$(VENV)/$(name).json)
 
 ## measure: the cost of an intercepted call, start-up, simulation speed, 200 seeds of each example
 bench: $(READY)
@@ -38,8 +47,9 @@ bench: $(READY)
 	$(RUN) benchmarks/instrumentation.py
 	$(RUN) benchmarks/cell_speed.py
 	$(RUN) benchmarks/paper_seeds.py
-	$(RUN) benchmarks/engines.py
+	$(RUN) benchmarks/engines.py --output docs/data/engines.json --page docs/engines.md
 	$(RUN) benchmarks/interval_coverage.py
+	$(RUN) benchmarks/sample_coverage.py
 	$(RUN) benchmarks/pick_and_place_seeds.py
 
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the

@@ -7,19 +7,26 @@ Four ways to run the same mutants, in one go on the same machine:
   replay   a fresh process per mutant and round, with the tests that reach the site
   fresh    a fresh pytest per mutant and round with the whole suite until a test fails, as general tools do it
 
+The physics bound of a row is the least time in which its steps can be simulated here: steps, divided by the
+rate of the bare engine on one core, divided by cores. Efficiency is that bound divided by the wall time. The
+peak of memory is that of the largest process.
+
 Usage: python benchmarks/engines.py [--examples paper …] [--engines branch …] [--limit N] [--output FILE]
+                                    [--page FILE]
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import multiprocessing
 import os
 import resource
 import shutil
+import statistics
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -44,6 +51,11 @@ EXAMPLES: dict[str, dict[str, Any]] = {
     "pick_and_place": {"selection": None, "rounds": 1},
     "scales": {"selection": None, "rounds": 1},
 }
+HEADINGS = (
+    "example", "engine", "mutants × rounds", "wall s", "CPU s", "steps", "per second", "peak MB",
+    "efficiency",
+)  # fmt: skip
+MARK = "<!-- Written by `make bench` (benchmarks/engines.py) from here on. -->"
 ENGINES = ("branch", "fork", "replay", "fresh")
 #: physics steps per simulated second of mutabot.cells
 STEPS_PER_SECOND = 500
@@ -88,17 +100,57 @@ def main() -> None:
     parser.add_argument("--engines", nargs="+", default=list(ENGINES), choices=ENGINES)
     parser.add_argument("--limit", type=int, default=None, help="mutants per example at most")
     parser.add_argument("--output", type=Path, default=None)
+    parser.add_argument("--page", type=Path, default=None, help="page whose last part is written anew")
     options = parser.parse_args()
-    rate = raw_step_rate()
+    rate = raw_step_rate(len(os.sched_getaffinity(0)))
     rows = [
-        measure(example, engine, options.limit, rate)
+        apart(measure, example, engine, options.limit, rate)
         for example in options.examples
         for engine in options.engines
     ]
     show(rows, rate)
+    if options.page is not None:
+        write_page(options.page, rows, rate)
     if options.output is not None:
         data = {"raw_steps_per_second": rate, "rows": [row.data for row in rows]}
         options.output.write_text(json.dumps(data, indent=1), encoding="utf-8")
+
+
+def write_page(page: Path, rows: list[Row], rate: float) -> None:
+    """Put the table at the end of a page, after the mark."""
+    kept = page.read_text(encoding="utf-8").partition(MARK)[0]
+    lines = [
+        f"{kept}{MARK}",
+        "",
+        f"On {len(os.sched_getaffinity(0))} cores, in one run; bare physics: {rate:,.0f} steps/s on each.",
+        "",
+        f"| {' | '.join(HEADINGS)} |",
+        f"|---|---|{'---:|' * (len(HEADINGS) - 2)}",
+        *(f"| {' | '.join(cells(row))} |" for row in rows),
+        "",
+        *ratios(rows),
+    ]
+    page.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def ratios(rows: list[Row]) -> Iterator[str]:
+    """How many times faster branching is than the other ways."""
+    walls = {(row.example, row.engine): row.wall for row in rows}
+    for example in dict.fromkeys(row.example for row in rows):
+        if (example, "branch") in walls:
+            others = [
+                f"{walls[example, engine] / walls[example, 'branch']:.1f} times as fast as {engine}"
+                for engine in ENGINES[1:]
+                if (example, engine) in walls
+            ]
+            if others:
+                yield f"- {example}: branch is {', '.join(others)}."
+
+
+def apart(function: Callable[..., Row], *arguments: Any) -> Row:
+    """Call it in a process of its own, so that memory is its own as well."""
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        return pool.apply(function, arguments)
 
 
 def measure(example: str, engine: str, limit: int | None, rate: float) -> Row:
@@ -110,7 +162,9 @@ def measure(example: str, engine: str, limit: int | None, rate: float) -> Row:
         request = request_for(folder, **EXAMPLES[example])
         with Workers(request.root, request.arguments, request.jobs) as workers:
             shared = engine in ("branch", "fork")
-            baseline, results = take_baseline(request, workers, Silent(), repetitions=1 if shared else 2)
+            baseline, results = take_baseline(
+                request, workers, Silent(), repetitions=1 if shared else 2, may_share=shared
+            )
             mutants = selected(request, make_plan(baseline, request.vocabulary), baseline).mutants[:limit]
             pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
             outcomes = list(run_pairs(engine, request, baseline, workers, pairs))
@@ -154,11 +208,19 @@ def cpu_seconds() -> float:
     return own.ru_utime + own.ru_stime + children.ru_utime + children.ru_stime
 
 
-def raw_step_rate() -> float:
-    """Physics steps per second of the bare engine on one core: a recorded run, stepped without control."""
-    import mujoco  # noqa: PLC0415  # only this needs it
+def raw_step_rate(cores: int) -> float:
+    """Physics steps per second and core of the bare engine, with as many processes as there are cores.
 
-    from mutabot.cells import Cell  # noqa: PLC0415
+    A recorded run is stepped again without control. All cores are busy, as they are in a campaign: cores
+    that share something are slower together than one alone.
+    """
+    with multiprocessing.get_context("spawn").Pool(cores) as pool:
+        return statistics.mean(pool.map(step_bare, [recorded_inputs()] * cores))
+
+
+def recorded_inputs() -> list[Any]:
+    """Inputs of all servos at every physics step of half the published program."""
+    from mutabot.cells import Cell  # noqa: PLC0415  # only this needs it
 
     cell = Cell(1)
     inputs: list[Any] = []
@@ -169,41 +231,48 @@ def raw_step_rate() -> float:
     cell.gripper.command(1.0)
     cell.wait(1.5)
     cell.arm.home()
+    return inputs
+
+
+def step_bare(inputs: list[Any]) -> float:
+    """Steps per second of wall clock, the best of several times."""
+    import mujoco  # noqa: PLC0415  # only this needs it
+
+    from mutabot.cells import Cell  # noqa: PLC0415
+
     rates = []
-    for _ in range(3):
+    for _ in range(8):
         again = Cell(1).simulation
-        started = time.process_time()
+        started = time.perf_counter()
         for row in inputs:
             again.data.ctrl[:] = row
             mujoco.mj_step(again.model, again.data)
-        rates.append(len(inputs) / (time.process_time() - started))
+        rates.append(len(inputs) / (time.perf_counter() - started))
     return max(rates)
+
+
+def cells(row: Row) -> list[str]:
+    """What stands in the columns of a table."""
+    data = row.data
+    efficiency = "" if data["efficiency"] is None else f"{data['efficiency']:.2f}"
+    steps = "" if row.bound is None else f"{row.simulated * STEPS_PER_SECOND:,.0f}"
+    return [
+        row.example, row.engine, str(row.outcomes), f"{row.wall:.1f}", f"{row.cpu:.1f}", steps,
+        f"{data['per_second']:.1f}", f"{row.memory:.0f}", efficiency,
+    ]  # fmt: skip
 
 
 def show(rows: list[Row], rate: float) -> None:
     """Print the table."""
-    table = Table(title=f"raw physics: {rate:,.0f} steps/s on one core")
-    headings = (
-        "example",
-        "engine",
-        "outcomes",
-        "wall s",
-        "CPU s",
-        "simulated s",
-        "outcomes/s",
-        "peak MB",
-        "efficiency",
-    )
-    for heading in headings:
+    table = Table(title=f"raw physics: {rate:,.0f} steps/s on each core")
+    for heading in HEADINGS:
         table.add_column(heading, justify="left" if heading in ("example", "engine") else "right")
     for row in rows:
-        data = row.data
-        efficiency = "" if data["efficiency"] is None else f"{data['efficiency']:.2f}"
-        table.add_row(
-            row.example, row.engine, str(row.outcomes), f"{row.wall:.1f}", f"{row.cpu:.1f}",
-            f"{row.simulated:.0f}", f"{data['per_second']:.1f}", f"{row.memory:.0f}", efficiency,
-        )  # fmt: skip
-    Console(width=110).print(table)
+        table.add_row(*cells(row))
+    console = Console(width=110)
+    console.print(table)
+    for line in ratios(rows):
+        console.print(line)
 
 
 if __name__ == "__main__":

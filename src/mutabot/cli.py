@@ -19,25 +19,35 @@ import typer
 
 from mutabot.cli_options import (
     ENGINES,
+    FAMILIES,
     All,
     Confirm,
     Engine,
+    Families,
     Fresh,
     Jobs,
     Json,
     MinScore,
+    NoOracle,
+    OnePerSite,
     Only,
+    Order,
+    Pairs,
+    Picture,
     Round,
     Rounds,
+    Sample,
     Seed,
     Selection,
     Skip,
+    Stored,
     Verify,
     Version,
 )
 from mutabot.errors import MutabotError, UsageError, unknown_name_text
 
 if TYPE_CHECKING:
+    from mutabot.analysis.families import Comparison
     from mutabot.campaign.request import Request
     from mutabot.report.progress import Reporter
 
@@ -79,11 +89,17 @@ def init(
 
 
 @app.command(rich_help_panel=_SETUP)
-def check(context: typer.Context, json: Json = False, jobs: Jobs = None, rounds: Rounds = None) -> None:
+def check(
+    context: typer.Context,
+    json: Json = False,
+    jobs: Jobs = None,
+    rounds: Rounds = None,
+    family: Families = None,
+) -> None:
     """Try the whole set-up without running mutants."""
     from mutabot.campaign import run as campaign
 
-    request = _request(context.obj, jobs=jobs, rounds=rounds)
+    request = _request(context.obj, jobs=jobs, rounds=rounds, family=family)
     with _progress() as progress:
         report = campaign.check(request, progress)
     _print_json(report.data) if json else typer.echo("\n".join(report.lines))
@@ -94,7 +110,12 @@ def list_(
     context: typer.Context,
     only: Only = None,
     skip: Skip = None,
+    family: Families = None,
+    order: Order = None,
+    pairs: Pairs = None,
     selection: Selection = None,
+    sample: Sample = None,
+    one_per_site: OnePerSite = False,
     rounds: Rounds = None,
     seed: Seed = None,
     jobs: Jobs = None,
@@ -107,8 +128,9 @@ def list_(
     from mutabot.report.listing import plan_data, print_plan
 
     request = _request(
-        context.obj, only=only, skip=skip, selection=selection, rounds=rounds, seed=seed, jobs=jobs
-    )
+        context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
+        sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
+    )  # fmt: skip
     with _progress() as progress:
         mutants, left_out = plan_only(request, progress)
     if json:
@@ -122,7 +144,12 @@ def run(
     context: typer.Context,
     only: Only = None,
     skip: Skip = None,
+    family: Families = None,
+    order: Order = None,
+    pairs: Pairs = None,
     selection: Selection = None,
+    sample: Sample = None,
+    one_per_site: OnePerSite = False,
     rounds: Rounds = None,
     seed: Seed = None,
     jobs: Jobs = None,
@@ -138,8 +165,9 @@ def run(
     from mutabot.campaign.run import run_campaign
 
     request = _request(
-        context.obj, only=only, skip=skip, selection=selection, rounds=rounds, seed=seed, jobs=jobs,
-        engine=engine, fresh=fresh, verify=verify, confirm=confirm,
+        context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
+        sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
+        fresh=fresh, verify=verify, confirm=confirm,
     )  # fmt: skip
     with _progress() as progress:
         journal_path = run_campaign(request, progress)
@@ -151,6 +179,53 @@ def run(
         max_timeouts=request.configuration.timeout_limit,
         max_unstable=request.configuration.unstable_limit,
     )
+    for line in decision.lines:
+        typer.echo(line, err=True)
+    raise typer.Exit(decision.exit_code)
+
+
+@app.command(rich_help_panel=_RUN)
+def compare(
+    context: typer.Context,
+    family: Families = None,
+    only: Only = None,
+    skip: Skip = None,
+    selection: Selection = None,
+    sample: Sample = None,
+    one_per_site: OnePerSite = False,
+    rounds: Rounds = None,
+    seed: Seed = None,
+    jobs: Jobs = None,
+    engine: Engine = "auto",
+    fresh: Fresh = False,
+    no_oracle: NoOracle = False,
+    picture: Picture = None,
+    stored: Stored = False,
+    json: Json = False,
+) -> None:
+    """Compare families of operators: cost, ends, scores, and what their mutants can tell.
+
+    Mutants run against every test that reaches them, into a journal of their own.
+    """
+    from mutabot import cli_compare
+    from mutabot.analysis.gate import decide
+    from mutabot.campaign.request import COMPARISON
+    from mutabot.report.picture_file import check_picture
+
+    if picture is not None:
+        check_picture(picture)
+    if stored:
+        found = cli_compare.read(_journal_path(context.obj, COMPARISON).parent)
+    else:
+        request = _request(
+            context.obj, only=only, skip=skip, family=family or FAMILIES, order=1, selection=selection,
+            sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
+            fresh=fresh, configured_selection=False,
+        )  # fmt: skip
+        with _progress() as progress:
+            found = cli_compare.run(request, progress, no_oracle=no_oracle)
+    _show_comparison(found, picture, json=json)
+    decision = decide(found.results)
     for line in decision.lines:
         typer.echo(line, err=True)
     raise typer.Exit(decision.exit_code)
@@ -179,7 +254,11 @@ def replay(
         if round is not None and round > found.rounds:
             raise UsageError(f"there is no round {round}; the campaign has {found.rounds}")
         rounds = range(found.rounds) if round is None else [round - 1]
-        request = _request(path.parent.parent, rounds=found.rounds, seed=found.meta.get("seed"), jobs=jobs)
+        request = _request(
+            path.parent.parent, rounds=found.rounds, seed=found.meta.get("seed"), jobs=jobs,
+            family=found.meta.get("families"), order=found.meta.get("order"),
+            every_test=found.meta.get("every_test"), no_oracle=found.meta.get("no_oracle"),
+        )  # fmt: skip
         with _progress() as progress:
             replayed = replay_one(request, journal, chosen, rounds, progress)
     if json:
@@ -222,8 +301,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # a terminal that cannot show a sign gets "?", not an error
             stream.reconfigure(errors="replace")
+    arguments = sys.argv[1:] if arguments is None else arguments
     try:
-        arguments = sys.argv[1:] if arguments is None else arguments
         code = app(list(arguments), prog_name="mutabot", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
         code = INTERRUPTED
@@ -233,7 +312,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         return _usage_or_crash(error)
     if code == INTERRUPTED:  # also typer itself turns Ctrl-C into this code
-        typer.echo("interrupted; `mutabot results` shows what is there", err=True)
+        command = "compare --results" if "compare" in arguments else "results"
+        typer.echo(f"interrupted; `mutabot {command}` shows what is there", err=True)
     return code if isinstance(code, int) else 0
 
 
@@ -254,15 +334,25 @@ def _usage_or_crash(error: Exception) -> int:
     return INTERNAL_ERROR
 
 
-def _request(project: Path, *, selection: Path | None = None, engine: str = "auto", **given: Any) -> Request:
+def _request(
+    project: Path,
+    *,
+    selection: Path | None = None,
+    sample: str | None = None,
+    engine: str = "auto",
+    configured_selection: bool = True,
+    **given: Any,
+) -> Request:
+    from mutabot.campaign import sampling
     from mutabot.campaign.configuration import load_configuration
     from mutabot.campaign.request import Request
     from mutabot.vocabulary import load
 
     if engine not in ENGINES:
         raise UsageError(unknown_name_text("engine", engine, ENGINES))
+    size = sampling.Sample.parse(sample) if sample is not None else None
     configuration = load_configuration(project)
-    if selection is None and configuration.selection is not None:
+    if selection is None and configuration.selection is not None and configured_selection:
         selection = configuration.root / configuration.selection
     elif selection is not None:
         selection = _found(selection, configuration.root)
@@ -279,7 +369,23 @@ def _request(project: Path, *, selection: Path | None = None, engine: str = "aut
         fresh=bool(given.get("fresh")),
         verify=given.get("verify") or 0,
         confirm=bool(given.get("confirm")),
+        families=_families(given.get("family")) or configuration.families,
+        sample=size,
+        one_per_site=bool(given.get("one_per_site")),
+        order=given.get("order") or configuration.order,
+        pairs=given.get("pairs") or configuration.pairs,
+        every_test=bool(given.get("every_test")),
+        no_oracle=bool(given.get("no_oracle")),
     )
+
+
+def _families(given: Sequence[str] | None) -> tuple[str, ...]:
+    """The families of the command line, in the order of their numbers."""
+    named = [name.strip() for text in given or () for name in text.split(",") if name.strip()]
+    for name in named:
+        if name not in FAMILIES:
+            raise UsageError(unknown_name_text("family", name, FAMILIES))
+    return tuple(family for family in FAMILIES if family in named)
 
 
 def _found(selection: Path, root: Path) -> Path:
@@ -290,10 +396,12 @@ def _found(selection: Path, root: Path) -> Path:
     raise UsageError(f"there is no selection file {selection}, neither here nor in {root}")
 
 
-def _journal_path(project: Path) -> Path:
-    """The journal of the project, also from a folder inside it."""
+def _journal_path(project: Path, name: str | None = None) -> Path:
+    """A journal of the project, that of ``run`` if None, also from a folder inside it."""
+    from mutabot.campaign.request import HOME, JOURNAL
+
     folders = (project.resolve(), *project.resolve().parents)
-    paths = [folder / ".mutabot" / "journal.sqlite" for folder in folders]
+    paths = [folder / HOME / (name or JOURNAL) for folder in folders]
     return next((path for path in paths if path.is_file()), paths[0])
 
 
@@ -311,6 +419,20 @@ def _show_results(path: Path, *, json: bool, everything: bool = False) -> Any:
     else:
         print_results(make_console(), found, everything=everything)
     return found
+
+
+def _show_comparison(comparison: Comparison, picture: Path | None, *, json: bool) -> None:
+    from mutabot.report.comparison_json import comparison_data
+    from mutabot.report.console import make_console
+    from mutabot.report.picture_file import write_picture
+    from mutabot.report.side_by_side import print_comparison
+
+    if json:
+        _print_json(comparison_data(comparison))
+    else:
+        print_comparison(make_console(), comparison)
+    if picture is not None:
+        write_picture(comparison, picture)
 
 
 def _print_json(data: Any) -> None:

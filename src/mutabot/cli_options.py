@@ -10,6 +10,7 @@ import typer
 from mutabot import __version__
 
 ENGINES = ("auto", "branch", "replay")
+FAMILIES = ("robot", "classical", "text")
 
 
 def _print_version(wanted: bool) -> None:
@@ -32,13 +33,47 @@ Only = Annotated[
     ),
 ]
 Skip = Annotated[list[str] | None, typer.Option("--skip", metavar="WHICH", help="All but these, likewise.")]
+Families = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--family",
+        metavar="NAME",
+        help=f"Families of mutants: {', '.join(FAMILIES)}. Repeatable, or with commas.",
+    ),
+]
+Order = Annotated[
+    int | None, typer.Option("--order", min=1, max=2, help="Mutants at once: 2 plants pairs of them.")
+]
+Pairs = Annotated[int | None, typer.Option("--pairs", min=1, help="How many pairs --order 2 plants.")]
 Selection = Annotated[
     Path | None, typer.Option("--selection", metavar="FILE", help="File with one mutant id per line.")
+]
+Sample = Annotated[
+    str | None,
+    typer.Option(
+        "--sample",
+        metavar="SIZE",
+        help="Only a random sample: 10% of each family and role, or 50 of each family.",
+    ),
+]
+OnePerSite = Annotated[
+    bool, typer.Option("--one-per-site", help="Only one mutant per family and site, chosen at random.")
 ]
 Rounds = Annotated[int | None, typer.Option("--rounds", min=1, help="Repetitions, each with its own seeds.")]
 Seed = Annotated[int | None, typer.Option("--seed", min=0, help="The campaign's seed.")]
 Jobs = Annotated[int | None, typer.Option("-j", "--jobs", min=1, help="Processes at a time.")]
 Engine = Annotated[str, typer.Option("--engine", help=f"What runs the mutants: {' or '.join(ENGINES)}.")]
+NoOracle = Annotated[
+    bool,
+    typer.Option(
+        "--no-oracle", help="Run a second time with every assertion off: what a score is then worth."
+    ),
+]
+Picture = Annotated[
+    Path | None,
+    typer.Option("--picture", metavar="FILE", help="Draw the ends as bars: FILE.svg or FILE.png."),
+]
+Stored = Annotated[bool, typer.Option("--results", help="Run nothing; show what the last comparison found.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Run everything again, also outcomes that still hold.")]
 Verify = Annotated[
     int,

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 
 from mutabot.analysis.score import KillRate, RoundScores
-from mutabot.analysis.statistics import crossed, student_quantile, wilson
+from mutabot.analysis.statistics import crossed, sampled, student_quantile, wilson
 from mutabot.model import By, Outcome, Verdict
 
 CAMPAIGNS = 1000
@@ -183,3 +183,67 @@ def test_scores_carry_their_intervals() -> None:
 def test_a_kill_rate_has_an_interval_from_two_rounds_on() -> None:
     assert KillRate(3, 5).interval == wilson(3, 5)
     assert KillRate(1, 1).interval is None
+
+
+def sample_coverage(
+    size: int, share: float, killed: float, rounds: int, *, noise: float = 0.0, invalid: float = 0.0
+) -> float:
+    """How often the interval from a sample holds the score of the whole list it was drawn from."""
+    generator = random.Random(11)
+    held = 0
+    for _ in range(CAMPAIGNS):
+        rows: list[list[float | None]] = []
+        for _ in range(size):
+            value, is_valid = generator.random() < killed, generator.random() >= invalid
+            flips = [generator.random() < noise for _ in range(rounds)]
+            rows.append([float(value ^ flip) if is_valid else None for flip in flips])
+        valid = [row for row in rows if row[0] is not None]
+        truth = math.fsum(value or 0.0 for row in valid for value in row) / (rounds * len(valid))
+        found = sampled(generator.sample(rows, round(size * share)), size)
+        held += found is None or found.low - 1e-9 <= truth <= found.high + 1e-9
+    return held / CAMPAIGNS
+
+
+@pytest.mark.parametrize(
+    ("size", "share", "killed", "rounds", "noise", "invalid"),
+    [
+        (40, 0.25, 0.8, 1, 0.0, 0.0),
+        (100, 0.1, 0.5, 1, 0.0, 0.0),
+        (100, 0.5, 0.2, 5, 0.05, 0.0),
+        (100, 0.25, 0.95, 1, 0.0, 0.0),
+        (100, 0.25, 0.95, 5, 0.05, 0.0),
+        (400, 0.1, 0.95, 5, 0.05, 0.0),
+        (400, 0.25, 0.5, 5, 0.0, 0.3),
+        (400, 0.5, 0.8, 1, 0.0, 0.5),
+    ],
+)
+def test_the_interval_of_a_sample_covers_what_it_says(
+    size: int, share: float, killed: float, rounds: int, noise: float, invalid: float
+) -> None:
+    assert sample_coverage(size, share, killed, rounds, noise=noise, invalid=invalid) >= 0.94 - MARGIN
+
+
+def test_a_sample_of_all_mutants_leaves_nothing_open() -> None:
+    table = campaign(bimodal, 0.5, 20, 5, random.Random(3), missing=0.2)
+    found = sampled(table, 20)
+    assert found is not None
+    assert found.low == found.high
+    outside = crossed(table)
+    assert outside is not None
+    assert outside.low < found.low < outside.high
+
+
+def test_the_larger_the_part_of_the_list_the_narrower_the_interval() -> None:
+    table = [[1.0]] * 15 + [[0.0]] * 5
+    widths = []
+    for population in (10_000, 100, 40, 21):
+        found = sampled(table, population)
+        assert found is not None
+        widths.append(found.high - found.low)
+    assert widths == sorted(widths, reverse=True)
+    assert widths[-1] < 0.25 * widths[0]  # in theory the root of 1/21, 0.22, where Wilson's is symmetric
+
+
+@pytest.mark.parametrize("table", [[], [[1.0]], [[None], [1.0]]])
+def test_with_one_drawn_mutant_nothing_is_said_about_all(table: list[list[float | None]]) -> None:
+    assert sampled(table, 50) is None

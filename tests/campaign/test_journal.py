@@ -16,7 +16,7 @@ import pytest
 
 from analysis import samples
 from mutabot.campaign.database import connect
-from mutabot.campaign.journal import PREVIOUS, Journal, Kept
+from mutabot.campaign.journal import Journal, Kept, previous_of
 from mutabot.campaign.lock import is_written
 from mutabot.errors import JournalError
 from mutabot.model import By, Outcome, TestEnd, Verdict
@@ -100,8 +100,12 @@ def test_a_new_campaign_keeps_the_journal_of_the_last_complete_one(path: Path) -
         with Journal.create(path, meta={"seed": seed}) as journal:
             journal.add_outcome(KILLED)
             journal.finish(end)
-    assert {file.name for file in path.parent.iterdir()} == {path.name, f"{path.name}.lock", PREVIOUS}
-    with Journal.open(path) as journal, Journal.open(path.with_name(PREVIOUS)) as previous:
+    assert {file.name for file in path.parent.iterdir()} == {
+        path.name,
+        f"{path.name}.lock",
+        previous_of(path).name,
+    }
+    with Journal.open(path) as journal, Journal.open(previous_of(path)) as previous:
         assert (journal.meta()["seed"], previous.meta()["seed"]) == (4, 2)
         assert previous.outcomes() == [KILLED]
 
@@ -199,7 +203,7 @@ def test_a_journal_of_a_campaign_killed_before_it_began_is_no_obstacle(path: Pat
     begin(path)
     path.unlink()
     connect(path).close()
-    with Journal.create(path, meta={}) as journal, Journal.open(path.with_name(PREVIOUS)) as previous:
+    with Journal.create(path, meta={}) as journal, Journal.open(previous_of(path)) as previous:
         assert journal.outcomes() == []
         assert previous.meta() == {"seed": 1}
 
@@ -215,7 +219,7 @@ def test_what_is_no_journal_of_this_version_is_moved_aside(path: Path, content: 
     before = path.read_bytes()
     with Journal.create(path, meta={}) as journal:
         assert journal.kept() == {}
-    assert path.with_name(PREVIOUS).read_bytes() == before
+    assert previous_of(path).read_bytes() == before
 
 
 def test_readers_see_each_outcome_while_the_writer_is_active(path: Path) -> None:

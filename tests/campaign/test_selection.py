@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from analysis.samples import BY_TO, LEFT_OUT, MUTANTS, NEGATE, NOISE, REVERSE, SKIP
+from mutabot import classical
 from mutabot.campaign.selection import is_like, select
 from mutabot.errors import SelectionError
+from mutabot.operators import registry
 
 
 @pytest.mark.parametrize(
@@ -82,3 +85,22 @@ def test_a_selection_file_that_cannot_be_read_is_a_usage_error(tmp_path: Path, c
 def test_brackets_in_ids_are_just_brackets() -> None:
     assert is_like("a.py:f:read#1:[0].x:*", "a.py:f:read#1:[0].x:negate")
     assert not is_like("a.py:[ab]", "a.py:a")
+
+
+OPERATORS = [
+    *(("robot", name) for name in registry.names()),
+    *((family, name) for family in ("classical", "text") for name in classical.names(family)),
+]
+
+
+def test_operators_of_all_families_can_be_chosen_by_name() -> None:
+    mutants = [
+        replace(REVERSE, number=number, family=family, operator=name, quantity=f"q{number}")
+        for number, (family, name) in enumerate(OPERATORS, start=1)
+    ]
+    assert len({name for _, name in OPERATORS}) == len(OPERATORS) > 15
+    for mutant in mutants:
+        assert select(mutants, [mutant.operator]) == [mutant]
+        assert mutant not in select(mutants, (), [mutant.operator])
+    for family in ("robot", "classical", "text"):
+        assert select(mutants, [family]) == [one for one in mutants if one.family == family]

@@ -19,7 +19,7 @@ from mutabot.cli import main
 from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
 
-COMMANDS = ("init", "check", "list", "run", "results", "show", "replay")
+COMMANDS = ("init", "check", "list", "run", "compare", "results", "show", "replay")
 
 
 @pytest.fixture
@@ -147,6 +147,25 @@ def test_options_of_a_run_reach_the_campaign(fake: Campaign) -> None:
     assert (request.only, request.skip) == (("reverse", "skip"), ("3",))
     assert (request.rounds, request.seed, request.jobs) == (4, 0, 3)
     assert (request.engine, request.selection) == ("replay", Path("s.txt"))
+
+
+def test_a_sample_reaches_the_campaign(fake: Campaign) -> None:
+    assert main(["run", "--sample", "10%", "--one-per-site"]) == 0
+    assert (fake.request.sample.text, fake.request.one_per_site) == ("10%", True)
+    assert main(["run"]) == 0
+    assert (fake.request.sample, fake.request.one_per_site) == (None, False)
+
+
+@pytest.mark.parametrize("command", ["run", "list"])
+@pytest.mark.parametrize("size", ["0%", "150%", "-3", "abc", "0", ""])
+def test_an_absurd_sample_is_2_before_anything_runs(
+    fake: Campaign, command: str, size: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, f"--sample={size}"]) == 2
+    err = capsys.readouterr().err
+    assert "sample" in err
+    assert "Traceback" not in err
+    assert fake.request is None
 
 
 def test_without_options_a_run_does_what_the_configuration_says(fake: Campaign) -> None:

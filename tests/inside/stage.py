@@ -131,8 +131,7 @@ class Stage:
         )
         session = self.session(mutant)
         result = self.run(session)
-        assert session.activation is not None
-        return result, session.activation
+        return result, session.activations[0]
 
 
 def _site(span: Span) -> Site:

@@ -34,6 +34,17 @@ SECOND_LOOK: dict[str, Any] = {
     "confirmation": {"checked": 3, "unstable": 1},
     "flaky": {"tests": ["test_a in round 1: failed and passed in equal runs"], "known": 4},
 }
+DRAWING = {
+    "drawing": {
+        "sample": "10%",
+        "one_per_site": True,
+        "selected": 60,
+        "strata": [
+            {"family": "robot", "role": "program", "population": 30, "drawn": 3},
+            {"family": "robot", "role": "oracle", "population": 20, "drawn": 2},
+        ],
+    }
+}
 DOCUMENT = Path(__file__).parents[2] / "docs" / "json.md"
 
 
@@ -90,6 +101,19 @@ def test_a_second_look_is_in_it(tmp_path: Path) -> None:
     assert (without["verification"], without["confirmation"], without["flaky"]) == (None, None, [])
 
 
+def test_a_sample_carries_what_it_says_about_all(tmp_path: Path) -> None:
+    found = data(tmp_path, **DRAWING)
+    assert found["sample"] == {"size": "10%", "one_per_site": True, "selected": 60}
+    program = found["groups"][0]
+    assert (program["mutants"], program["population"]) == (3, 30)
+    assert 0 <= program["sample_interval"]["low"] < program["score"] < program["sample_interval"]["high"]
+    assert program["sample_check_interval"]["level"] == 0.95
+    assert "drawing" not in found["meta"]
+    whole = data(tmp_path)
+    assert (whole["sample"], whole["groups"][0]["population"]) == (None, None)
+    assert whole["groups"][0]["sample_interval"] is None
+
+
 def test_means_carry_their_interval(tmp_path: Path) -> None:
     group = data(tmp_path)["groups"][0]
     assert 0 <= group["interval"]["low"] < group["score"] < group["interval"]["high"] <= 1
@@ -120,10 +144,11 @@ def test_the_plan_has_the_same_keys_for_a_mutant(tmp_path: Path) -> None:
 
 def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
     documented = set(re.findall(r"^\| `(\w+)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE))
-    found = data(tmp_path, **SECOND_LOOK)
+    found = data(tmp_path, **SECOND_LOOK, **DRAWING)
     parts = [found, *found["mutants"], *found["groups"], *found["rounds"], *found["left_out"]]
     parts += [
         *found["controls"],
+        found["sample"],
         found["verification"],
         *found["verification"]["disagreements"],
         found["confirmation"],

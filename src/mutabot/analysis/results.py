@@ -8,6 +8,7 @@ from typing import Any
 
 from mutabot.campaign.journal import BaselineTest, ControlEnd, Journal
 from mutabot.campaign.lock import is_written
+from mutabot.campaign.sampling import DRAWING, Drawing
 from mutabot.campaign.verify import CONFIRMATION, FLAKY, VERIFICATION, Flaky, Verification
 from mutabot.errors import SelectionError, unknown_name_text
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict, from_data
@@ -76,6 +77,7 @@ class Results:
         verification: what ``--verify`` found; None if it was not asked for.
         confirmation: ``checked`` and ``unstable`` outcomes of ``--confirm``; None if it was not asked for.
         flaky: tests that cannot be relied on.
+        drawing: how the mutants were drawn from those selected; None if they are all.
     """
 
     meta: Mapping[str, Any]
@@ -90,6 +92,7 @@ class Results:
     verification: Verification | None = None
     confirmation: Mapping[str, int] | None = None
     flaky: Flaky = field(default_factory=Flaky)
+    drawing: Drawing | None = None
 
     @property
     def survivors(self) -> list[MutantResult]:
@@ -139,6 +142,7 @@ def read_results(journal: Journal) -> Results:
     rounds = _number_of_rounds(meta, outcomes)
     outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
     vocabulary = journal.vocabulary
+    drawing = from_data(Drawing, meta[DRAWING]) if DRAWING in meta else None
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
     def result(mutant: Mutant) -> MutantResult:
@@ -151,7 +155,7 @@ def read_results(journal: Journal) -> Results:
         state=_state(journal),
         rounds=rounds,
         mutants=tuple(result(mutant) for mutant in mutants),
-        groups=groups_of(mutants, outcomes, rounds),
+        groups=groups_of(mutants, outcomes, rounds, drawing),
         all=RoundScores.of(outcomes, rounds),
         left_out=tuple(journal.left_out()),
         controls=tuple(journal.controls()),
@@ -159,6 +163,7 @@ def read_results(journal: Journal) -> Results:
         verification=from_data(Verification, meta[VERIFICATION]) if VERIFICATION in meta else None,
         confirmation=meta.get(CONFIRMATION),
         flaky=from_data(Flaky, meta[FLAKY]) if FLAKY in meta else Flaky(),
+        drawing=drawing,
     )
 
 

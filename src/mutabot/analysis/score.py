@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from statistics import fmean
 
+from mutabot.campaign.sampling import Drawing
 from mutabot.model import By, Mutant, Outcome, Verdict
 
-from .statistics import Interval, crossed, wilson
+from .statistics import Interval, crossed, sampled, wilson
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,25 +72,35 @@ class RoundScores:
         rounds: one score per round.
         interval, check_interval: of the mean score and of the mean check score, over rounds and mutants; None
             with fewer than two rounds or two mutants that were valid.
+        sample_interval, sample_check_interval: of the scores that all mutants would have had in these rounds,
+            where only a sample of them was run; None if all were, or if fewer than two were valid.
     """
 
     rounds: tuple[Score, ...]
     interval: Interval | None = None
     check_interval: Interval | None = None
+    sample_interval: Interval | None = None
+    sample_check_interval: Interval | None = None
 
     @classmethod
-    def of(cls, outcomes: Iterable[Outcome], rounds: int) -> RoundScores:
-        """The scores of these outcomes in rounds 0 … ``rounds`` − 1."""
+    def of(cls, outcomes: Iterable[Outcome], rounds: int, *, population: int | None = None) -> RoundScores:
+        """The scores of these outcomes in rounds 0 … ``rounds`` − 1.
+
+        ``population`` is how many mutants those that were run are a random sample of; None if they are all.
+        """
         by_round: list[list[Outcome]] = [[] for _ in range(rounds)]
         by_mutant: dict[str, list[Outcome | None]] = {}
         for outcome in outcomes:
             by_round[outcome.round].append(outcome)
             by_mutant.setdefault(outcome.mutant, [None] * rounds)[outcome.round] = outcome
-        rows = by_mutant.values()
+        killed = [[_share(one, _is_killed) for one in row] for row in by_mutant.values()]
+        found = [[_share(one, _is_found) for one in row] for row in by_mutant.values()]
         return cls(
             tuple(Score.of(one) for one in by_round),
-            crossed([[_share(one, _is_killed) for one in row] for row in rows]),
-            crossed([[_share(one, _is_found) for one in row] for row in rows]),
+            crossed(killed),
+            crossed(found),
+            sampled(killed, population) if population is not None else None,
+            sampled(found, population) if population is not None else None,
         )
 
     @property
@@ -149,25 +160,40 @@ class Group:
         role: ``program`` or ``oracle``.
         mutants: number of planned mutants.
         scores: round by round.
+        population: number of mutants that these are a random sample of; None if they are all.
     """
 
     family: str
     role: str
     mutants: int
     scores: RoundScores
+    population: int | None = None
 
 
-def groups_of(mutants: Sequence[Mutant], outcomes: Iterable[Outcome], rounds: int) -> tuple[Group, ...]:
-    """One group per family and role, in the order in which they first occur in the plan."""
+def groups_of(
+    mutants: Sequence[Mutant], outcomes: Iterable[Outcome], rounds: int, drawing: Drawing | None = None
+) -> tuple[Group, ...]:
+    """One group per family and role, in the order in which they first occur in the plan.
+
+    ``drawing`` says how the mutants were drawn, if they were.
+    """
     key_of = {mutant.id: (mutant.family, mutant.site.role.value) for mutant in mutants}
     sizes = Counter(key_of.values())
     found: dict[tuple[str, str], list[Outcome]] = {key: [] for key in key_of.values()}
     for outcome in outcomes:
         found[key_of[outcome.mutant]].append(outcome)
     return tuple(
-        Group(family, role, sizes[family, role], RoundScores.of(those, rounds))
+        _group(family, role, sizes[family, role], those, rounds, drawing)
         for (family, role), those in found.items()
     )
+
+
+def _group(
+    family: str, role: str, size: int, outcomes: Iterable[Outcome], rounds: int, drawing: Drawing | None
+) -> Group:
+    stratum = drawing.stratum(family, role) if drawing is not None and drawing.sample is not None else None
+    population = stratum.population if stratum is not None else None
+    return Group(family, role, size, RoundScores.of(outcomes, rounds, population=population), population)
 
 
 def _mean(scores: Sequence[float | None]) -> float | None:

@@ -2,9 +2,10 @@
 
 ``wilson`` is for one mutant: its rounds are independent draws. ``crossed`` is for a score: every cell of the
 table mutants × rounds shares its mutant with a row and its round with a column, so cells are not independent
-and a plain binomial interval would be far too narrow (rounds of one mutant mostly agree).
+and a plain binomial interval would be far too narrow (rounds of one mutant mostly agree). ``sampled`` is for
+the score of a finite list of mutants of which only a random sample was run, in these very rounds.
 
-Both are tested by simulation, see ``benchmarks/interval_coverage.py`` and docs/statistics.md.
+All are tested by simulation, see ``benchmarks/interval_coverage.py`` and docs/statistics.md.
 """
 
 from __future__ import annotations
@@ -84,6 +85,45 @@ def crossed(table: Sequence[Sequence[float | None]], level: float = LEVEL) -> In
     return _wilson(cells.score, min(independent, cells.count), normal, level)
 
 
+def sampled(
+    table: Sequence[Sequence[float | None]], population: int, level: float = LEVEL
+) -> Interval | None:
+    """The interval of the score that *all* mutants would have had, from a random sample of them.
+
+    The rounds are given: it is the score of the same campaign without sampling. As in ``crossed``, the
+    interval is Wilson's with the number of independent observations that gives the score's estimated
+    variance, here of simple random sampling without replacement,
+
+        V = (1 − n/N) MSm / MR
+
+    with n of N mutants drawn, the score linearised where cells are missing, and Student's t with n − 1
+    degrees of freedom (Cochran, "Sampling Techniques", 1977: chapter 2 for the finite population, chapter 6
+    for the ratio, since only the run tells which of the drawn mutants are valid). It is never narrower than
+    if each valid mutant had been decided by one throw: a sample in which all mutants are nearly alike has
+    often missed the few that are not. When n = N the sample is all there is, and the interval is the score
+    alone.
+
+    Args:
+        table: one row per drawn mutant, as for ``crossed``; also those that were never valid.
+        population: how many mutants the sample was drawn from.
+        level: nominal coverage.
+
+    Returns:
+        The interval, or None with fewer than two mutants that were valid in any round.
+    """
+    cells = _Cells.of(table, least_rounds=1)
+    if cells is None:
+        return None
+    left = max(0.0, 1 - len(table) / population)
+    if left == 0.0:
+        return Interval(cells.score, cells.score, level)
+    normal = NormalDist().inv_cdf(0.5 + level / 2)
+    student = student_quantile(0.5 + level / 2, cells.mutants - 1)
+    variance = left * cells.variance_of_mutants()
+    independent = cells.smoothed * (1 - cells.smoothed) / variance * (normal / student) ** 2
+    return _wilson(cells.score, min(independent, cells.mutants / left), normal, level)
+
+
 @dataclass(frozen=True, slots=True)
 class _Cells:
     """The valid cells of a table of mutants by rounds.
@@ -99,7 +139,7 @@ class _Cells:
     sizes: Mapping[int, int]
 
     @classmethod
-    def of(cls, table: Sequence[Sequence[float | None]]) -> _Cells | None:
+    def of(cls, table: Sequence[Sequence[float | None]], *, least_rounds: int = 2) -> _Cells | None:
         rows = [
             {number: value for number, value in enumerate(row) if value is not None}
             for row in table
@@ -109,7 +149,7 @@ class _Cells:
         for row in rows:
             for number, value in row.items():
                 columns.setdefault(number, []).append(value)
-        if len(rows) < 2 or len(columns) < 2:
+        if len(rows) < 2 or len(columns) < least_rounds:
             return None
         means = {number: fmean(values) for number, values in columns.items()}
         return cls(rows, means, {number: len(values) for number, values in columns.items()})

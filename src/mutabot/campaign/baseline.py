@@ -11,11 +11,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.errors import BaselineError, NothingToDoError
-from mutabot.model import Budget, Site, SiteSeen, TestEnd
+from mutabot.model import Budget, Instrumentation, Mutant, ProgramText, SiteSeen, TestEnd
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 
 from .comparison import Event, Observation, compare
+from .places import Place
+from .program_text import ProgramTexts, read_texts
 from .request import Progress, Request
 from .sites import Sources
 from .workers import Result, Task, Workers
@@ -23,22 +25,6 @@ from .workers import Result, Task, Workers
 REPETITIONS = 2
 #: operations and simulated seconds that a test may use beyond its multiple of the baseline
 SPARE_OPERATIONS, SPARE_SIMULATED = 200, 10.0
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Place:
-    """Where and what a mutant can act on: a site, an operation, a text command."""
-
-    site: Site
-    operation: str
-    pattern: str | None = None
-
-    @property
-    def key(self) -> str:
-        """The same place in words, equal between processes."""
-        span = self.site.span
-        columns = f"{span.line}:{span.column}-{span.end_line}:{span.end_column}"
-        return f"{span.file}:{columns} {self.operation} {self.pattern or ''}".rstrip()
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +60,7 @@ class Baseline:
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
         skipped: number of tests that skipped themselves.
         startup: seconds from a worker's start to the end, less the tests; the longest.
+        program: the program text, if a family of mutants needs it.
     """
 
     tests: list[list[str]] = field(default_factory=list)
@@ -87,6 +74,7 @@ class Baseline:
     dependent: set[tuple[str, ...]] = field(default_factory=set)
     skipped: int = 0
     startup: float = 0.0
+    program: ProgramTexts = field(default_factory=ProgramTexts)
 
     @property
     def places(self) -> list[Place]:
@@ -100,6 +88,15 @@ class Baseline:
         """
         tests = tuple(self.reaching.get((round, place), ()))
         return tuple(self.tests[round]) if tests in self.dependent else tests
+
+    def judges(self, round: int, mutant: Mutant) -> tuple[str, ...]:
+        """The tests that judge a mutant: those that reach all that it consists of."""
+        selections = [self.selection(round, Place.of(single)) for single in mutant.singles]
+        first, *others = selections
+        tests = tuple(test for test in first if all(test in other for other in others))
+        if others and any(tuple(self.tests[round]) == other for other in selections):
+            return tuple(self.tests[round]) if tests else ()
+        return tests
 
     def judge_by_whole_suite(self, round: int, test: str) -> None:
         """A test passes only after others: no selection with it can be relied on by itself."""
@@ -147,10 +144,13 @@ def take_baseline(
     Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
     tests, BaselineError when tests fail.
     """
+    texts, refused = read_texts(request.root, request.configuration.program, request.families)
+    for file, why in refused.items():
+        progress.note(f"no mutants of the text of {file}: {why}")
     load_all()  # a broken plug-in is told now rather than after the baseline
     progress.stage("baseline", request.rounds * repetitions)
     results: dict[tuple[int, int], Result] = {}
-    for result in workers.run(_tasks(request, repetitions, may_share)):
+    for result in workers.run(_tasks(request, repetitions, texts, may_share)):
         run: _Run = result.task.key
         results[run.round, run.repetition] = result
         _refuse(result)
@@ -160,16 +160,25 @@ def take_baseline(
     for round in range(request.rounds):
         runs = [results[round, repetition] for repetition in range(repetitions)]
         _add_round(baseline, request, sources, round, runs)
+    if texts:
+        first = {round: results[round, 0] for round in range(request.rounds)}
+        baseline.program = ProgramTexts.of(texts, first)
+        _add_text_places(baseline)
     if not any(baseline.tests):
         raise NothingToDoError(_no_tests(baseline))
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
 
 
-def _tasks(request: Request, repetitions: int, may_share: bool) -> Iterator[Task]:
+def _tasks(
+    request: Request, repetitions: int, texts: tuple[ProgramText, ...], may_share: bool
+) -> Iterator[Task]:
+    """The second run of a round is that of the text as it stands: looking at it must change nothing."""
+    recording = Instrumentation(texts, record=True) if texts else None
     for repetition in range(repetitions):
         for round in range(request.rounds):
             inspect = (round, repetition) == (0, 0)
-            job = request.job(round, record=True, inspect=inspect)
+            text = recording if repetition == 0 else None
+            job = request.job(round, record=True, inspect=inspect, instrumentation=text)
             yield Task(_Run(round, repetition), job, startup=300.0, may_share=may_share)
 
 
@@ -289,6 +298,16 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
                 tests.append(end.test)
     for place, tests in reaching.items():
         baseline.reaching[round, place] = sorted(tests, key=lambda test: _cost(baseline.ends[round, test]))
+
+
+def _add_text_places(baseline: Baseline) -> None:
+    """Which tests reach which place; what is evaluated before the tests, or at import, is there for all."""
+    for (round, place), reached in baseline.program.reached.items():
+        if place in baseline.program.early:
+            baseline.reaching[round, place] = baseline.by_cost(round)
+        else:
+            tests = set(reached)
+            baseline.reaching[round, place] = [test for test in baseline.by_cost(round) if test in tests]
 
 
 def _cost(end: TestEnd) -> tuple[float, int]:

@@ -14,6 +14,7 @@ from mutabot.model import (
     BranchDied,
     BranchEnd,
     Branching,
+    Instrumentation,
     Mutant,
     MutatedCall,
     Outcome,
@@ -23,9 +24,10 @@ from mutabot.model import (
 )
 from mutabot.model.job import Line
 
-from .baseline import Baseline, Place, death, observation, place_of
+from .baseline import Baseline, death, observation, place_of
 from .comparison import Observation, compare
 from .judge import Death, Run, judge
+from .places import Place
 from .replay import Pair, wall_limit, without_tests
 from .request import Request
 from .sites import Sources
@@ -41,12 +43,14 @@ class Remainder:
 
     Attributes:
         pairs: mutants and rounds.
+        early: mutants that act while the program is imported, before a trunk could branch.
         reasons: test to why it was not safe to fork in it.
         suspects: (round, test) that passed in the baseline, but not in a trunk.
         notes: what else went wrong, in words.
     """
 
     pairs: list[Pair] = field(default_factory=list)
+    early: list[Pair] = field(default_factory=list)
     reasons: dict[str, str] = field(default_factory=dict)
     suspects: list[tuple[int, str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -70,15 +74,21 @@ def branch(
     """
     trunks: dict[int, _Trunk] = {}
     for mutant, round in pairs:
-        place = Place(mutant.site, mutant.operation, mutant.pattern)
-        tests = (only or {}).get(mutant.id) or baseline.selection(round, place)
+        tests = (only or {}).get(mutant.id) or baseline.judges(round, mutant)
         if not tests:
             yield without_tests(baseline, mutant, round)
+            continue
+        if baseline.program.is_early(mutant):
+            remainder.early.append((mutant, round))
             continue
         if round not in trunks:
             trunks[round] = _Trunk(request, baseline, round)
         trunks[round].add(mutant, tests)
-    tasks = (trunk.task(workers.pool.descriptors, at_start=at_start) for trunk in trunks.values())
+    # the text of all rounds alike, so that one fork server can serve them
+    text = baseline.program.instrumentation(
+        {one.id: one for trunk in trunks.values() for one in trunk.mutants}.values()
+    )
+    tasks = (trunk.task(workers.pool.descriptors, text, at_start=at_start) for trunk in trunks.values())
     for event in workers.events(tasks):
         if isinstance(event, Result):
             yield from trunks[event.task.job.round].finish(event, remainder)
@@ -95,8 +105,9 @@ class _Branches:
         mutant: the mutant.
         tests: the tests that judge it, in order.
         ends, observations: its tests that have ended.
-        death: set if one of its branches died.
-        acted, in_mutated_call: what its last branch said.
+        deaths: set for the tests in which its branch died.
+        acted: tests in which it has changed something.
+        calling: tests in which it was in the midst of a mutated call when it was last heard of.
         shared: simulated seconds its branches inherited.
     """
 
@@ -104,14 +115,13 @@ class _Branches:
     tests: tuple[str, ...]
     ends: dict[str, TestEnd] = field(default_factory=dict)
     observations: dict[str, Observation] = field(default_factory=dict)
-    death: Death | None = None
-    acted: bool = False
-    in_mutated_call: bool = False
+    deaths: dict[str, Death] = field(default_factory=dict)
+    acted: set[str] = field(default_factory=set)
+    calling: set[str] = field(default_factory=set)
     shared: float | None = None
 
     def take(self, line: BranchEnd) -> None:
         self.ends[line.end.test] = line.end
-        self.acted = self.in_mutated_call = False
         if line.shared is not None:
             self.shared = (self.shared or 0.0) + line.shared
 
@@ -134,23 +144,39 @@ class _Trunk:
         self._open[mutant.id] = _Branches(mutant, tests)
         self._needed.update(tests)
 
-    def task(self, tokens: tuple[int, int], *, at_start: bool = False) -> Task:
+    @property
+    def mutants(self) -> tuple[Mutant, ...]:
+        """The mutants whose outcomes are not known yet."""
+        return tuple(branches.mutant for branches in self._open.values())
+
+    def task(self, tokens: tuple[int, int], text: Instrumentation | None, *, at_start: bool = False) -> Task:
         """The task that runs the trunk."""
         request, baseline, round = self._request, self._baseline, self._round
         in_order = tuple(test for test in baseline.by_cost(round) if test in self._needed)
         walls = {test: wall_limit(request, baseline, round, test) for test in in_order}
         longest = max(walls.values(), default=0.0)
+        mutants = self.mutants
+        choices = {mutant.id: baseline.program.choices(mutant) for mutant in mutants}
         branching = Branching(
-            mutants=tuple(branches.mutant for branches in self._open.values()),
+            mutants=mutants,
             tests={mutant: branches.tests for mutant, branches in self._open.items()},
             tokens=tokens,
             walls=walls,
             wall=longest,
             at_start=at_start,
+            choices={mutant: found for mutant, found in choices.items() if found},
+            every_test=request.every_test,
         )
         factor = request.configuration.timeout_factor
         budgets = {test: baseline.budget(round, test, factor) for test in in_order}
-        job = request.job(round, tests=in_order, record=True, budgets=budgets, branching=branching)
+        job = request.job(
+            round,
+            tests=in_order,
+            record=True,
+            budgets=budgets,
+            branching=branching,
+            instrumentation=text,
+        )
         patience = 2.0 * longest + _PATIENCE
         return Task(round, job, {}, patience, patience, is_trunk=True, may_share=True)
 
@@ -190,13 +216,13 @@ class _Trunk:
         branches = self._open[line.mutant]
         code = line.exit_code
         how = f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
-        branches.death = Death(
+        branches.deaths[line.test] = Death(
             text=f"{line.overdue or how} during {line.test}",
             test=line.test,
             signal=-code if code < 0 and line.overdue is None else None,
             overdue=line.overdue is not None,
-            acted=branches.acted,
-            in_mutated_call=branches.in_mutated_call,
+            acted=line.test in branches.acted,
+            in_mutated_call=line.test in branches.calling,
         )
         yield from self._settle(line.mutant)
 
@@ -205,9 +231,11 @@ class _Trunk:
         if branches is None:
             return
         if isinstance(line, Acted):
-            branches.acted = True
+            branches.acted.add(line.test)
+        elif line.began:
+            branches.calling.add(line.test)
         else:
-            branches.in_mutated_call = line.began
+            branches.calling.discard(line.test)
 
     def _test_ended(self, end: TestEnd, remainder: Remainder) -> Iterator[Outcome]:
         """The trunk has run a test: the second opinion on the original."""
@@ -235,17 +263,17 @@ class _Trunk:
         for test in branches.tests:
             if test in self._failed:
                 return  # replay will find out what is the matter with this test
-            dead = branches.death is not None and branches.death.test == test
-            if test not in branches.ends and not dead:
+            death = branches.deaths.get(test)
+            if test not in branches.ends and death is None:
                 return
             if test not in self._passed:
                 self._waiting.setdefault(test, set()).add(mutant)
                 return
-            if dead:
-                run.death = branches.death
-                break
-            run.ends.append(branches.ends[test])
-            if branches.ends[test].is_decided:
+            if death is not None:
+                run.death = run.death or death
+            else:
+                run.ends.append(branches.ends[test])
+            if not self._request.every_test and (death is not None or branches.ends[test].is_decided):
                 break
         run.observations = branches.observations
         run.wall = sum(end.wall for end in run.ends)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticCustomError
@@ -43,6 +43,7 @@ def _fault(text: str) -> PydanticCustomError:
 
 _Texts = Annotated[tuple[str, ...], Field(strict=False)]
 _SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
+_Families = Annotated[tuple[Literal["robot", "classical", "text"], ...], Field(strict=False, min_length=1)]
 _Share = Annotated[float, Field(ge=0, le=1)]
 
 
@@ -66,6 +67,9 @@ class Settings(BaseModel):
     timeout_limit: _Share = 1.0
     min_score: Annotated[float, Field(ge=0, le=100)] | None = None
     pytest_args: _Texts = ()
+    families: _Families = ("robot",)
+    order: Literal[1, 2] = 1
+    pairs: Annotated[int, Field(ge=1)] = 200
 
 
 class Configuration(Settings):
@@ -86,6 +90,9 @@ class Configuration(Settings):
         unstable_limit, timeout_limit: fraction of mutants above which a run fails.
         min_score: score in percent below which a run fails; None for no limit.
         pytest_args: further pytest arguments.
+        families: families of the mutants to plant: ``robot``, ``classical``, ``text``.
+        order: how many mutants are one: 1 or 2.
+        pairs: how many mutants of the second order to plant, chosen by the seed.
         root: absolute path of the project.
         file: the file it was read from, relative to ``root``.
     """

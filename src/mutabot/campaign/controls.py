@@ -4,6 +4,10 @@ The identity mutant goes through all the machinery and changes nothing, so it mu
 raises, so it must die; it is run once per test file and proves that turning a mutant on changes anything at
 all. A control that ends wrongly stops the campaign: its verdicts could not be believed.
 
+Mutants of calls and mutants of the program text have controls of their own, as they take different ways
+into the program. Those of the text ask at their place like any alternative: the identity proves by its hits
+that the text which runs is the instrumented one.
+
 For the replay engine the identity mutant is run with every selection of tests that a mutant will be judged
 by, which also finds tests that pass only after others: their mutants are then judged by the whole suite. For
 the branch engine, whose trunk runs the whole suite anyway, it is run in every test.
@@ -17,9 +21,10 @@ from dataclasses import dataclass, replace
 from mutabot.errors import ControlError
 from mutabot.model import Mutant, Outcome, Verdict
 
-from .baseline import Baseline, Place
+from .baseline import Baseline
 from .journal import ControlEnd
 from .judge import judge
+from .places import Place
 from .replay import run_of, task
 from .request import Progress, Request
 from .sites import Sources
@@ -69,7 +74,8 @@ class Control:
         if outcome.verdict is expected:
             return None
         if self.name == FATAL and outcome.verdict is Verdict.SURVIVED:
-            return "the test passes although the operation raises"
+            what = "program text" if self.place.is_text else "operation"
+            return f"the test passes although the {what} raises"
         return f"{outcome.verdict}: {outcome.message or 'it changed something'}"
 
     def error(self, wrong: str) -> ControlError:
@@ -120,14 +126,15 @@ def run_controls(
 
 def controls_in_branches(baseline: Baseline, mutants: Iterable[Mutant]) -> list[Control]:
     """The controls to run as branches: identity in every test of the first round, fatal once per file."""
-    mutants = list(mutants)
-    planned = {Place(mutant.site, mutant.operation, mutant.pattern) for mutant in mutants}
-    uncovered = set(baseline.tests[0])
+    early = baseline.program.early
+    mutants = [mutant for mutant in mutants if not baseline.program.is_early(mutant)]
+    planned = _places(mutants)
+    uncovered = {is_text: set(baseline.tests[0]) for is_text in (False, True)}
     found: list[Control] = []
     for (round, place), tests in baseline.reaching.items():
-        here = tuple(test for test in tests if test in uncovered)
-        if round == 0 and here and place in planned:
-            uncovered -= set(here)
+        here = tuple(test for test in tests if test in uncovered[place.is_text])
+        if round == 0 and here and place in planned and place not in early:
+            uncovered[place.is_text] -= set(here)
             found.append(Control(IDENTITY, place, 0, here, _subject(here)))
     return [*found, *_fatals(baseline, mutants)]
 
@@ -143,14 +150,20 @@ def _replayed(
 
 def _identities_by_selection(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
     """One identity control per selection of tests that mutants are judged by."""
-    chosen: dict[tuple[str, ...], Control] = {}
+    chosen: dict[tuple[bool, tuple[str, ...]], Control] = {}
     for round in range(len(baseline.tests)):
         for mutant in mutants:
-            place = Place(mutant.site, mutant.operation, mutant.pattern)
-            tests = baseline.selection(round, place)
-            if tests and tests not in chosen:
-                chosen[tests] = Control(IDENTITY, place, round, tests, _subject(tests))
+            place = Place.of(mutant.singles[0])
+            tests = baseline.judges(round, mutant)
+            if tests:
+                control = Control(IDENTITY, place, round, tests, _subject(tests))
+                chosen.setdefault((place.is_text, tests), control)
     return list(chosen.values())
+
+
+def _places(mutants: Iterable[Mutant]) -> set[Place]:
+    """All places at which these mutants act."""
+    return {Place.of(single) for mutant in mutants for single in mutant.singles}
 
 
 def _subject(tests: tuple[str, ...]) -> str:
@@ -158,16 +171,20 @@ def _subject(tests: tuple[str, ...]) -> str:
 
 
 def _fatals(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
-    """One fatal control per test file: its quickest test, at a site where a mutant is planned."""
-    planned = {Place(mutant.site, mutant.operation, mutant.pattern) for mutant in mutants}
-    chosen: dict[str, Control] = {}
-    costs: dict[str, tuple[int, float]] = {}
+    """One fatal control per test file: its quickest test, at a site where a mutant is planned.
+
+    What raises while the program is imported says little about what is reached in a test: that comes last.
+    """
+    planned, early = _places(mutants), baseline.program.early
+    chosen: dict[tuple[bool, str], Control] = {}
+    costs: dict[tuple[bool, str], tuple[bool, int, float]] = {}
     for (round, place), tests in baseline.reaching.items():
         for test in tests if place in planned else ():
-            test_file, cost = test.partition("::")[0], (round, baseline.ends[round, test].wall)
-            if test_file not in costs or cost < costs[test_file]:
-                costs[test_file] = cost
-                chosen[test_file] = Control(FATAL, place, round, (test,), test_file)
+            key = (place.is_text, test.partition("::")[0])
+            cost = (place in early, round, baseline.ends[round, test].wall)
+            if key not in costs or cost < costs[key]:
+                costs[key] = cost
+                chosen[key] = Control(FATAL, place, round, (test,), key[1])
     return list(chosen.values())
 
 

@@ -25,7 +25,7 @@ from typing import Any
 import mutabot
 from mutabot.model import Mutant, Vocabulary, to_data
 
-from .baseline import Baseline, Place
+from .baseline import Baseline
 from .request import Request
 
 #: what something is made of: names, and a digest or a plain value for each
@@ -39,10 +39,12 @@ _FOR_PEOPLE = re.compile(
     r"(README|CHANGELOG|CHANGES|CONTRIBUTING|LICEN[SC]E|AUTHORS)(\.(md|rst|txt|adoc))?", re.IGNORECASE
 )
 _FOR_TOOLS = {".gitignore", ".gitattributes", ".editorconfig", ".coverage", ".DS_Store"}
-_OWN_LINE = re.compile(r"\S+\.py:[^:]+:.+#\d+:.+:.+")  # a mutant's id, as selection files hold them
+_OWN_LINE = re.compile(r"\S+\.py:[^:]+:.+#\d+:.+")  # a mutant's id, as selection files hold them
 #: installed packages that have no say in how a test ends
 _TOOLS = {"black", "hatchling", "isort", "mypy", "pip", "pre-commit", "ruff", "setuptools", "uv", "wheel"}
 _CONFIGURATIONS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "setup.cfg", "conftest.py")
+#: what our own pictures hold near their beginning; see ``mutabot.report.picture``
+_PICTURES, _PICTURE = {".svg", ".png"}, b"written by mutabot compare"
 _WRITTEN = "written by the tests themselves"
 _HASH = "#"
 
@@ -164,7 +166,7 @@ class Dependencies:
         self._told = 0
         self._baseline = baseline
         self._test_files = _TestFiles.of(request, self.files, tests)
-        self._places: dict[tuple[int, tuple[str, ...], str], str] = {}
+        self._places: dict[tuple[int, tuple[str, ...], tuple[str, ...]], str] = {}
         common = {
             **{name: digest for name, digest in self.files.items() if name not in self._test_files.closures},
             **_pytest_parts(request),
@@ -183,13 +185,19 @@ class Dependencies:
 
         The second is that of tests that had turned out to pass only together with all others.
         """
-        place = Place(mutant.site, mutant.operation, mutant.pattern)
-        selections = (self._baseline.selection(round, place), tuple(self._baseline.tests[round]))
-        own = _digest([mutant.idle, mutant.pattern])
+        selections = (self._baseline.judges(round, mutant), tuple(self._baseline.tests[round]))
+        own = _digest([self._own(single) for single in mutant.singles])
         return tuple(
-            f"{self._common} {self._of_place(round, tests, mutant.operation)} {own}"
+            f"{self._common} {self._of_place(round, tests, self._operations_of(mutant))} {own}"
             for tests in dict.fromkeys(selections)
         )
+
+    def _own(self, mutant: Mutant) -> list[Any]:
+        """What a mutant does, beyond what its id says; of one in the program text, what it reads there."""
+        planted = self._baseline.program.planted.get(mutant.id)
+        if planted is None:
+            return [mutant.idle, mutant.pattern]
+        return [to_data(planted.place.alternatives[planted.choice.index])]
 
     def new_parts(self) -> Mapping[str, Parts]:
         """The parts that have come since this was last asked."""
@@ -197,15 +205,24 @@ class Dependencies:
         self._told = len(self.parts)
         return new
 
-    def _of_place(self, round: int, tests: tuple[str, ...], operation: str) -> str:
-        found = self._places.get((round, tests, operation))
+    def _operations_of(self, mutant: Mutant) -> tuple[str, ...]:
+        """The operations whose meaning counts: to a mutant of the program text, any might refuse."""
+        named = tuple(single.operation for single in mutant.singles)
+        return named if all(named) else tuple(self._operations)
+
+    def _of_place(self, round: int, tests: tuple[str, ...], operations: tuple[str, ...]) -> str:
+        found = self._places.get((round, tests, operations))
         if found is None:
             parts = {
                 **self._test_files.parts(tests),
-                **self._operations.get(operation, {}),
+                **{
+                    name: digest
+                    for operation in operations
+                    for name, digest in self._operations.get(operation, {}).items()
+                },
                 "which tests reach it": _HASH + _digest(sorted(tests)),
             }
-            found = self._places[round, tests, operation] = self._stored(parts)
+            found = self._places[round, tests, operations] = self._stored(parts)
         return found
 
     def _stored(self, parts: Parts) -> str:
@@ -250,7 +267,7 @@ def _counted(request: Request, before: Snapshot, after: Snapshot) -> dict[str, s
     written = after.touched_since(before)
     counted = {}
     for name, file in after.files.items():
-        if name in own or (name.endswith(".txt") and _is_selection(request.root / name)):
+        if name in own or _is_ours(request.root / name):
             continue
         is_result = name in written and not name.endswith(".py")
         counted[name] = _WRITTEN if is_result else file.digest
@@ -259,6 +276,21 @@ def _counted(request: Request, before: Snapshot, after: Snapshot) -> dict[str, s
 
 def _relative(path: Path, root: Path) -> str:
     return Path(os.path.relpath(path.resolve(), root)).as_posix()
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether it is a file for or by mutabot, which no robot program reads."""
+    if path.suffix in _PICTURES:
+        return _is_picture(path)
+    return path.suffix == ".txt" and _is_selection(path)
+
+
+def _is_picture(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return _PICTURE in file.read(1000)
+    except OSError:
+        return False
 
 
 def _is_selection(path: Path) -> bool:
@@ -348,6 +380,8 @@ def _settings(request: Request) -> dict[str, str]:
         "timeout_factor": str(configuration.timeout_factor),
         "timeout_seconds": str(configuration.timeout_seconds),
         "memory": str(configuration.memory),
+        **({"every test": "run"} if request.every_test else {}),
+        **({"the checks": "switched off"} if request.no_oracle else {}),
     }
 
 
@@ -423,6 +457,6 @@ def _versions() -> dict[str, str]:
 def _own_code() -> str:
     """Of a mutabot that is being worked on, the version alone does not tell what it does."""
     home = Path(mutabot.__file__).parent
-    parts = ("model", "operators", "inside", "campaign")
+    parts = ("model", "operators", "inside", "classical", "campaign")
     files = sorted(file for part in parts for file in (home / part).rglob("*.py"))
     return _digest([(file.relative_to(home).as_posix(), _digest_of(file)) for file in files])

@@ -75,7 +75,8 @@ def try_controls(
         controls = controls_in_branches(baseline, mutants)
         progress.stage("controls", len(controls))
         ended = sum(1 for _ in _controls(request, baseline, workers, controls, remainder, progress))
-    if engine_of(request) == "replay" or remainder.pairs:
+        mutants = [mutant for mutant in mutants if remainder.pairs or baseline.program.is_early(mutant)]
+    if mutants:
         ended += sum(1 for _ in run_controls(request, baseline, workers, progress, mutants))
     return ended, remainder
 
@@ -114,6 +115,7 @@ def _branched(
     _note(report.progress, remainder)
     clear_up(request, baseline, workers, report.progress, remainder.suspects)
     rest = [(mutant, round) for mutant, round in remainder.pairs if mutant.id not in by_id]
+    rest += remainder.early
     if request.engine == "branch":
         for outcome in _refused(rest, remainder):
             report.outcome(outcome)
@@ -152,6 +154,11 @@ def _controls(
 def _note(progress: Progress, remainder: Remainder) -> None:
     for test, reason in remainder.reasons.items():
         progress.note(f"not safe to fork in {test}: {reason}; its mutants run in processes of their own")
+    if remainder.early:
+        number = len({mutant.id for mutant, _ in remainder.early})
+        progress.note(
+            f"{number} mutants act while the program is imported: each runs in a process of its own"
+        )
     for note in remainder.notes:
         progress.note(note)
 
@@ -159,6 +166,8 @@ def _note(progress: Progress, remainder: Remainder) -> None:
 def _refused(pairs: Iterable[Pair], remainder: Remainder) -> Iterator[Outcome]:
     """With ``--engine branch`` nothing is replayed: what could not be branched is an error."""
     reasons = "; ".join(dict.fromkeys([*remainder.reasons.values(), *remainder.notes]))
+    early = {mutant.id for mutant, _ in remainder.early}
     for mutant, round in pairs:
-        text = f"it could not be branched: {reasons or 'its branch gave no answer'}"
+        why = "it acts while the program is imported" if mutant.id in early else reasons
+        text = f"it could not be branched: {why or 'its branch gave no answer'}"
         yield Outcome(mutant.id, round, Verdict.ERROR, message=text, engine="branch")

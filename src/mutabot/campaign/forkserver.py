@@ -89,6 +89,11 @@ class ForkServer:
         """Whether a copy can do this job: all that counts before the first test is the same."""
         return _template(job) == self._template
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether none of its copies is at work."""
+        return None not in self._codes.values()
+
     def wait_until_ready(self, seconds: float) -> str | None:
         """Wait until the tests are collected. Returns why it cannot serve, or None if it can."""
         with interruptible():

@@ -29,9 +29,6 @@ from .database import connect, connect_to_read, guarded
 from .lock import WriterLock
 
 SCHEMA_VERSION = 2
-#: where the journal of the last complete campaign before this one is kept, beside the journal
-PREVIOUS = "journal.previous.sqlite"
-_HALF_A_COPY = f"{PREVIOUS}.new"
 
 _SCHEMA = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -142,7 +139,7 @@ class Journal:
         """Begin a new campaign; outcomes of those before are kept aside, unless it is to begin ``fresh``.
 
         All or nothing: until it has begun, the journal is that of the campaign before. A complete one stays
-        readable as ``journal.previous.sqlite``, and so does what is no journal of this version.
+        readable as ``previous_of`` the path, and so does what is no journal of this version.
 
         Reports understand these keys of ``meta``, all optional: ``mutabot``, ``python``, ``versions`` (name
         to version), ``root``, ``seed``, ``rounds``, ``engine``, ``jobs``, ``started``, ``vocabulary`` (what
@@ -152,7 +149,7 @@ class Journal:
             path.parent.mkdir(parents=True, exist_ok=True)
             lock = WriterLock.take(path)
             try:
-                _remove(path.with_name(_HALF_A_COPY))
+                _remove(_half_a_copy_of(path))
                 is_journal = _make_way(path)
                 journal = cls(path, connect(path), lock=lock)
             except BaseException:
@@ -399,8 +396,8 @@ class Journal:
 
     def _keep_copy(self) -> None:
         """Keep the campaign before this one as it is."""
-        kept = self.path.with_name(PREVIOUS)
-        new = self.path.with_name(_HALF_A_COPY)
+        kept = previous_of(self.path)
+        new = _half_a_copy_of(self.path)
         try:
             self._connection.execute("VACUUM INTO ?", (str(new),))
             _remove(kept)
@@ -442,6 +439,15 @@ class Journal:
             )
 
 
+def previous_of(path: Path) -> Path:
+    """Where the last complete campaign before this journal's is kept: ``journal.previous.sqlite``."""
+    return path.with_name(f"{path.stem}.previous{path.suffix}")
+
+
+def _half_a_copy_of(path: Path) -> Path:
+    return path.with_name(f"{previous_of(path).name}.new")
+
+
 def _dump(value: Any) -> str:
     return json.dumps(to_data(value), ensure_ascii=False, default=str)
 
@@ -458,7 +464,7 @@ def _make_way(path: Path) -> bool:
         return True
     if _is_empty(path):  # of a campaign that was killed before it had begun
         return False
-    kept = path.with_name(PREVIOUS)
+    kept = previous_of(path)
     _remove(kept)
     for suffix in ("", "-wal", "-shm"):
         old = path.with_name(path.name + suffix)

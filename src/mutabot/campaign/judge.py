@@ -6,7 +6,7 @@ import signal
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from mutabot.model import By, Mutant, Outcome, TestEnd, Verdict
+from mutabot.model import By, Kill, Mutant, Outcome, TestEnd, Verdict
 
 from .baseline import Baseline
 from .comparison import Observation, compare, farthest
@@ -46,12 +46,13 @@ class Run:
     Attributes:
         mutant, round: which.
         tests: the tests that judge it, in order.
-        ends: how they ended, in this order, up to the one that decided.
+        ends: how they ended, in this order, up to the one that decided; all of them where each is to run.
         observations: what is compared of each test that passed.
         death: set if a process did not live to the end of its tests.
         wall: seconds spent on it.
         shared: simulated seconds that it did not have to spend, since the original had.
         engine: ``replay`` or ``branch``.
+        problem: why the mutant was not there at all, or None.
     """
 
     mutant: Mutant
@@ -63,6 +64,7 @@ class Run:
     wall: float = 0.0
     shared: float | None = None
     engine: str = "replay"
+    problem: str | None = None
 
 
 def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
@@ -70,7 +72,7 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
     verdict, end, message = _ruling(run)
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
     by = end.by if end is not None else By.EXCEPTION
-    died_at_work = run.death is not None and (run.death.acted or run.death.in_mutated_call)
+    died_at_work = end is None and run.death is not None and (run.death.acted or run.death.in_mutated_call)
     outcome = Outcome(
         mutant=run.mutant.id,
         round=run.round,
@@ -90,24 +92,32 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
         simulated=sum(simulated) if simulated else None,
         shared=run.shared,
         engine=run.engine,
+        complete=request.every_test and {end.test for end in run.ends} == set(run.tests),
+        kills=_kills(run, message)[: None if request.every_test else 1] if verdict.is_killed else (),
+        commands=end.commands if end is not None else None,
     )
     return _compared(outcome, run, request, baseline) if verdict is Verdict.SURVIVED else outcome
 
 
 def _ruling(run: Run) -> Ruling:
     """Verdict, the test that decided it, and the reason in words."""
+    if run.problem is not None:
+        return Verdict.ERROR, None, run.problem
     acted = False
     refused: TestEnd | None = None
-    for end in run.ends:
+    for end in _before_death(run):
         acted = acted or end.acted > 0
         if end.failure is not None:
             return Verdict.ERROR, end, end.failure
+        if end.partly and not acted and end.is_decided:
+            return Verdict.NO_EFFECT, end, "the test ended before more than one of the two had acted"
         if end.invalid:
             return Verdict.INVALID, end, end.message
         if end.timeout is not None:
             return (Verdict.TIMEOUT if acted else Verdict.UNSTABLE), end, end.timeout
         if end.refused is not None and not end.caught:
-            refused = refused or end
+            if acted or not end.partly:
+                refused = refused or end
         elif end.outcome == "failed":
             if acted:
                 return Verdict.KILLED, end, end.message
@@ -117,6 +127,29 @@ def _ruling(run: Run) -> Ruling:
     if refused is not None:
         return Verdict.REFUSED, refused, refused.refused
     return _ruling_on_survivor(run, acted)
+
+
+def _before_death(run: Run) -> list[TestEnd]:
+    """The tests up to the one in which the process died, if it did: what comes after decides nothing."""
+    if run.death is None or run.death.test not in run.tests:
+        return run.ends
+    before = set(run.tests[: run.tests.index(run.death.test)])
+    return [end for end in run.ends if end.test in before]
+
+
+def _kills(run: Run, message: str | None) -> tuple[Kill, ...]:
+    """The tests that noticed the mutant, in their order; a crash is noticed by the test it ended."""
+    found: list[Kill] = []
+    acted = False
+    for end in run.ends:
+        acted = acted or end.acted > 0
+        if acted and end.notices:
+            found.append(Kill(end.test, end.by or By.EXCEPTION, end.exception, end.timeout or end.message))
+    death = run.death
+    if death is not None and death.test is not None and _ruling_on_death(death, acted)[0].is_killed:
+        found.append(Kill(death.test, By.EXCEPTION, None, message))
+    order = {test: number for number, test in enumerate(run.tests)}
+    return tuple(sorted(found, key=lambda kill: order.get(kill.test, -1)))
 
 
 def _ruling_on_death(death: Death, acted: bool) -> Ruling:
@@ -130,6 +163,8 @@ def _ruling_on_death(death: Death, acted: bool) -> Ruling:
 def _ruling_on_survivor(run: Run, acted: bool) -> Ruling:
     if acted:
         return Verdict.SURVIVED, None, None
+    if any(end.partly for end in run.ends):
+        return Verdict.NO_EFFECT, None, "only one of the two changed anything"
     if any(end.hits for end in run.ends):
         return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
     return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from random import Random
 from typing import Any
@@ -13,7 +13,9 @@ from mutabot.model.quantity import is_reading_of
 from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.driving import Passage, rehearse
 
-from .baseline import Baseline, Hit, Place
+from .baseline import Baseline, Hit
+from .places import Place
+from .sampling import Drawing
 
 #: recorded calls per place that are tried out; calls of one place are much alike
 TRIED = 200
@@ -21,13 +23,27 @@ TRIED = 200
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Mutants to run, and what is left out."""
+    """Mutants to run, and what is left out.
+
+    Attributes:
+        drawing: how the mutants were drawn from the selected ones; None if all of these are there.
+    """
 
     mutants: list[Mutant]
     left_out: list[LeftOut]
+    drawing: Drawing | None = None
 
 
-def make_plan(baseline: Baseline, vocabulary: Vocabulary) -> Plan:
+def make_plan(baseline: Baseline, vocabulary: Vocabulary, families: Collection[str] = ("robot",)) -> Plan:
+    """All mutants of these families: those of calls first, so that they keep their numbers."""
+    plan = _plan_of_calls(baseline, vocabulary) if "robot" in families else Plan([], [])
+    first = len(plan.mutants)
+    planted = baseline.program.planted.values()
+    of_text = [replace(one.mutant, number=first + one.mutant.number) for one in planted]
+    return Plan([*plan.mutants, *of_text], [*plan.left_out, *baseline.program.left_out])
+
+
+def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary) -> Plan:
     """All mutants of all operators at all places that the tests reach."""
     mutants: list[Mutant] = []
     left_out: list[LeftOut] = []

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 
 from mutabot.model import Mutant, Outcome, Verdict
 
-from .baseline import Baseline, Place, death, observation, places_of
+from .baseline import Baseline, death, observation, places_of
 from .judge import Death, Run, judge
+from .places import Place
 from .request import Request
 from .sites import Sources
 from .workers import Result, Task, Workers
@@ -40,7 +41,7 @@ def _tasks(
     request: Request, baseline: Baseline, pairs: Iterable[Pair], uncovered: list[Outcome]
 ) -> Iterator[Task]:
     for mutant, round in pairs:
-        tests = baseline.selection(round, Place(mutant.site, mutant.operation, mutant.pattern))
+        tests = baseline.judges(round, mutant)
         if tests:
             yield task(request, baseline, mutant, round, tests)
         else:
@@ -59,7 +60,15 @@ def task(
     """The task of running these tests as this mutant."""
     budgets = {test: baseline.budget(round, test, request.configuration.timeout_factor) for test in tests}
     walls = {test: wall_limit(request, baseline, round, test) for test in tests}
-    job = request.job(round, tests=tests, mutant=mutant, record=True, stop_at_kill=stop, budgets=budgets)
+    job = request.job(
+        round,
+        tests=tests,
+        mutant=mutant,
+        record=True,
+        stop_at_kill=stop and not request.every_test,
+        budgets=budgets,
+        instrumentation=baseline.program.instrumentation([mutant], active=True),
+    )
     least = request.configuration.timeout_seconds
     return Task((mutant, round), job, walls, least, max(least, WALL_FACTOR * baseline.startup))
 
@@ -71,8 +80,8 @@ def wall_limit(request: Request, baseline: Baseline, round: int, test: str) -> f
 
 def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
     """The outcome of a mutant that no test can judge in this round."""
-    place = Place(mutant.site, mutant.operation, mutant.pattern)
-    flaky = baseline.flaky_reaching.get((round, place))
+    places = [Place.of(single) for single in mutant.singles]
+    flaky = [test for place in places for test in baseline.flaky_reaching.get((round, place), ())]
     if flaky:
         text = f"all tests that reach the site are flaky, such as {flaky[0]}"
         return Outcome(mutant.id, round, Verdict.UNSTABLE, message=text)
@@ -92,8 +101,14 @@ def run_of(result: Result, sources: Sources) -> Run:
         ends=result.ends,
         observations={end.test: observation(end, places) for end in result.ends if end.outcome == "passed"},
         death=_death(result),
+        problem=_problem(result),
         wall=result.wall,
     )
+
+
+def _problem(result: Result) -> str | None:
+    """Why the mutant was not in the program, if it was not."""
+    return next((f"{file}: {why}" for file, why in result.not_instrumented.items()), None)
 
 
 def _death(result: Result) -> Death | None:
@@ -113,7 +128,7 @@ def _death(result: Result) -> Death | None:
         text=text,
         test=result.running,
         signal=-result.exit_code if result.end is None and result.exit_code < 0 else None,
-        overdue=result.overdue is not None and result.running is not None,
-        acted=result.running in result.acted,
+        overdue=result.overdue is not None and (result.running is not None or "" in result.acted),
+        acted=not {result.running, ""}.isdisjoint(result.acted),
         in_mutated_call=result.in_mutated_call,
     )

@@ -10,6 +10,11 @@ from typing import Any, Protocol
 from mutabot.model import Job, Vocabulary
 
 from .configuration import Configuration
+from .sampling import Sample
+
+#: mutabot's folder in a project, and its journals: of `run`, of `compare`, and of that without an oracle
+HOME = ".mutabot"
+JOURNAL, COMPARISON, WITHOUT_ORACLE = "journal.sqlite", "compare.sqlite", "compare-no-oracle.sqlite"
 
 
 @dataclass(frozen=True)
@@ -26,6 +31,14 @@ class Request:
         fresh: whether to run everything, also what an earlier campaign has found.
         verify: how many outcomes to run once more in fresh processes, and compare.
         confirm: whether to run survivors and time-outs once more.
+        families: the families of operators whose mutants are made.
+        every_test: whether a mutant runs every test that reaches it, also after one has noticed it.
+        no_oracle: whether every assertion of the tests is switched off.
+        sample: how many of the mutants to run, chosen at random; None for all.
+        one_per_site: whether to run one mutant per site, chosen at random.
+        order: how many mutants are one: 1 or 2.
+        pairs: how many mutants of the second order to plant.
+        journal: name of the journal's file in mutabot's folder.
     """
 
     configuration: Configuration
@@ -40,6 +53,14 @@ class Request:
     fresh: bool = False
     verify: int = 0
     confirm: bool = False
+    families: tuple[str, ...] = ("robot",)
+    every_test: bool = False
+    no_oracle: bool = False
+    sample: Sample | None = None
+    one_per_site: bool = False
+    order: int = 1
+    pairs: int = 200
+    journal: str = JOURNAL
 
     @property
     def root(self) -> Path:
@@ -54,7 +75,7 @@ class Request:
     @property
     def journal_path(self) -> Path:
         """Where the journal of this project lies."""
-        return self.root / ".mutabot" / "journal.sqlite"
+        return self.root / HOME / self.journal
 
     def job(self, round: int, **details: Any) -> Job:
         """A job of this campaign in a round."""
@@ -66,6 +87,7 @@ class Request:
             seed=self.seed,
             round=round,
             memory=self.configuration.memory,
+            no_oracle=self.no_oracle,
             **details,
         )
 

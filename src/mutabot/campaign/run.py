@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import platform
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
@@ -22,9 +23,12 @@ from .engine import engine_of, repetitions_for, run_mutants, try_controls
 from .interruption import interruptions_kept
 from .journal import Journal
 from .lock import at_work
+from .pairs import pairs
 from .plan import Plan, make_plan
+from .program_text import family_of
 from .request import CheckReport, Progress, Request
 from .reuse import reuse
+from .sampling import DRAWING, draw
 from .selection import select
 from .verify import look_again, refuse_flaky
 from .workers import Result, Workers
@@ -61,7 +65,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
 def _run(request: Request, workers: Workers, progress: Progress, journal: Journal) -> None:
     before = Snapshot.take(request.root)
     baseline, results = _baseline(request, workers, progress)
-    whole = make_plan(baseline, request.vocabulary)
+    whole = make_plan(baseline, request.vocabulary, request.families)
     plan = selected(request, whole, baseline)
     _write_beginning(journal, request, results, plan)
     _note_unstable(baseline, progress)
@@ -81,7 +85,14 @@ def _run(request: Request, workers: Workers, progress: Progress, journal: Journa
         look_again(request, baseline, workers, progress, plan.mutants, journal)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
-    journal.tidy(mutant.id for mutant in whole.mutants)
+    _tidy(request, journal, whole)
+
+
+def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
+    """Forget mutants that the program has no longer; of other families and orders nothing is known now."""
+    if request.order == 1:
+        others = {mutant for mutant, _ in journal.kept() if family_of(mutant) not in request.families}
+        journal.tidy([*others, *(mutant.id for mutant in whole.mutants)])
 
 
 def _collected(results: Sequence[Result]) -> set[str]:
@@ -136,7 +147,7 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
     """Baseline and plan, without running a mutant."""
     with _workers(request) as workers:
         baseline, _ = _baseline(request, workers, progress)
-    plan = selected(request, make_plan(baseline, request.vocabulary), baseline)
+    plan = selected(request, make_plan(baseline, request.vocabulary, request.families), baseline)
     return plan.mutants, plan.left_out
 
 
@@ -144,7 +155,7 @@ def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running mutants."""
     with _workers(request) as workers:
         baseline, _ = _baseline(request, workers, progress)
-        plan = make_plan(baseline, request.vocabulary)
+        plan = make_plan(baseline, request.vocabulary, request.families)
         mutants = selected(request, plan, baseline).mutants
         controls, remainder = try_controls(request, baseline, workers, progress, mutants)
     return _report(request, baseline, plan, mutants, controls, remainder)
@@ -170,7 +181,14 @@ def selected(request: Request, plan: Plan, baseline: Baseline) -> Plan:
     mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
     if not mutants:
         raise NothingToDoError("the selection leaves no mutant to run")
-    return Plan(mutants, plan.left_out)
+    if request.order == 2:
+        mutants = pairs(baseline, mutants, request.pairs, request.seed)
+        if not mutants:
+            raise NothingToDoError("no test reaches two mutants of this selection at different places")
+    if request.sample is None and not request.one_per_site:
+        return Plan(mutants, plan.left_out)
+    drawn, drawing = draw(mutants, request.seed, sample=request.sample, one_per_site=request.one_per_site)
+    return Plan(drawn, plan.left_out, drawing)
 
 
 @contextmanager
@@ -184,6 +202,10 @@ def _workers(request: Request) -> Iterator[Workers]:
 
 
 def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
+    of_text = Counter(item.reason for item in baseline.program.left_out)
+    if of_text:
+        reason, count = of_text.most_common(1)[0]
+        return f"no mutants: all {len(plan.left_out)} are left out, {count} of them because {reason}"
     if not baseline.hits:
         files = ", ".join((*request.configuration.program, *request.configuration.oracle))
         return f"no mutants: no test reaches a call of the vocabulary's operations in {files}"
@@ -198,6 +220,8 @@ def _write_beginning(journal: Journal, request: Request, results: Sequence[Resul
     files = {mutant.site.span.file for mutant in plan.mutants}
     sources = {file: (request.root / file).read_text(encoding="utf-8", errors="replace") for file in files}
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
+    if plan.drawing is not None:
+        journal.set_meta(DRAWING, to_data(plan.drawing))
 
 
 def _note_unstable(baseline: Baseline, progress: Progress) -> None:
@@ -219,6 +243,11 @@ def _meta(request: Request) -> dict[str, Any]:
         "rounds": request.rounds,
         "engine": engine_of(request),
         "jobs": request.jobs,
+        "families": list(request.families),
+        "order": request.order,
+        "pairs": request.pairs,
+        "every_test": request.every_test,
+        "no_oracle": request.no_oracle,
         "started": time.time(),
         "vocabulary": to_data(request.vocabulary),
     }

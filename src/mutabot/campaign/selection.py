@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -63,12 +63,9 @@ def is_like(pattern: str, text: str) -> bool:
 def _from_file(file: Path, mutants: Sequence[Mutant], set_aside: Sequence[str]) -> list[Mutant]:
     found: dict[str, Mutant] = {}
     unknown: list[str] = []
-    by_id = {mutant.id: mutant for mutant in mutants}
-    for pattern in _patterns(file):
-        if pattern in by_id and not _WILD.search(pattern):  # as nearly all are, be there thousands
-            here = [by_id[pattern]]
-        else:
-            here = [mutant for mutant in mutants if is_like(pattern, mutant.id)]
+    ids = {mutant.id for mutant in mutants} | {*set_aside}
+    for pattern in _patterns(file, ids):
+        here = _of_id(pattern, mutants) or [mutant for mutant in mutants if is_like(pattern, mutant.id)]
         if not here and not any(is_like(pattern, other) for other in set_aside):
             unknown.append(pattern)
         for mutant in here:
@@ -78,15 +75,22 @@ def _from_file(file: Path, mutants: Sequence[Mutant], set_aside: Sequence[str]) 
     return [replace(mutant, number=number) for number, mutant in enumerate(found.values(), start=1)]
 
 
-def _patterns(file: Path) -> Iterator[str]:
+def _of_id(pattern: str, mutants: Sequence[Mutant]) -> list[Mutant]:
+    """The mutant with exactly this id, which may hold signs that are wild elsewhere."""
+    return [mutant for mutant in mutants if mutant.id == pattern]
+
+
+def _patterns(file: Path, ids: Collection[str]) -> Iterator[str]:
     try:
         text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
         raise SelectionError(f"cannot read the selection file {file}: {reason}") from error
     for line in text.splitlines():
-        # An id holds "#" itself, but never after a space.
-        pattern = re.split(r"(?:^|\s)#", line, maxsplit=1)[0].strip()
+        # An id of program text may hold anything; any other holds "#" too, but never after a space.
+        pattern = line.strip()
+        if pattern not in ids:
+            pattern = re.split(r"(?:^|\s)#", line, maxsplit=1)[0].strip()
         if pattern:
             yield pattern
 
@@ -97,7 +101,7 @@ def _fitting(
     found: set[str] = set()
     unknown = []
     for pattern in patterns:
-        here = {mutant.id for mutant in mutants if fits(pattern, mutant)}
+        here = {mutant.id for mutant in _of_id(pattern, mutants) or mutants if fits(pattern, mutant)}
         if not here and not any(is_like(pattern, other) for other in set_aside):
             unknown.append(pattern)
         found |= here

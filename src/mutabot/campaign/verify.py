@@ -15,10 +15,12 @@ from typing import Any
 from mutabot.errors import ControlError, SelectionError, UnstableError
 from mutabot.model import Mutant, Outcome, Verdict, to_data
 
-from .baseline import Baseline, Place, take_baseline
+from .baseline import Baseline, take_baseline
 from .controls import run_controls
 from .engine import engine_of
 from .journal import Journal
+from .pairs import pair
+from .places import Place
 from .plan import make_plan
 from .replay import Pair, replay
 from .request import Progress, Request
@@ -269,11 +271,15 @@ def _key(pair: Pair) -> tuple[str, int]:
     return pair[0].id, pair[1]
 
 
-def _end(outcome: Outcome) -> tuple[Any, ...]:
-    message = outcome.message
+def without_accidents(message: str | None) -> str | None:
+    """A message without what differs between equal runs in different processes."""
     for pattern, text in _ACCIDENTAL if message is not None else ():
         message = pattern.sub(text, message or "")
-    return outcome.verdict, outcome.by, outcome.test, message
+    return message
+
+
+def _end(outcome: Outcome) -> tuple[Any, ...]:
+    return outcome.verdict, outcome.by, outcome.test, without_accidents(outcome.message)
 
 
 def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> Disagreement | None:
@@ -287,11 +293,12 @@ def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> Disagreeme
 
 def _as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant:
     """The mutant in the program as it is now: edits elsewhere move it."""
-    if Place(mutant.site, mutant.operation, mutant.pattern) in baseline.hits:
+    if Place.of(mutant) in baseline.hits:
         return mutant
-    planned = make_plan(baseline, request.vocabulary).mutants
-    now = next((one for one in planned if one.id == mutant.id), None)
-    if now is None:
-        problem = f"the program has changed: no test reaches {mutant.id} any more"
+    planned = {one.id: one for one in make_plan(baseline, request.vocabulary, request.families).mutants}
+    gone = next((one.id for one in mutant.singles if one.id not in planned), None)
+    if gone is not None:
+        problem = f"the program has changed: no test reaches {gone} any more"
         raise SelectionError(problem, unknown=[mutant.id])
-    return replace(now, number=mutant.number)
+    now = [planned[one.id] for one in mutant.singles]
+    return pair(mutant.number, *now) if mutant.parts else replace(now[0], number=mutant.number)

@@ -21,11 +21,14 @@ from mutabot.model import (
     Acted,
     Job,
     MutatedCall,
+    NotInstrumented,
+    PlacesReached,
     Problem,
     SessionEnd,
     SiteSeen,
     TestEnd,
     TestStart,
+    TextsSeen,
     TokensHeld,
 )
 from mutabot.model.job import Line
@@ -69,7 +72,10 @@ class Result:
     Attributes:
         task: its task.
         sites, ends, problems: what it reported.
-        acted: tests in which its mutant did something.
+        acted: tests in which its mutant did something; the empty one stands for before any test.
+        reached: places of the program text by test, likewise.
+        seen: what a recording saw of the program text.
+        not_instrumented: files whose mutants cannot run, with the reason.
         in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
         held: tokens that it and its branches held when it was last heard of.
         running: test that was under way when it ended, or None.
@@ -85,6 +91,9 @@ class Result:
     ends: list[TestEnd] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     acted: list[str] = field(default_factory=list)
+    reached: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    seen: TextsSeen | None = None
+    not_instrumented: dict[str, str] = field(default_factory=dict)
     in_mutated_call: bool = False
     held: int = 0
     running: str | None = None
@@ -103,6 +112,12 @@ class Result:
                 self.running = line.test
             case Acted() if line.mutant is None:
                 self.acted.append(line.test)
+            case PlacesReached():
+                self.reached[line.test] = line.places
+            case TextsSeen():
+                self.seen = line
+            case NotInstrumented():
+                self.not_instrumented[line.file] = line.reason
             case MutatedCall() if line.mutant is None:
                 self.in_mutated_call = line.began
             case TokensHeld():
@@ -137,7 +152,7 @@ class Workers:
         self._jobs = max(1, jobs)
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
-        self._server: ForkServer | None = None
+        self._servers: list[ForkServer] = []
         self.unshared: str | None = None
         self.pool = TokenPool(self._jobs)
         home = root / ".mutabot"
@@ -160,8 +175,8 @@ class Workers:
             worker.kill()
             worker.close(self._selector)
         self._workers.clear()
-        if self._server is not None:
-            self._end_server(self._server)
+        for server in list(self._servers):
+            self._end_server(server)
         self._selector.close()
         self.pool.close()
         self._folder.cleanup()
@@ -216,23 +231,26 @@ class Workers:
 
     def _server_for(self, task: Task) -> ForkServer | None:
         """The fork server for such a task; None if there can be none."""
-        if self._server is not None and not self._server.serves(task.job):
-            self._end_server(self._server)
-        if self._server is None and self.unshared is None:
-            server = ForkServer(
-                task.job, self._root, self._arguments, Path(self._folder.name), self.pool.descriptors
-            )
-            self._server = server
-            self._selector.register(server.pipe, selectors.EVENT_READ, server)
-            self.unshared = server.wait_until_ready(task.startup)
-            if self.unshared is not None:
-                self._end_server(server)
-        return self._server
+        found = next((server for server in self._servers if server.serves(task.job)), None)
+        if found is not None or self.unshared is not None:
+            return found
+        for idle in [server for server in self._servers if server.is_idle]:
+            self._end_server(idle)  # what it was for is over
+        server = ForkServer(
+            task.job, self._root, self._arguments, Path(self._folder.name), self.pool.descriptors
+        )
+        self._servers.append(server)
+        self._selector.register(server.pipe, selectors.EVENT_READ, server)
+        self.unshared = server.wait_until_ready(task.startup)
+        if self.unshared is None:
+            return server
+        self._end_server(server)
+        return None
 
     def _end_server(self, server: ForkServer) -> None:
         self._selector.unregister(server.pipe)
+        self._servers.remove(server)
         server.close()
-        self._server = None
 
     def _wait(self, *, for_token: bool) -> Iterator[Result | tuple[Task, Line]]:
         timeout = max(0.0, min(worker.until for worker in self._workers) - time.monotonic())

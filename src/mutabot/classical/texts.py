@@ -39,9 +39,9 @@ def program_files(root: Path, program: Iterable[str]) -> list[str]:
 
 
 def find_texts(
-    root: Path, files: Iterable[str], operators: Iterable[str] | None = None
+    root: Path, files: Iterable[str], operators: Iterable[str] | None = None, *, first: int = 1
 ) -> tuple[ProgramText, ...]:
-    """The places of these files (relative to ``root``), numbered 1, 2, 3 … over all of them.
+    """The places of these files (relative to ``root``), numbered from ``first`` on over all of them.
 
     ``operators``: names; all of family ``classical`` if left out.
 
@@ -49,7 +49,7 @@ def find_texts(
     """
     rules = registry.chosen(registry.names("classical") if operators is None else operators)
     texts: list[ProgramText] = []
-    number = 0
+    number = first - 1
     for file in files:
         source = (root / file).read_bytes()
         index = Index.of(ast.parse(source, file))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Any
@@ -29,6 +29,10 @@ class Evidence:
         refusal: the exception by which the robot refused a mutated call, or None.
         invalid: whether a mutated call rejected its arguments' types.
         failure: what went wrong in the tool or the operator itself, or None.
+        is_partial: whether any of several mutants that are one changed something.
+        is_of_text: whether the mutant is one of the program text, which makes no calls itself: a refusal
+            then counts only if it ends the test.
+        is_unknown: whether what the robot refused is no command at all.
     """
 
     hits: int = 0
@@ -37,6 +41,26 @@ class Evidence:
     refusal: BaseException | None = None
     invalid: bool = False
     failure: str | None = None
+    is_partial: bool = False
+    is_of_text: bool = False
+    is_unknown: bool = False
+
+
+def together(found: Sequence[Evidence]) -> Evidence:
+    """The evidence of several mutants that are one: it acts if all of them do."""
+    if len(found) == 1:
+        return found[0]
+    return Evidence(
+        hits=min((one.hits for one in found), default=0),
+        acted=min((one.acted for one in found), default=0),
+        example=next((one.example for one in found if one.example is not None), None),
+        refusal=next((one.refusal for one in found if one.refusal is not None), None),
+        invalid=any(one.invalid for one in found),
+        failure=next((one.failure for one in found if one.failure is not None), None),
+        is_partial=any(one.acted or one.is_partial for one in found),
+        is_of_text=any(one.is_of_text for one in found),
+        is_unknown=any(one.is_unknown for one in found),
+    )
 
 
 @dataclass(slots=True)

@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterable
 from types import CodeType, FrameType
 from typing import Any, NoReturn
 
-from mutabot.model.alternative import RUNTIME, Choice
+from mutabot.model.alternative import FATAL, IDENTITY, RUNTIME, Choice
+from mutabot.operators.control import FatalFault
 
 
 class Bomb(Exception):  # noqa: N818  # the name that the literature gives it
@@ -69,6 +70,8 @@ class Switch:
 
 
 _UNKNOWN = object()
+#: items of a list or tuple that is shown
+_SHOWN = 12
 
 
 class Alternatives:
@@ -78,7 +81,8 @@ class Alternatives:
         active: index of the active alternative by place; more than one for mutants of higher order.
         hits: evaluations of each place that was on.
         idle: evaluations of each active place at which the alternative had the value of the original.
-        examples: value of the original and of the alternative when they first differed, by place.
+        examples: value of the original and of the alternative when they first differed, by place; of what
+            is no plain value, its type.
         on_place: told the number of a watched place before its value is computed; it may activate one of
             the place's alternatives, which then stands for the original at once.
         on_act: told the number of an active place when its alternative is known to change something, or
@@ -120,8 +124,8 @@ class Alternatives:
         if before is not _UNKNOWN and _is_same(before, after):
             self.idle[place] = self.idle.get(place, 0) + 1
             return
-        if before is not _UNKNOWN:
-            self.examples.setdefault(place, (before, after))
+        if before is not _UNKNOWN and place not in self.examples:
+            self.examples[place] = (_plain(before), _plain(after))
         self.tell(place)
 
     def tell(self, place: int) -> None:
@@ -156,7 +160,19 @@ class Alternatives:
                 self.switches[place] = False
             if self.on_place is not None:
                 self.on_place(place)
-        return place in self.active
+        index = self.active.get(place)
+        if index is not None and index < 0:
+            self._control(place, index)
+            return False
+        return index is not None
+
+    def _control(self, place: int, index: int) -> None:
+        """The controls, which every place knows: nothing happens, or it raises."""
+        if index == FATAL:
+            self.tell(place)
+            raise FatalFault(f"control: place {place} fails")
+        assert index == IDENTITY
+        self.idle[place] = self.idle.get(place, 0) + 1
 
     def _set(self, watched: frozenset[int]) -> None:
         on = watched | self.active.keys()
@@ -181,8 +197,19 @@ class Alternatives:
         """The value itself; raises ZeroValue if it is zero, or if one of several is."""
         equal = value == 0
         if equal.any() if hasattr(equal, "any") else equal:
+            for place in self.active:
+                self.tell(place)
             raise ZeroValue("the value is zero")
         return value
+
+
+def _plain(value: Any) -> Any:
+    """The value as a report may show it: later changes, and what the object does when asked, stay away."""
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if isinstance(value, tuple | list) and len(value) <= _SHOWN:
+        return tuple(_plain(item) for item in value)
+    return {"opaque": f"{type(value).__module__}:{type(value).__qualname__}"}
 
 
 def _is_same(before: Any, after: Any) -> bool:

@@ -30,7 +30,8 @@ FAILED = ALONE
 #: exit code of a branch whose test leaves its mutant alive
 ALIVE = 114
 
-Key = tuple[Span, str, str | None]
+#: where a mutant is branched: a site with its operation and pattern, or a place of the program text
+Key = tuple[Span, str, str | None] | int
 
 
 @dataclass(slots=True)
@@ -84,8 +85,17 @@ class Trunk:
         self._tests = {mutant: frozenset(tests) for mutant, tests in self.branching.tests.items()}
         self._sockets = open_sockets()
         for mutant in self.branching.mutants:
-            key = (mutant.site.span, mutant.operation, mutant.pattern)
-            self._live.setdefault(key, []).append(mutant)
+            for key in self._keys(mutant):
+                self._live.setdefault(key, []).append(mutant)
+
+    def _keys(self, mutant: Mutant) -> list[Key]:
+        """Where it is to be branched: wherever one of its parts is reached first."""
+        sites: list[Key] = [
+            (single.site.span, single.operation, single.pattern)
+            for single in mutant.singles
+            if single.operation
+        ]
+        return [*sites, *(choice.place for choice in self.branching.choices.get(mutant.id, ()))]
 
     def start_test(self, test: str) -> None:
         """A test begins."""
@@ -97,11 +107,26 @@ class Trunk:
 
         Returns the mutant to become, in a branch; None in the trunk.
         """
-        mutants = self._live.get((span, operation, pattern))
+        return self._branch((span, operation, pattern))
+
+    def branch_at_place(self, place: int) -> Mutant | None:
+        """The same at a place of the program text."""
+        return self._branch(place)
+
+    def places(self) -> list[int]:
+        """The places of the program text that have live mutants in the running test."""
+        return [
+            key
+            for key, mutants in self._live.items()
+            if isinstance(key, int) and any(self._test in self._tests.get(one.id, ()) for one in mutants)
+        ]
+
+    def _branch(self, key: Key) -> Mutant | None:
+        mutants = self._live.get(key)
         if not mutants:
             return None
         due = [mutant for mutant in mutants if self._is_due(mutant)]
-        self._live[span, operation, pattern] = [one for one in mutants if one.id not in self._decided]
+        self._live[key] = [one for one in mutants if one.id not in self._decided]
         if not due:
             return None
         reason = why_not((child.pid for child in self._children.values()), self._sockets)
@@ -127,6 +152,8 @@ class Trunk:
     def _is_due(self, mutant: Mutant) -> bool:
         if mutant.id in self._branched or self._test not in self._tests.get(mutant.id, ()):
             return False
+        if self.branching.every_test:
+            return True
         while mutant.id not in self._decided and self._is_running(mutant.id):
             # its branch in an earlier test decides whether it needs another one
             if self._reap(self._wait()):
@@ -197,7 +224,7 @@ class Trunk:
         _, status = os.waitpid(child.pid, 0)
         os.close(child.pidfd)
         code = os.waitstatus_to_exitcode(status)
-        if code != ALIVE:
+        if code != ALIVE and not self.branching.every_test:
             self._decided.add(child.mutant)
         if code not in (ALIVE, DECIDED):
             overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None

@@ -35,6 +35,11 @@ class Ending:
     failure: str | None = None
     refused: str | None = None
 
+    @property
+    def is_mere_check(self) -> bool:
+        """Whether a check ended the test, and nothing else was the matter."""
+        return self.by is By.CHECK and self.timeout is None and self.failure is None
+
 
 def classify(
     error: BaseException,

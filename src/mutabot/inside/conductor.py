@@ -19,16 +19,15 @@ from mutabot.model import BranchEnd, Branching, Job, SessionEnd, TestEnd, TestSt
 from mutabot.operators.registry import BUILT_IN, CONTROLS, preload
 
 from . import seeds
-from .activate import Evidence
 from .branch import ALIVE, DECIDED, FAILED, Trunk
 from .classify import Ending, classify
 from .lifeline import die_with_parent, nobody_listens
 from .limits import limit_memory
 from .locate import Locator
+from .no_oracle import NoOracle
 from .pipe import Held, Pipe
 from .probes import take
 from .session import Session
-from .unrewritten import unrewritten
 
 if TYPE_CHECKING:
     from .forkserver import Commission, ForkServer
@@ -56,6 +55,7 @@ class Conductor:
         self._pid = os.getpid()
         self._shared: float | None = None
         self._item: pytest.Item | None = None
+        self._no_oracle: NoOracle | None = None
 
     @classmethod
     def from_files(cls, job_file: str, descriptor: int) -> Conductor:
@@ -70,28 +70,33 @@ class Conductor:
         # what the program draws while it is imported is the same in all rounds: a fork server imports it once
         seeds.seed_all(seeds.derive(job.seed, "import"))
         if job.serving is not None:
-            with unrewritten():
-                from .forkserver import ForkServer  # noqa: PLC0415  # of no use to other jobs
+            from .forkserver import ForkServer  # noqa: PLC0415  # of no use to other jobs
 
-                preload((*BUILT_IN, *CONTROLS))
+            preload((*BUILT_IN, *CONTROLS))
             pipe = Pipe(descriptor)
             conductor = cls(job, pipe, ForkServer(job.serving, pipe, os.path.join(home, LOG)))
         else:
             conductor = cls(job, pipe_of(job, home, descriptor))
         conductor.session.install()
+        if job.no_oracle:
+            conductor.switch_off_checks()
         conductor._begin(home)
         return conductor
 
     def _begin(self, home: str) -> None:
         if self.job.branching is not None:
-            with unrewritten():  # once, and not in every branch
-                preload({mutant.operator for mutant in self.job.branching.mutants})
+            preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
             self.grow(self.job.branching, os.path.join(home, LOG))
 
     def grow(self, branching: Branching, log_file: str) -> None:
         """Be a trunk: fork a branch for every live mutant."""
         log = os.stat(log_file)
         self.session.trunk = Trunk(branching, self._pipe, (log.st_dev, log.st_ino), self._become_branch)
+
+    def switch_off_checks(self) -> None:
+        """Let tests check nothing."""
+        self._no_oracle = NoOracle(self.job.root, self.locator)
+        self._no_oracle.install()
 
     def seed_of(self, name: str) -> int:
         """The seed of a test or shared fixture in this round."""
@@ -111,6 +116,46 @@ class Conductor:
         if missing:
             self._errors.append(f"tests that were there before are gone: {', '.join(missing)}")
         items[:] = [by_id[test] for test in self.job.tests if test in by_id]
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_pycollect_makemodule(self, module_path: Any) -> None:
+        """A test file is about to be imported."""
+        if self._no_oracle is not None:
+            self._no_oracle.note_tests(str(module_path))
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_make_collect_report(
+        self, collector: pytest.Collector
+    ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+        """Note whose doing it is that something cannot be collected."""
+        report = yield
+        call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
+        if report.failed and call is not None and call.excinfo is not None:
+            error = call.excinfo.value
+            is_wrapped = isinstance(error, collector.CollectError) and error.__cause__ is not None
+            self.import_failed(error.__cause__ if is_wrapped else error, collector.nodeid)
+        return report
+
+    def import_failed(self, error: BaseException | None, node: str) -> None:
+        """Test files cannot be imported. If the mutant did something meanwhile, their tests noticed it.
+
+        Args:
+            error: what was raised.
+            node: id of what could not be collected; empty for all there is.
+        """
+        evidence = self.session.evidence
+        if error is None or not evidence.is_of_text or not evidence.acted:
+            return
+        below = (f"{node}::", f"{node}/") if node not in ("", ".") else ("",)
+        tests = [test for test in self.job.tests or () if test.startswith(below)]
+        for test in tests[:1] if self.job.stop_at_kill else tests:
+            file = os.path.join(self.job.root, test.partition("::")[0])
+            ending = classify(error, "collect", file, self.locator, self.job.vocabulary, evidence)
+            end = TestEnd(
+                test, "failed", ending.by, ending.phase, ending.exception, ending.message, ending.place,
+                failure=ending.failure, hits=evidence.hits, acted=evidence.acted, example=evidence.example,
+            )  # fmt: skip
+            self._pipe.send(end)
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """Note what could not be collected."""
@@ -208,17 +253,23 @@ class Conductor:
         if report.skipped and self._outcome == "passed":
             self._outcome = "skipped"
         if report.failed and self._outcome != "failed":
-            self._outcome = "failed"
-            if call.excinfo is not None:
-                self._ending = classify(
-                    call.excinfo.value,
-                    call.when,
-                    str(item.path),
-                    self.locator,
-                    self.job.vocabulary,
-                    self._evidence,
-                )
+            ending = self._classified(item, call)
+            if not self.job.no_oracle or (ending is not None and not ending.is_mere_check):
+                self._outcome, self._ending = "failed", ending
         return report
+
+    def _classified(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Ending | None:
+        """What ended the test; None if nothing was raised, as where a test passes that was to fail."""
+        if call.excinfo is None:
+            return None
+        return classify(
+            call.excinfo.value,
+            call.when,
+            str(item.path),
+            self.locator,
+            self.job.vocabulary,
+            self.session.evidence,
+        )
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, exitstatus: int) -> None:
@@ -227,11 +278,8 @@ class Conductor:
             self._say_goodbye(int(exitstatus))
 
     def _say_goodbye(self, status: int) -> None:
-        """Wait for branches, check the vocabulary if asked to, and report the end."""
-        if self.session.trunk is not None:
-            self.session.trunk.finish()
-        if self.job.inspect:
-            self.session.inspect_targets()
+        """Say what is left to say, and goodbye."""
+        self.session.finish()
         self._pipe.send(SessionEnd(status, self._collected, tuple(self._errors)))
 
     def _start_clocks(self) -> None:
@@ -270,17 +318,15 @@ class Conductor:
         self._pipe.send(BranchEnd(mutant, end, sites, self._shared))
         return DECIDED if end.is_decided else ALIVE
 
-    @property
-    def _evidence(self) -> Evidence:
-        activation = self.session.activation
-        return activation.evidence if activation is not None else Evidence()
-
     def _test_end(self, test: str) -> TestEnd:
-        session, evidence, ending = self.session, self._evidence, self._ending
+        session, evidence, ending = self.session, self.session.evidence, self._ending
         wall, cpu = time.perf_counter() - self._started[0], time.process_time() - self._started[1]
         meter = session.meter
         assert meter is not None
+        ended_by_refusal = ending is not None and ending.refused is not None
         refusal = str(evidence.refusal) if evidence.refusal is not None else None
+        if evidence.is_of_text and not ended_by_refusal:
+            refusal = None
         return TestEnd(
             test=test,
             outcome=self._outcome,
@@ -291,13 +337,15 @@ class Conductor:
             place=ending.place if ending else None,
             timeout=meter.exceeded,
             failure=evidence.failure or (ending.failure if ending else None),
-            invalid=evidence.invalid,
+            invalid=evidence.invalid or (evidence.is_unknown and ended_by_refusal),
             refused=refusal,
-            caught=refusal is not None and self._outcome == "failed" and not (ending and ending.refused),
+            caught=refusal is not None and self._outcome == "failed" and not ended_by_refusal,
             hits=evidence.hits,
             acted=evidence.acted,
+            partly=evidence.is_partial and not evidence.acted,
             example=evidence.example,
             operations=meter.operations,
+            commands=session.commands,
             wall=wall,
             cpu=cpu,
             simulated=meter.simulated,

@@ -50,6 +50,9 @@ class Door:
         operation: the operation.
         reading: the operation that ``operation.current`` names, or None.
         on_problem: told once about each path that does not fit: (key, error).
+
+    Attributes:
+        commands: how often the robot was made to do this, if it does anything.
     """
 
     def __init__(
@@ -64,10 +67,12 @@ class Door:
         self._signature: inspect.Signature | None = None
         self._paths: dict[str, Path] = {}
         self._last_replies: dict[str | None, Any] = {}
+        self.commands = 0
 
     def reset(self) -> None:
-        """Forget earlier answers: a new test begins."""
+        """Forget earlier answers and commands: a new test begins."""
         self._last_replies.clear()
+        self.commands = 0
 
     def call(
         self, wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
@@ -86,6 +91,8 @@ class Door:
     def perform(self, call: Call, original: Call) -> Any:
         """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
         invocation: Invocation = call.payload
+        fits = invocation.bound is not None or self._signature is None
+        self.commands += self.operation.command and fits  # what does not fit never reaches the robot
         wrapped = self._opposite(invocation) if call.reversed and call.pattern is None else invocation.wrapped
         changed = {
             name: value for name, value in call.values.items() if not same(value, original.values.get(name))

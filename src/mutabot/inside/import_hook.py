@@ -32,9 +32,16 @@ class ImportHook:
         recording: what was seen, if this is a recording; else None.
         imported: files that were instrumented, relative to the root.
         problems: files that were not, with the reason.
+
+    ``on_problem`` is told the file and the reason at once.
     """
 
-    def __init__(self, root: str, instrumentation: Instrumentation) -> None:
+    def __init__(
+        self,
+        root: str,
+        instrumentation: Instrumentation,
+        on_problem: Callable[[str, str], None] = lambda file, reason: None,
+    ) -> None:
         texts = instrumentation.texts
         places = [place for text in texts for place in text.places]
         size = max((place.number for place in places), default=0)
@@ -48,6 +55,7 @@ class ImportHook:
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
         self._real_paths: dict[str, str] = {}
         self._original: GetCode | None = None
+        self._on_problem = on_problem
 
     def install(self) -> None:
         """Instrument the program's files from now on; files imported before are told as problems."""
@@ -55,7 +63,7 @@ class ImportHook:
         for module in list(sys.modules.values()):
             text = self._text_of(_file_of(module))
             if text is not None:
-                self.problems[text.file] = "it was imported before mutabot could look at it"
+                self._refuse(text, "it was imported before mutabot could look at it")
         # get_code is inherited; it is put where the inherited one is found last
         self._original = cast(GetCode, SourceFileLoader.get_code)
         original, hook = self._original, self
@@ -85,15 +93,19 @@ class ImportHook:
 
     def _compiled(self, text: ProgramText, source: bytes, path: str) -> CodeType | None:
         if hashlib.sha256(source).hexdigest() != text.digest:
-            self.problems[text.file] = "it has changed since its mutants were made"
+            self._refuse(text, "it has changed since its mutants were made")
             return None
         try:
             code = compile_text(source, path, text, record=self.recording is not None)
         except (MismatchError, RecursionError, SyntaxError, ValueError) as error:
-            self.problems[text.file] = f"it cannot be instrumented: {error}"
+            self._refuse(text, f"it cannot be instrumented: {error}")
             return None
         self.imported.append(text.file)
         return code
+
+    def _refuse(self, text: ProgramText, reason: str) -> None:
+        self.problems[text.file] = reason
+        self._on_problem(text.file, reason)
 
 
 def _file_of(module: Any) -> str:

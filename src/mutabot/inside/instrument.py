@@ -108,7 +108,7 @@ class _Instrumenter(ast.NodeTransformer):
 
     def _seen(self, node: ast.expr, place: TextPlace) -> ast.expr:
         self.generic_visit(node)
-        return _at(ast.Call(_switch(place.number), [node], []), node)
+        return _seen(node, place, node)
 
     def _statement(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
         if self._record:
@@ -118,20 +118,26 @@ class _Instrumenter(ast.NodeTransformer):
         if not others:
             return [node]
         raising = all(operator == "BSR" for operator, _ in others)
+        tells = ast.Call(ast.Attribute(_switch(0), "tell", ast.Load()), [ast.Constant(place.number)], [])
         chain: list[ast.stmt] = [others[-1][1]]
         for index in reversed(range(len(others) - 1)):
             chain = [_at(ast.If(_is_index(place, index), [others[index][1]], chain), node)]
         if raising:
             return [_at(ast.If(_is_chosen(place), chain, []), node), node]
-        return [_at(ast.If(_is_chosen(place), chain, [node]), node)]
+        return [_at(ast.If(_is_chosen(place), [_at(ast.Expr(tells), node), *chain], [node]), node)]
 
     def _statement_seen(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
         self.generic_visit(node)
         if isinstance(node, ast.AugAssign):  # what is added tells the type
-            node.value = _at(ast.Call(_switch(place.number), [node.value], []), node.value)
+            node.value = _seen(node.value, place, node.value)
             return [node]
-        seen = ast.Call(_switch(place.number), [ast.Constant(None)], [])
-        return [_at(ast.Expr(seen), node), node]
+        return [_at(ast.Expr(_seen(ast.Constant(None), place, node)), node), node]
+
+
+def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
+    """A value that is told to the recording, once the recording knows that it is about to be computed."""
+    entered = ast.Call(_switch(0), [ast.Constant(place.number)], [])
+    return _at(ast.BoolOp(ast.Or(), [entered, ast.Call(_switch(place.number), [value], [])]), node)
 
 
 def _observed(other: ast.expr, place: TextPlace, node: ast.expr) -> ast.expr:

@@ -19,19 +19,25 @@ SEED_VARIABLE = "MUTABOT_SEED"
 _conductor: Conductor | None = None
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_load_initial_conftests() -> None:
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_load_initial_conftests() -> Generator[None, Any, Any]:
     """Before any of the user's code is imported: wake up if there is a job."""
     global _conductor  # noqa: PLW0603  # pytest knows this module, not an object of ours
     if JOB_VARIABLE in os.environ and _conductor is None:
         # tests that start pytest themselves must not find the job again
         job, pipe = os.environ.pop(JOB_VARIABLE), os.environ.pop(PIPE_VARIABLE)
-        from .unrewritten import unrewritten  # noqa: PLC0415  # a sleeping plugin costs nothing
+        from .unrewritten import import_us_unrewritten  # noqa: PLC0415  # a sleeping plugin costs nothing
 
-        with unrewritten():
-            from .conductor import Conductor  # noqa: PLC0415
+        import_us_unrewritten()
+        from .conductor import Conductor  # noqa: PLC0415
 
         _conductor = Conductor.from_files(job, int(pipe))
+    try:
+        return (yield)
+    except BaseException as error:
+        if _conductor is not None:
+            _conductor.import_failed(getattr(error, "cause", error), "")
+        raise
 
 
 def pytest_configure(config: pytest.Config) -> None:

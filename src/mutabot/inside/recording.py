@@ -1,7 +1,8 @@
 """What a baseline sees at each place of the program: kinds of values, and variables of the same type.
 
-In a recording the text of a place ``E`` with number ``p`` becomes ``__mutabot__[p](E)``. A place is looked
-at a few times per test; from then on the function there hands the value through, as cheap as a call can be.
+In a recording the text of a place ``E`` with number ``p`` becomes ``__mutabot__[0](p) or __mutabot__[p](E)``:
+the first notes that the place is reached, whatever comes of ``E``. A place is looked at a few times per test;
+from then on the function there hands the value through, as cheap as a call can be.
 """
 
 from __future__ import annotations
@@ -31,13 +32,15 @@ class Recording:
     """All places of the program, and what was seen there.
 
     Attributes:
-        switches: what instrumented program text calls, by number of the place.
+        entered: places that were reached since the start of the test.
+        switches: what instrumented program text calls, by number of the place; item 0 notes what is reached.
     """
 
     def __init__(self, size: int, variables: Mapping[int, str]) -> None:
         """``size``: the largest number of a place; ``variables``: names of the places that are variables."""
         self._witnesses = [_Witness(self, place, variables.get(place)) for place in range(1, size + 1)]
-        self.switches: list[Callable[[Any], Any]] = [hand_through, *self._witnesses]
+        self.entered: set[int] = set()
+        self.switches: list[Callable[[Any], Any]] = [self.entered.add, *self._witnesses]
 
     def install(self) -> None:
         """Let instrumented program text find its switches."""
@@ -49,13 +52,14 @@ class Recording:
 
     def start(self) -> None:
         """A new test begins: look at every place anew."""
+        self.entered.clear()
         for witness in self._witnesses:
             witness.looks = witness.looks_around = 0
         self.switches[1:] = self._witnesses
 
     def reached(self) -> frozenset[int]:
         """Places that were reached since the start of the test."""
-        return frozenset(witness.place for witness in self._witnesses if witness.looks)
+        return frozenset(self.entered)
 
     def sightings(self) -> tuple[Sighting, ...]:
         """What was seen so far, over all tests, by place."""

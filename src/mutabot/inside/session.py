@@ -28,7 +28,7 @@ from mutabot.model import (
     Span,
 )
 
-from .activate import Activation
+from .activate import Activation, Evidence, together
 from .branch import Trunk
 from .door import Door
 from .intercept import Handler, Interception, NotFoundError, resolve
@@ -36,6 +36,7 @@ from .limits import ClockReader, Meter
 from .pipe import Held, Pipe
 from .record import Recorder
 from .seeds import derive
+from .texts import Texts
 
 #: whether an operation is already under way here: only the outermost is a site
 _under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)
@@ -52,7 +53,8 @@ class Session:
         recorder: traces; always kept, since survivors are compared with the original.
         trunk: set while this process runs the original and forks a branch per mutant.
         branch: id of the mutant that this process was forked to be; None in all others.
-        activation: the mutant, or None for the original.
+        activations: the mutants of calls that are at work: none for the original.
+        texts: the program text, if it is instrumented.
         meter: what the running test has used; None between tests.
         test: node id of the running test.
     """
@@ -64,11 +66,13 @@ class Session:
     interception: Interception = field(init=False)
     trunk: Trunk | None = None
     branch: str | None = None
-    activation: Activation | None = None
+    activations: list[Activation] = field(default_factory=list)
+    texts: Texts | None = None
     meter: Meter | None = None
     test: str = ""
     _doors: list[Door] = field(default_factory=list)
     _told: set[tuple[str, str]] = field(default_factory=set)
+    _parts: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         self.recorder = Recorder(self._site_seen)
@@ -76,6 +80,7 @@ class Session:
 
     def install(self) -> None:
         """Put the interception of the whole vocabulary in place, and the mutant with it."""
+        self.texts = Texts.of(self.job, self.pipe, partial(self._acted, ""))
         vocabulary = self.job.vocabulary
         for operation in vocabulary.operations:
             reading = vocabulary.operation(operation.current) if operation.current is not None else None
@@ -90,35 +95,73 @@ class Session:
             self.activate(self.job.mutant)
 
     def activate(self, mutant: Mutant) -> None:
-        """Take on a mutant."""
-        operation = self.job.vocabulary.operation(mutant.operation)
-        assert operation is not None
-        refusals = frozenset((*operation.refusals, *self.job.vocabulary.refusals))
-        self.activation = Activation(mutant, operation, refusals, self._acted, self._in_mutated_call)
+        """Take on a mutant; those of the program text are alternatives there."""
+        for single in mutant.singles:
+            operation = self.job.vocabulary.operation(single.operation)
+            if operation is not None:
+                refusals = self._refusals(operation)
+                on_act = partial(self._acted, single.id)
+                made = Activation(single, operation, refusals, on_act, self._in_mutated_call)
+                self.activations.append(made)
+
+    def _refusals(self, operation: Operation) -> frozenset[str]:
+        return frozenset((*operation.refusals, *self.job.vocabulary.refusals))
+
+    @property
+    def evidence(self) -> Evidence:
+        """What the mutant did in the running test."""
+        found = [activation.evidence for activation in self.activations]
+        if self.texts is not None and self.texts.is_mutant:
+            found.append(self.texts.evidence)
+        return together(found)
+
+    @property
+    def commands(self) -> int:
+        """Operations of the running test that made the robot do something."""
+        return sum(door.commands for door in self._doors)
 
     def take_on(self, job: Job, pipe: Pipe) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
         self.job, self.pipe = job, pipe
+        if self.texts is not None:
+            self.texts.pipe = pipe
 
     def start_test(self, test: str) -> None:
         """A test begins, before its fixtures."""
         self.test = test
+        self._parts.clear()
         self.meter = Meter(self.job.budgets.get(test, Budget()))
         self.recorder.start()
         for door in self._doors:
             door.reset()
         if self.trunk is not None:
             self.trunk.start_test(test)
+        if self.texts is not None:
+            branch = self._branch_at_place if self.trunk is not None else None
+            self.texts.start_test(test, branch, self.trunk.places() if self.trunk is not None else ())
+        if self.trunk is not None:
             self._become(self.trunk.branch_at_start())
-        if self.activation is not None:
-            self._start_activation(self.activation)
+        if self.branch is None:  # else it has just become its mutant
+            self._start_activations()
 
-    def _start_activation(self, activation: Activation) -> None:
-        activation.start(derive(self.job.seed, self.job.round, self.test, activation.mutant.id))
+    def _start_activations(self) -> None:
+        for activation in self.activations:
+            activation.start(derive(self.job.seed, self.job.round, self.test, activation.mutant.id))
 
     def end_test(self) -> None:
         """The test and its fixtures are over."""
         self.meter = None
+        if self.texts is not None:
+            self.texts.end_test()
+
+    def finish(self) -> None:
+        """All tests are over: wait for branches, tell what was seen, and check the vocabulary if asked to."""
+        if self.trunk is not None:
+            self.trunk.finish()
+        if self.texts is not None:
+            self.texts.finish()
+        if self.job.inspect:
+            self.inspect_targets()
 
     def inspect_targets(self) -> None:
         """Import what no test imported, so that every target of the vocabulary is looked at."""
@@ -204,7 +247,7 @@ class Session:
                 if mutated is not None:
                     result, reply = mutated.run(door, call)
                     return result
-                reply = door.reply(call, door.perform(call, call))
+                reply = door.reply(call, self._perform(door, call))
                 return reply.payload
             finally:
                 self._record(located, call, reply)
@@ -230,7 +273,7 @@ class Session:
                 if mutated is not None:
                     result, reply = await mutated.run_async(door, call)
                     return result
-                reply = door.reply(call, await door.perform(call, call))
+                reply = door.reply(call, await self._perform_async(door, call))
                 return reply.payload
             finally:
                 self._record(located, call, reply)
@@ -240,10 +283,31 @@ class Session:
     def _mutant_for(self, span: Span, call: Call) -> Activation | None:
         if self.trunk is not None:
             self._let_branch(self.trunk, span, call)
-        activation = self.activation
-        if activation is None or not activation.is_here(span, call.operation.target):
-            return None
-        return activation if activation.fits(call) else None
+        for activation in self.activations:
+            if activation.is_here(span, call.operation.target) and activation.fits(call):
+                return activation
+        return None
+
+    def _perform(self, door: Door, call: Call) -> Any:
+        """Do what the program says."""
+        __tracebackhide__ = True
+        try:
+            return door.perform(call, call)
+        except BaseException as error:
+            self._raised(error, call)
+            raise
+
+    async def _perform_async(self, door: Door, call: Call) -> Any:
+        __tracebackhide__ = True
+        try:
+            return await door.perform(call, call)
+        except BaseException as error:
+            self._raised(error, call)
+            raise
+
+    def _raised(self, error: BaseException, call: Call) -> None:
+        if self.texts is not None:
+            self.texts.raised(error, call, self._refusals(call.operation))
 
     def _site_seen(self, site: SiteSeen) -> None:
         if self.branch is None:  # a branch sends its sites with its end
@@ -254,13 +318,21 @@ class Session:
         pattern = call.pattern.text if call.pattern is not None else None
         self._become(trunk.branch(span, call.operation.target, pattern))
 
+    def _branch_at_place(self, place: int) -> None:
+        """The same for the mutants of a place in the program text."""
+        if self.trunk is not None:
+            self._become(self.trunk.branch_at_place(place))
+
     def _become(self, mutant: Mutant | None) -> None:
         """In a branch that was just forked: take on its mutant."""
-        if mutant is not None:
-            self.trunk, self.branch = None, mutant.id
-            self.activate(mutant)
-            assert self.activation is not None
-            self._start_activation(self.activation)
+        if mutant is None or self.trunk is None:
+            return
+        choices = self.trunk.branching.choices.get(mutant.id, ())
+        self.trunk, self.branch = None, mutant.id
+        self.activate(mutant)
+        self._start_activations()
+        if self.texts is not None:
+            self.texts.become(choices)
 
     def _record(self, located: tuple[Span, Role], call: Call, reply: Reply | None) -> None:
         span, role = located
@@ -284,8 +356,13 @@ class Session:
 
         return handle
 
-    def _acted(self) -> None:
-        self.pipe.send(Acted(self.test, self.branch))
+    def _acted(self, part: str) -> None:
+        """A part of the mutant changed something; the one of the program text has no name."""
+        self._parts.add(part)
+        if self.texts is not None and self.texts.is_mutant and not self.texts.has_acted:
+            return
+        if all(activation.mutant.id in self._parts for activation in self.activations):
+            self.pipe.send(Acted(self.test, self.branch))
 
     def _in_mutated_call(self, began: bool) -> None:
         self.pipe.send(MutatedCall(self.test, began, self.branch))

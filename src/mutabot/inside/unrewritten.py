@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from typing import Any
 
 
-@contextmanager
-def unrewritten() -> Iterator[None]:
-    """Inside, pytest does not rewrite what is imported.
+def import_us_unrewritten() -> None:
+    """From now on pytest does not rewrite modules of mutabot that are imported.
 
     It would rewrite the asserts of everything in a plugin's distribution, and parse each module anew in
     every process, as none may write bytecode beside the sources.
     """
-    finders = [finder for finder in sys.meta_path if type(finder).__name__ == "AssertionRewritingHook"]
-    for finder in finders:
-        sys.meta_path.remove(finder)
-    try:
-        yield
-    finally:
-        sys.meta_path[:0] = finders
+    for finder in sys.meta_path:
+        marked: Any = getattr(finder, "_must_rewrite", None)
+        if isinstance(marked, set):
+            marked.discard("mutabot")
+            getattr(finder, "_marked_for_rewrite_cache", {}).clear()

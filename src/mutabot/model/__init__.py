@@ -1,5 +1,7 @@
 """Plain data: what mutabot talks about, without any input or output."""
 
+from .alternative import FATAL as FATAL
+from .alternative import IDENTITY as IDENTITY
 from .alternative import Alternative as Alternative
 from .alternative import Choice as Choice
 from .alternative import Instrumentation as Instrumentation
@@ -21,12 +23,15 @@ from .job import Copied as Copied
 from .job import CopyEnded as CopyEnded
 from .job import Job as Job
 from .job import MutatedCall as MutatedCall
+from .job import NotInstrumented as NotInstrumented
+from .job import PlacesReached as PlacesReached
 from .job import Problem as Problem
 from .job import Serving as Serving
 from .job import SessionEnd as SessionEnd
 from .job import SiteSeen as SiteSeen
 from .job import TestEnd as TestEnd
 from .job import TestStart as TestStart
+from .job import TextsSeen as TextsSeen
 from .job import TokensHeld as TokensHeld
 from .job import Unbranched as Unbranched
 from .mutant import Mutant as Mutant

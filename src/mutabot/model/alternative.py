@@ -18,6 +18,10 @@ Extent = tuple[int, int, int, int]
 RUNTIME = "__mutabot__"
 
 
+#: indexes of the controls: the original goes on as it is; the place raises
+IDENTITY, FATAL = -1, -2
+
+
 def kept_name(index: int) -> str:
     """The name that stands in a template for a kept part of the original."""
     return f"__kept_{index}__"
@@ -110,7 +114,7 @@ class Choice:
 
     Attributes:
         place: number of the place.
-        index: 0-based index of the alternative there.
+        index: 0-based index of the alternative there; ``IDENTITY`` and ``FATAL`` are possible everywhere.
     """
 
     place: int

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, get_args
 
+from .alternative import Choice, Instrumentation, Sighting
 from .codec import from_data, to_data
 from .mutant import Mutant
 from .operation import Vocabulary
@@ -47,6 +48,8 @@ class Branching:
         wall: the same for tests that are missing there.
         at_start: whether to fork when a test begins instead of at the site: nothing but the imports is
             shared then. Only of use to measure what sharing is worth.
+        choices: for mutants of the program text, by id: the alternatives that they are.
+        every_test: whether to branch a mutant also in tests after one that decided about it.
     """
 
     mutants: tuple[Mutant, ...]
@@ -55,6 +58,8 @@ class Branching:
     walls: Mapping[str, float] = field(default_factory=dict)
     wall: float = 600.0
     at_start: bool = False
+    choices: Mapping[str, tuple[Choice, ...]] = field(default_factory=dict)
+    every_test: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +82,8 @@ class Job:
             imported.
         branching: set for a trunk: fork a branch for each live mutant at its site.
         serving: set for a fork server: the socket over which jobs come. It runs no test itself.
+        instrumentation: what to put into the program text; None to leave it alone.
+        no_oracle: whether all checks are switched off.
     """
 
     root: str
@@ -94,6 +101,8 @@ class Job:
     inspect: bool = False
     branching: Branching | None = None
     serving: int | None = None
+    instrumentation: Instrumentation | None = None
+    no_oracle: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,11 +129,41 @@ class TestStart:
 class Acted:
     """The mutant changed something for the first time in this test: proof that mutated code ran.
 
+    ``test`` is empty for a mutant of the program text that did so before any test began.
     ``mutant`` is the branch that says so; None in a session that is one mutant altogether.
     """
 
     test: str
     mutant: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PlacesReached:
+    """Places of the program text that a test reached; those before any test, if ``test`` is empty."""
+
+    test: str
+    places: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TextsSeen:
+    """What a recording saw of the program text, over all tests.
+
+    Attributes:
+        imported: files that were imported, relative to the root.
+        sightings: what was seen at each place.
+    """
+
+    imported: tuple[str, ...]
+    sightings: tuple[Sighting, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NotInstrumented:
+    """A file whose mutants cannot run, because it was imported without its alternatives."""
+
+    file: str
+    reason: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,7 +233,7 @@ class TestEnd:
         test: node id.
         outcome: ``passed``, ``failed`` or ``skipped``.
         by: what noticed, for a failure.
-        phase: ``setup``, ``call`` or ``teardown``: where it failed.
+        phase: ``setup``, ``call`` or ``teardown``: where it failed; ``collect`` if it never began.
         exception: type of the exception as ``module:Name``.
         message: first lines of the exception's text.
         place: ``file:line`` where the failure was noticed.
@@ -205,8 +244,10 @@ class TestEnd:
         caught: whether the program handled that refusal, so that the test ended for another reason.
         hits: calls at the mutant's site (with its operation and pattern).
         acted: hits at which the mutant changed something.
+        partly: whether a part of a mutant of higher order changed something, and another did not.
         example: value before and after at the first hit at which it acted.
         operations: intercepted calls at any site.
+        commands: operations that made the robot do something, from any site.
         wall, cpu: seconds of the test, fixtures included.
         simulated: simulated seconds, or None if there is no clock.
         trace: per hit: site index, values written, values read, and what a command returned.
@@ -230,14 +271,24 @@ class TestEnd:
     caught: bool = False
     hits: int = 0
     acted: int = 0
+    partly: bool = False
     example: tuple[Any, ...] | None = None
     operations: int = 0
+    commands: int = 0
     wall: float = 0.0
     cpu: float = 0.0
     simulated: float | None = None
     trace: tuple[Any, ...] = ()
     truncated: bool = False
     probes: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def notices(self) -> bool:
+        """Whether this test noticed its mutant, provided that the mutant had changed anything."""
+        if self.failure is not None or self.invalid:
+            return False
+        is_refused = self.refused is not None and not self.caught
+        return self.timeout is not None or (self.outcome == "failed" and not is_refused)
 
     @property
     def is_decided(self) -> bool:
@@ -306,6 +357,9 @@ Line = (
     SiteSeen
     | TestStart
     | Acted
+    | PlacesReached
+    | TextsSeen
+    | NotInstrumented
     | MutatedCall
     | TestEnd
     | BranchEnd

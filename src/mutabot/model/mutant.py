@@ -25,6 +25,7 @@ class Mutant:
         description: one line that an engineer recognises.
         idle: what the operation answered here in the baseline, if that is a plain value: what the program
             gets when the command is left out. ``{"opaque": type}`` if it is no plain value.
+        parts: the mutants that this one is at once; empty for a mutant of the first order.
     """
 
     number: int
@@ -37,16 +38,24 @@ class Mutant:
     variant: str
     description: str
     idle: Any = None
+    parts: tuple[Mutant, ...] = ()
 
     @property
     def id(self) -> str:
         """Stable under edits elsewhere: file, function, text, occurrence, quantity, operator."""
+        if self.parts:
+            return "+".join(part.id for part in self.parts)
         from_pattern = f"{self.pattern_name}" if self.pattern is not None else ""
         subject = "/".join(part for part in (from_pattern, self.quantity) if part) or "call"
         variant = f"={self.variant}" if self.variant else ""
         if not self.operation:
             return f"{self.site.id}:{self.operator}{variant}"
         return f"{self.site.id}:{subject}:{self.operator}{variant}"
+
+    @property
+    def singles(self) -> tuple[Mutant, ...]:
+        """The mutants of the first order that it consists of: itself, or its parts."""
+        return self.parts or (self,)
 
     @property
     def pattern_name(self) -> str:

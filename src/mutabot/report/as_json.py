@@ -10,13 +10,14 @@ from typing import Any
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import KillRate, RoundScores, Score
 from mutabot.analysis.statistics import Interval
+from mutabot.campaign.sampling import DRAWING, Drawing
 from mutabot.campaign.verify import CONFIRMATION, FLAKY, VERIFICATION, Replayed, Verification
 from mutabot.model import Mutant, Outcome, Quantity, Verdict
 
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
-_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY}
+_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING}
 
 
 def dumps(data: Any) -> str:
@@ -39,6 +40,7 @@ def results_data(results: Results) -> dict[str, Any]:
                 "family": group.family,
                 "role": group.role,
                 "mutants": group.mutants,
+                "population": group.population,
                 **scores_data(group.scores),
             }
             for group in results.groups
@@ -63,6 +65,7 @@ def results_data(results: Results) -> dict[str, Any]:
             }
             for one in results.tests
         ],
+        "sample": drawing_data(results.drawing),
         "flaky": list(results.flaky.tests),
         "verification": _verification(results.verification),
         "confirmation": dict(results.confirmation) if results.confirmation is not None else None,
@@ -128,8 +131,10 @@ def scores_data(scores: RoundScores) -> dict[str, Any]:
         **score_data(scores.total),
         "score": scores.mean,
         "check_score": scores.mean_check,
-        "interval": _interval(scores.interval),
-        "check_interval": _interval(scores.check_interval),
+        "interval": interval_data(scores.interval),
+        "check_interval": interval_data(scores.check_interval),
+        "sample_interval": interval_data(scores.sample_interval),
+        "sample_check_interval": interval_data(scores.sample_check_interval),
         "rounds": [
             {"round": number, **score_data(score)} for number, score in enumerate(scores.rounds, start=1)
         ],
@@ -202,11 +207,19 @@ def _kill_rate(rate: KillRate) -> dict[str, Any]:
         "killed": rate.killed,
         "valid": rate.valid,
         "rate": rate.rate,
-        "interval": _interval(rate.interval),
+        "interval": interval_data(rate.interval),
     }
 
 
-def _interval(interval: Interval | None) -> dict[str, float] | None:
+def drawing_data(drawing: Drawing | None) -> dict[str, Any] | None:
+    """How the mutants were drawn, or None if all of them were run."""
+    if drawing is None:
+        return None
+    return {"size": drawing.sample, "one_per_site": drawing.one_per_site, "selected": drawing.selected}
+
+
+def interval_data(interval: Interval | None) -> dict[str, float] | None:
+    """An interval with its level, or None."""
     if interval is None:
         return None
     return {"low": interval.low, "high": interval.high, "level": interval.level}

@@ -64,6 +64,7 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
         yield group_table(results)
         if results.rounds > 1:
             yield Text(_INTERVALS, style="dim")
+        yield from sample_lines(results)
     yield from _survivors(results, width)
     yield from _outside(results, width)
     yield from left_out_lines(results.left_out, everything=everything)
@@ -186,6 +187,29 @@ def group_table(results: Results) -> Table:
             _counts(group.scores),
         )
     return table
+
+
+def sample_lines(results: Results) -> Iterator[RenderableType]:
+    """How the mutants were drawn, and what that says about all of them."""
+    drawing = results.drawing
+    if drawing is None:
+        return
+    drawn = f"{len(results.mutants)} of {plural(drawing.selected, 'mutant')}"
+    how = [f"a sample of {drawing.sample}"] if drawing.sample is not None else []
+    how += ["one per site"] if drawing.one_per_site else []
+    yield heading(f"{drawn} were drawn: {' of '.join(how)}")
+    for group in results.groups:
+        if group.population is not None:
+            yield Text(_all_text(group), overflow="fold")
+
+
+def _all_text(group: Group) -> str:
+    drawn = f"{_name(group)}: {group.mutants} of {group.population}"
+    scores = group.scores
+    if scores.sample_interval is None or scores.sample_check_interval is None:
+        return f"{drawn}; too few to say anything about all of them"
+    whole, check = between(scores.sample_interval), between(scores.sample_check_interval)
+    return f"{drawn}; score of all of them in these rounds {whole}, check score {check}"
 
 
 def _score_cell(mean: float | None, killed: int, valid: int, interval: Interval | None) -> Text:

@@ -1,0 +1,103 @@
+"""Redundancy: which mutants tell nothing that others do not tell as well.
+
+Two notions, both from what tests really did (*dynamic*), so about this suite and these rounds:
+
+- *Alike* are mutants that die in exactly the same tests and rounds with the same messages.
+- Mutant a *subsumes* mutant b if something kills a, and everything that kills a kills b too, where
+  "something" is a test in a round. Mutants that subsume each other form a class; a class that no other one
+  subsumes is a *dominator*, and one mutant of each dominator makes a smallest set whose killing kills all:
+  Ammann, Delamaro and Offutt, "Establishing Theoretical Minimal Sets of Mutants" (ICST 2014); Kurtz, Ammann,
+  Delamaro, Offutt and Deng, "Mutant Subsumption Graphs" (Mutation 2014).
+
+A test in a round stands for a test case of these papers: with other seeds it is another one. Both notions
+need every test that reaches a mutant to have been run (``Outcome.complete``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+from mutabot.campaign.verify import without_accidents
+from mutabot.model import Outcome
+
+from .ends import noticing_tests
+
+M = TypeVar("M", bound=Hashable)
+Killer = tuple[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Redundancy:
+    """What a set of mutants repeats.
+
+    Attributes:
+        alike: groups of at least two mutants that die in the same tests, rounds and messages.
+        dominators: classes that no other one subsumes; any one mutant of each will do.
+        killed: mutants that were killed at all, and about which everything is known.
+        unknown: killed mutants of which not every test was run; they are in no group and no class.
+    """
+
+    alike: tuple[tuple[str, ...], ...]
+    dominators: tuple[tuple[str, ...], ...]
+    killed: int
+    unknown: int
+
+    @property
+    def redundant(self) -> int:
+        """Mutants that could be left out because another one is like them."""
+        return sum(len(group) - 1 for group in self.alike)
+
+    @classmethod
+    def of(cls, mutants: Mapping[str, Sequence[Outcome]]) -> Redundancy:
+        """That of these mutants, given the outcomes of each."""
+        killed = {name: [one for one in those if one.verdict.is_killed] for name, those in mutants.items()}
+        killed = {name: those for name, those in killed.items() if those}
+        known = {name: those for name, those in killed.items() if all(one.complete for one in those)}
+        return cls(
+            alike=tuple(group for group in _grouped_by_manner(known) if len(group) > 1),
+            dominators=dominators({name: killers_of(those) for name, those in known.items()}),
+            killed=len(known),
+            unknown=len(killed) - len(known),
+        )
+
+
+def killers_of(outcomes: Iterable[Outcome]) -> frozenset[Killer]:
+    """The tests, each with its round, that kill a mutant."""
+    return frozenset((test, one.round) for one in outcomes for test in noticing_tests(one))
+
+
+def subsumes(one: frozenset[Killer], other: frozenset[Killer]) -> bool:
+    """Whether a mutant with the one set of killers subsumes a mutant with the other."""
+    return bool(one) and one <= other
+
+
+def dominators(killers: Mapping[M, frozenset[Killer]]) -> tuple[tuple[M, ...], ...]:
+    """The classes of mutants that no other class subsumes, in the order in which they first occur."""
+    classes: dict[frozenset[Killer], list[M]] = {}
+    for mutant, those in killers.items():
+        if those:
+            classes.setdefault(those, []).append(mutant)
+    smallest: list[frozenset[Killer]] = []
+    for those in sorted(classes, key=len):  # what subsumes a class is smaller, so it is found before
+        if not any(other <= those for other in smallest):
+            smallest.append(those)
+    kept = set(smallest)
+    return tuple(tuple(members) for those, members in classes.items() if those in kept)
+
+
+def _grouped_by_manner(mutants: Mapping[str, Sequence[Outcome]]) -> list[tuple[str, ...]]:
+    groups: dict[frozenset[Hashable], list[str]] = {}
+    for name, outcomes in mutants.items():
+        groups.setdefault(frozenset(_manner(outcomes)), []).append(name)
+    return [tuple(group) for group in groups.values()]
+
+
+def _manner(outcomes: Iterable[Outcome]) -> Iterator[Hashable]:
+    """How a mutant dies, test by test and round by round."""
+    for one in outcomes:
+        if one.test not in {kill.test for kill in one.kills}:  # a time-out
+            yield one.round, one.test, one.verdict, one.exception, without_accidents(one.message)
+        for kill in one.kills:
+            yield one.round, kill.test, kill.by, kill.exception, without_accidents(kill.message)

@@ -1,0 +1,372 @@
+"""Mutants of the program text in campaigns: the same door, engines, judge and journal as mutants of calls."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+import pytest
+
+from mutabot.campaign.run import check, plan_only, run_campaign
+from mutabot.campaign.verify import same_end
+from mutabot.errors import NothingToDoError
+from mutabot.model import By, LeftOut, Outcome, Verdict
+
+from .project import CONFIGURATION, Quiet, fingerprint, request_for, run, write_project
+
+MISSION = """
+    import robot
+
+    STEP = 0.4
+    LIMIT = 5
+
+    def right(arm):
+        arm.move_by(STEP / 2)
+        arm.move_by(0.2)
+        return arm.position()
+
+    def far(arm, factor):
+        arm.move_by(0.5 * factor)
+
+    def careful(arm):
+        try:
+            arm.move_by(0.3)
+        except robot.Refused:
+            return False
+        return True
+
+    def count(items):
+        total = 0
+        while total < len(items):
+            total += 1
+        return total
+
+    def unused(x):
+        return x > 1
+"""
+TESTS = """
+    import mission
+    import robot
+
+    def test_right():
+        arm = robot.Arm()
+        assert abs(mission.right(arm) - 0.4) < 0.05
+        assert mission.LIMIT > 2
+
+    def test_far():
+        arm = robot.Arm()
+        mission.far(arm, 1.0)
+        assert arm.x > 0.1
+
+    def test_careful():
+        assert mission.careful(robot.Arm())
+
+    def test_count():
+        assert mission.count("abc") == 3
+"""
+
+#: short wall clocks: loops without an end are only ended by them
+QUICK = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\npytest_args = ["-o", "pythonpath=."]\n'
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("classical")
+    return write_project(folder, MISSION, TESTS, configuration=QUICK + "timeout_seconds = 3\n")
+
+
+@pytest.fixture(scope="module")
+def ends(project: Path) -> dict[str, dict[str, Outcome]]:
+    """All outcomes, by engine and mutant."""
+    before = fingerprint(project)
+    found = {
+        engine: run(project, engine=engine, families=("robot", "classical"), fresh=True)
+        for engine in ("auto", "replay")
+    }
+    assert fingerprint(project) == before
+    return found
+
+
+def end(ends: dict[str, dict[str, Outcome]], mutant: str) -> Outcome:
+    return ends["replay"][f"mission.py:{mutant}"]
+
+
+def test_both_engines_agree_on_every_mutant(ends: dict[str, dict[str, Outcome]]) -> None:
+    assert ends["auto"].keys() == ends["replay"].keys()
+    different = {
+        mutant: (first, ends["replay"][mutant])
+        for mutant, first in ends["auto"].items()
+        if not same_end(first, ends["replay"][mutant])
+        or (first.acted, first.commands, first.kills, first.example, first.indistinguishable)
+        != _more(ends["replay"][mutant])
+    }
+    assert different == {}
+
+
+def _more(one: Outcome) -> tuple[Any, ...]:
+    return one.acted, one.commands, one.kills, one.example, one.indistinguishable
+
+
+def test_branches_are_what_runs_mutants_that_act_in_a_test(ends: dict[str, dict[str, Outcome]]) -> None:
+    replayed = {mutant for mutant, one in ends["auto"].items() if one.engine == "replay" and one.tests}
+    assert replayed
+    assert all(":<module>:" in mutant for mutant in replayed)
+
+
+def test_a_check_kills(ends: dict[str, dict[str, Outcome]]) -> None:
+    found = end(ends, "right:STEP / 2#1:AOR=mul")
+    assert (found.verdict, found.by, found.test) == (
+        Verdict.KILLED,
+        By.CHECK,
+        "tests/test_mission.py::test_right",
+    )
+    assert found.example == (0.2, 0.8)
+    assert found.commands == 2
+    assert [kill.test for kill in found.kills] == ["tests/test_mission.py::test_right"]
+    assert not found.complete
+
+
+def test_a_bomb_kills_by_exception_before_any_command(ends: dict[str, dict[str, Outcome]]) -> None:
+    found = end(ends, "far:arm.move_by(0.5 * factor)#1:BSR")
+    assert (found.verdict, found.by, found.commands) == (Verdict.KILLED, By.EXCEPTION, 0)
+    assert found.exception == "mutabot.inside.alternatives:Bomb"
+
+
+def test_what_nothing_notices_survives(ends: dict[str, dict[str, Outcome]]) -> None:
+    found = end(ends, "far:0.5 * factor#1:AOR=rightOp")
+    assert (found.verdict, found.example, found.kills) == (Verdict.SURVIVED, (0.5, 1.0), ())
+
+
+def test_an_alternative_with_the_same_value_has_no_effect(ends: dict[str, dict[str, Outcome]]) -> None:
+    found = end(ends, "far:0.5 * factor#1:AOR=pow")
+    assert (found.verdict, found.hits, found.acted) == (Verdict.NO_EFFECT, 1, 0)
+
+
+def test_a_loop_without_end_times_out(ends: dict[str, dict[str, Outcome]]) -> None:
+    found = end(ends, "count:total += 1#1:ASR=sub")
+    assert found.verdict is Verdict.TIMEOUT
+    assert "wall clock" in (found.message or "")
+
+
+def test_a_refusal_that_ends_the_test_stands_outside(ends: dict[str, dict[str, Outcome]]) -> None:
+    found = end(ends, "far:0.5 * factor#1:AOR=add")
+    assert (found.verdict, found.exception) == (Verdict.REFUSED, "robot:Refused")
+    assert found.commands == 1
+
+
+def test_a_refusal_that_the_program_handles_is_no_refusal(tmp_path: Path) -> None:
+    mission = """
+        import robot
+
+        def careful(arm):
+            try:
+                arm.move_by(0.5 + 0.3)
+            except robot.Refused:
+                return False
+            return True
+    """
+    tests = """
+        import mission
+        import robot
+
+        def test_it():
+            assert mission.careful(robot.Arm(0.1)) in (True, False)
+
+        def test_sure():
+            assert mission.careful(robot.Arm(-0.5))
+    """
+    for engine in ("auto", "replay"):
+        found = run(write_project(tmp_path, mission, tests), engine=engine, families=("classical",))
+        assert found["mission.py:careful:0.3#1:UOI=neg"].verdict is Verdict.SURVIVED
+        negative = found["mission.py:careful:0.5 + 0.3#1:UOI=neg"]
+        assert (negative.verdict, negative.by) == (Verdict.KILLED, By.CHECK)
+        assert negative.test == "tests/test_mission.py::test_sure"
+
+
+def test_places_that_no_test_reaches_are_not_covered(ends: dict[str, dict[str, Outcome]]) -> None:
+    assert end(ends, "unused:return x > 1#1:BSR").verdict is Verdict.NOT_COVERED
+
+
+def test_values_computed_at_import_are_mutated_in_processes_of_their_own(
+    ends: dict[str, dict[str, Outcome]],
+) -> None:
+    found = end(ends, "<module>:0.4#1:UOI=neg")
+    assert (found.verdict, found.by, found.test) == (
+        Verdict.KILLED,
+        By.CHECK,
+        "tests/test_mission.py::test_right",
+    )
+    assert found.acted >= 1
+
+
+def test_a_program_that_cannot_be_imported_kills_by_exception(ends: dict[str, dict[str, Outcome]]) -> None:
+    found = end(ends, "<module>:STEP = 0.4#1:BSR")
+    assert (found.verdict, found.by) == (Verdict.KILLED, By.EXCEPTION)
+    assert found.exception == "mutabot.inside.alternatives:Bomb"
+    assert found.commands == 0
+
+
+def test_numbers_of_robot_mutants_do_not_change_when_families_are_added(project: Path) -> None:
+    alone, _ = plan_only(request_for(project), Quiet())
+    together, _ = plan_only(request_for(project, families=("robot", "classical", "text")), Quiet())
+    assert together[: len(alone)] == alone
+    assert [mutant.number for mutant in together] == list(range(1, len(together) + 1))
+    assert [mutant.family for mutant in together] == sorted(
+        (mutant.family for mutant in together), key=("robot", "classical", "text").index
+    )
+
+
+def test_families_operators_and_ids_select(project: Path) -> None:
+    def chosen(**selection: Any) -> set[str]:
+        mutants, _ = plan_only(request_for(project, families=("robot", "classical"), **selection), Quiet())
+        return {mutant.id for mutant in mutants}
+
+    assert all(":BSR" in mutant for mutant in chosen(only=("BSR",)))
+    assert chosen(only=("classical",)).isdisjoint(chosen(only=("robot",)))
+    wild = "mission.py:far:0.5 * factor#1:AOR=add"
+    assert chosen(only=(wild,)) == {wild}
+    file = project / "chosen.txt"
+    file.write_text(f"# some\n{wild}\n", encoding="utf-8")
+    assert chosen(selection=file) == {wild}
+    file.unlink()
+
+
+def test_what_still_holds_is_reused_also_after_another_family_ran(tmp_path: Path) -> None:
+    project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", SMALL)
+    only = ("BSR", "ROR")
+    first = run(project, families=("classical",), only=only)
+    other = Quiet()
+    with pytest.raises(NothingToDoError):  # there is no call of the robot
+        run_campaign(request_for(project, families=("robot",)), other)
+    again = Quiet()
+    run_campaign(request_for(project, families=("classical",), only=only), again)
+    assert any(line.startswith(f"reused all {len(first)} outcomes") for line in again.lines)
+    every = Quiet()
+    run_campaign(request_for(project, families=("classical",), only=only, every_test=True), every)
+    assert any("every test is new" in line for line in every.lines)
+
+
+SMALL = """
+    import mission
+
+    def test_near():
+        assert mission.near(0.1)
+
+    def test_far():
+        assert not mission.near(0.9)
+"""
+
+
+def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path) -> None:
+    project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", SMALL)
+    for engine in ("auto", "replay"):
+        found = run(project, engine=engine, families=("classical",), every_test=True, fresh=True)
+        inverted = found["mission.py:near:x < 0.5#1:UOI=not"]
+        assert inverted.complete
+        assert [kill.test.rpartition("::")[2] for kill in inverted.kills] == ["test_near", "test_far"]
+        assert {kill.by for kill in inverted.kills} == {By.CHECK}
+        assert inverted.test == inverted.kills[0].test
+        one = found["mission.py:near:x < 0.5#1:ROR=trueOp"]
+        assert [kill.test.rpartition("::")[2] for kill in one.kills] == ["test_far"]
+
+
+def test_without_the_oracle_only_exceptions_kill(tmp_path: Path) -> None:
+    mission = "def near(x):\n    assert x >= 0\n    return 1 / (x - 0.5) < 0\n"
+    tests = """
+        import unittest
+        import helper
+        import mission
+        import pytest
+
+        def test_near():
+            assert mission.near(0.1)
+            helper.check(mission.near(0.2))
+
+        class TestFar(unittest.TestCase):
+            def test_far(self):
+                self.assertFalse(mission.near(0.9))
+                self.assertRaises(AssertionError, mission.near, -1.0)
+
+        def test_fails():
+            if not mission.near(0.3):
+                pytest.fail("it is far")
+    """
+    helper = {"tests/helper.py": "def check(value):\n    assert value\n", "tests/conftest.py": ""}
+    configuration = QUICK.replace("pythonpath=.", "pythonpath=. tests")
+    project = write_project(tmp_path, mission, tests, configuration=configuration, more=helper)
+    for engine in ("auto", "replay"):
+        wanted = {"engine": engine, "families": ("classical",), "fresh": True}
+        checked, unchecked = run(project, **wanted), run(project, **wanted, no_oracle=True)
+        assert checked.keys() == unchecked.keys()
+        assert not [mutant for mutant, one in unchecked.items() if one.by is By.CHECK]
+        inverted = "mission.py:near:1 / (x - 0.5) < 0#1:UOI=not"
+        assert (checked[inverted].by, unchecked[inverted].verdict) == (By.CHECK, Verdict.SURVIVED)
+        program = "mission.py:near:x >= 0#1:UOI=not"  # an assertion of the program is none of the tests'
+        assert (unchecked[program].verdict, unchecked[program].by) == (Verdict.KILLED, By.EXCEPTION)
+        bomb = "mission.py:near:return 1 / (x - 0.5) < 0#1:BSR"
+        assert unchecked[bomb].verdict is Verdict.KILLED
+
+
+def test_two_mutants_at_once_count_only_if_both_act(project: Path) -> None:
+    wanted = {"families": ("robot", "classical"), "order": 2, "pairs": 30, "fresh": True}
+    ends = {engine: run(project, engine=engine, only=ONLY, **wanted) for engine in ("auto", "replay")}
+    assert len(ends["auto"]) == 30
+    assert all("+" in mutant for mutant in ends["auto"])
+    different = {
+        mutant: (first, ends["replay"][mutant])
+        for mutant, first in ends["auto"].items()
+        if not same_end(first, ends["replay"][mutant])
+    }
+    assert different == {}
+    idle = [one for one in ends["auto"].values() if one.verdict is Verdict.NO_EFFECT]
+    assert any("of the two" in (one.message or "") for one in idle)
+    assert {one.verdict for one in ends["auto"].values()} >= {Verdict.KILLED, Verdict.NO_EFFECT}
+
+
+ONLY = ("mission.py:right:*", "mission.py:<module>:*")
+
+
+def test_controls_run_in_the_program_text_as_well(project: Path) -> None:
+    for engine in ("branch", "replay"):
+        request = request_for(project, families=("classical",), only=("mission.py:right:*",), engine=engine)
+        assert check(request, Quiet()).data["controls"] >= 2
+
+
+def test_a_file_without_its_alternatives_never_lets_its_mutants_survive(tmp_path: Path) -> None:
+    """Here the test reads the program itself, so that the text which runs is not the instrumented one."""
+    tests = """
+        from pathlib import Path
+
+        def test_near():
+            space = {}
+            exec(Path("mission.py").read_text(), space)
+            assert space["near"](0.1)
+    """
+    project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", tests)
+    with pytest.raises(NothingToDoError, match="no mutants"):
+        run(project, families=("classical",))
+    _, left_out = plan_with_robot(project)
+    assert {item.reason for item in left_out} == {"no test imports it"}
+
+
+def plan_with_robot(project: Path) -> tuple[Any, list[LeftOut]]:
+    """The plan of a program in which at least one file is imported."""
+    (project / "other.py").write_text("def one():\n    return 1\n", encoding="utf-8")
+    (project / "tests" / "test_other.py").write_text(
+        "import other\n\ndef test_one():\n    assert other.one() == 1\n", encoding="utf-8"
+    )
+    text = CONFIGURATION.replace('["mission.py"]', '["mission.py", "other.py"]')
+    (project / "mutabot.toml").write_text(dedent(text), encoding="utf-8")
+    return plan_only(request_for(project, families=("classical",)), Quiet())
+
+
+def test_a_file_that_was_imported_too_early_is_left_out_with_the_reason(tmp_path: Path) -> None:
+    early = {"early.py": "import mission\n"}
+    configuration = QUICK.replace('"-o"', '"-p", "early", "-o"')
+    project = write_project(
+        tmp_path, "def near(x):\n    return x < 0.5\n", SMALL, configuration=configuration, more=early
+    )
+    (project / "pytest.ini").write_text("[pytest]\npythonpath = .\n", encoding="utf-8")
+    with pytest.raises(NothingToDoError, match="imported before"):
+        run(project, families=("classical",))

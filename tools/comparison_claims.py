@@ -1,0 +1,232 @@
+"""What measured comparisons say for and against the published claim, by rule.
+
+The claim: conventional operators suit robot programs badly, because they find too few places, break commands
+as text, ask for physically impossible motions, or make no difference. Each part is held against the robot
+family on the same program. A rule never looks at which program or family it is.
+
+For counts of places the larger one decides. For shares the 95 % interval of the difference decides: *for*
+the claim if it lies wholly above zero, *against* it if wholly below, *undecided* otherwise. It is made from
+the two shares' own intervals as Newcombe does ("Interval estimation for the difference between independent
+proportions", Statistics in Medicine 17, 1998, method 10; Zou and Donner, Statistics in Medicine 27, 2008,
+for intervals other than Wilson's). Both families share the rounds, which draws them together rather than
+apart: where rounds matter, the interval is wider than need be.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+#: one family of a comparison, and a whole comparison, as docs/compare.md describes them
+Family = Mapping[str, Any]
+Data = Mapping[str, Any]
+ROBOT, CONVENTIONAL = "robot", ("classical", "text")
+
+
+class Stance(StrEnum):
+    """What a number says of a claim."""
+
+    FOR = "for"
+    AGAINST = "against"
+    UNDECIDED = "undecided"
+    UNKNOWN = "not measured"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What one family on one program says of a claim."""
+
+    stance: Stance
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """One part of the claim.
+
+    Attributes:
+        name: a few words.
+        statement: what is claimed.
+        judge: what a conventional family says of it, beside the robot family.
+        of_outcomes: whether it speaks of outcomes, so that a family without mutants says nothing.
+    """
+
+    name: str
+    statement: str
+    judge: Callable[[Data, Family, Family], Finding]
+    of_outcomes: bool = True
+
+
+def family_of(data: Data, name: str, role: str = "program") -> Family | None:
+    """A family in a role, if it was asked for."""
+    for family in data["families"]:
+        if (family["family"], family["role"]) == (name, role):
+            return dict(family)
+    return None
+
+
+def finding(claim: Claim, data: Data, name: str) -> Finding:
+    """What a family says of a claim on one program."""
+    robot, other = family_of(data, ROBOT), family_of(data, name)
+    if robot is None or other is None:
+        return Finding(Stance.UNKNOWN, f"the {name if robot is not None else ROBOT} family was not run")
+    for family in (robot, other):
+        if not family["done"] and (claim.of_outcomes or family is robot):
+            return Finding(Stance.UNKNOWN, f"there is no {family['family']} mutant")
+    return claim.judge(data, robot, other)
+
+
+def difference(one: Mapping[str, Any], other: Mapping[str, Any]) -> tuple[float, float, float] | None:
+    """One share less another, with the ends of its interval; None where either has no interval."""
+    if one["interval"] is None or other["interval"] is None:
+        return None
+    first, second = one["share"], other["share"]
+    below = math.hypot(first - one["interval"]["low"], other["interval"]["high"] - second)
+    above = math.hypot(one["interval"]["high"] - first, second - other["interval"]["low"])
+    return first - second, first - second - below, first - second + above
+
+
+def decide(one: Mapping[str, Any], other: Mapping[str, Any]) -> Stance:
+    """For if one share is clearly above the other, against if clearly below."""
+    found = difference(one, other)
+    if found is None:
+        return Stance.UNDECIDED
+    _, low, high = found
+    if low > 0:
+        return Stance.FOR
+    return Stance.AGAINST if high < 0 else Stance.UNDECIDED
+
+
+def difference_text(one: Mapping[str, Any], other: Mapping[str, Any]) -> str:
+    """``17 percentage points more (3 to 25)``."""
+    found = difference(one, other)
+    if found is None:
+        return "nothing tells how sure the difference is"
+    middle, low, high = (100 * number for number in found)
+    word, ends = ("less", (-high, -low)) if middle < 0 else ("more", (low, high))
+    between = " to ".join(f"{end:.1f}".replace("-", "−") for end in ends)
+    return f"{abs(middle):.1f} percentage points {word} ({between})"
+
+
+def share_text(share: Mapping[str, Any]) -> str:
+    """``42 of 120 (35 %, 28–44 %)``."""
+    counts = f"{share['count']} of {share['of']}"
+    if share["share"] is None:
+        return f"at least {counts}" if share.get("unknown") else counts
+    interval = share["interval"]
+    between = f", {100 * interval['low']:.0f}–{100 * interval['high']:.0f} %" if interval else ""
+    return f"{counts} ({percent(share['share'])}{between})"
+
+
+def percent(share: float | None) -> str:
+    """``35 %``, ``8.9 %``, or ``–``."""
+    if share is None:
+        return "–"
+    return f"{100 * share:.1f} %" if 0 < share < 0.0995 else f"{100 * share:.0f} %"
+
+
+def _places(data: Data, robot: Family, other: Family) -> Finding:
+    if data["sample"] is not None:
+        return Finding(Stance.UNKNOWN, "a sample of the mutants does not tell how many places there are")
+    sentence = (
+        f"{other['mutants']} {other['family']} mutants at {other['places']} places, "
+        f"{robot['mutants']} robot mutants at {robot['places']}"
+    )
+    if other["places"] == robot["places"]:
+        return Finding(Stance.UNDECIDED, sentence)
+    return Finding(Stance.FOR if other["places"] < robot["places"] else Stance.AGAINST, sentence)
+
+
+def _weakness(key: str, words: str) -> Callable[[Data, Family, Family], Finding]:
+    def judge(data: Data, robot: Family, other: Family) -> Finding:
+        conventional, ours = other["weaknesses"][key], robot["weaknesses"][key]
+        sentence = (
+            f"{share_text(conventional)} outcomes of {other['family']} mutants {words}; "
+            f"of robot mutants {share_text(ours)}: {difference_text(conventional, ours)}"
+        )
+        return Finding(decide(conventional, ours), sentence)
+
+    return judge
+
+
+def _uninformative(data: Data, robot: Family, other: Family) -> Finding:
+    conventional, ours = other["informative"], robot["informative"]
+    sentence = (
+        f"{share_text(conventional)} {other['family']} mutants are informative; "
+        f"of the robot mutants {share_text(ours)}: {difference_text(conventional, ours)}"
+    )
+    return Finding(decide(ours, conventional), sentence)
+
+
+CLAIMS: Sequence[Claim] = (
+    Claim(
+        "too few places",
+        "Conventional operators find fewer places than robot operators.",
+        _places,
+        of_outcomes=False,
+    ),
+    Claim(
+        "broken commands",
+        "Conventional mutants are broken: invalid, or an exception before any command reaches the robot.",
+        _weakness("broken", "are invalid or raise before any command"),
+    ),
+    Claim(
+        "impossible motions",
+        "Conventional mutants ask for what the robot refuses.",
+        _weakness("impossible", "are refused by the robot"),
+    ),
+    Claim(
+        "no difference",
+        "Conventional mutants change nothing, or nothing that could be told from the original.",
+        _weakness("no_difference", "have no effect or cannot be told from the original"),
+    ),
+    Claim(
+        "any of the three",
+        "All in all, more conventional mutants are invalid, infeasible or equivalent.",
+        _weakness("any", "are broken, refused or without a difference"),
+    ),
+    Claim(
+        "uninformative",
+        "Fewer conventional mutants are informative: valid, not trivial, not indistinguishable.",
+        _uninformative,
+    ),
+)
+
+
+def further(data: Data) -> list[str]:
+    """What else the numbers of one program say, about the worth of scores, dominators and cost."""
+    families = [family for family in data["families"] if family["done"]]
+    lines = [line for family in families for line in _oracle(family)]
+    lines += [line for family in families for line in _worth(family, data["together"])]
+    return lines
+
+
+def _oracle(family: Family) -> list[str]:
+    scores, without = family["scores"], family["without_oracle"]
+    if without is None or scores["score"] is None or without["score"] is None:
+        return []
+    name = f"{family['family']} · {family['role']}"
+    kept = (
+        f"{name}: a score of {percent(scores['score'])} becomes {percent(without['score'])} without an oracle"
+    )
+    check = f"killed by a check are {percent(scores['check_score'])}"
+    if without["score"] >= scores["score"]:
+        return [f"{kept}: with every assertion switched off nothing is lost ({check})."]
+    return [f"{kept}; {check}."]
+
+
+def _worth(family: Family, together: Mapping[str, Any]) -> list[str]:
+    name = f"{family['family']} · {family['role']}"
+    lines = []
+    informative, cpu = family["informative"]["count"], family["cost"]["cpu"]
+    if informative:
+        lines.append(f"{name}: {cpu / informative:.2g} s of processor time per informative mutant.")
+    if together["dominators"] and not together["unknown_mutants"]:
+        lines.append(
+            f"{name}: has a mutant in {family['joint']} of {together['dominators']} joint dominators, "
+            f"and is alone in {family['alone']}."
+        )
+    return lines

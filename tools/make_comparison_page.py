@@ -1,0 +1,252 @@
+"""Write docs/comparison.md, with its pictures, from measured comparisons.
+
+    python tools/make_comparison_page.py paper=comparison.json …   store these, then write the page
+    python tools/make_comparison_page.py                           write it from what is stored
+    python tools/make_comparison_page.py --check                   exit with 1 if it is out of date
+
+A file is what ``mutabot compare --json`` prints; it is stored without the single mutants. Sentences follow
+from the numbers by the rules of ``comparison_claims``. Without any stored comparison there is no page.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from comparison_claims import CLAIMS, CONVENTIONAL, Claim, Data, Stance, finding, further, percent, share_text
+from mutabot.analysis.ends import End
+from mutabot.report.picture import Bar, draw, svg
+
+DOCS = Path(__file__).parents[1] / "docs"
+#: the order of the page; other names follow by alphabet
+ORDER = ("paper", "pick_and_place", "scales")
+
+HEAD = """\
+# Do conventional operators suit robot programs?
+
+<!-- Written by tools/make_comparison_page.py from docs/data/*.json. Do not edit. -->
+
+The study "Mutation Testing for Industrial Robotic Systems" says that conventional mutation operators suit
+robot programs badly: too few places, commands broken as text, physically impossible motions, no difference in
+effect. It gives no figures. These are ours, from [`mutabot compare`](compare.md) on the examples of this
+repository. Every sentence follows from the numbers by a rule: a share speaks *for* the claim if the 95 %
+interval of its difference from the robot family's lies wholly above zero, *against* it if wholly below, and
+is *undecided* otherwise; for places the larger number decides. Intervals speak about other mutants and rounds
+like these; about these very ones the counts are exact.
+"""
+TAIL = """\
+## What it does not say
+
+- These are small programs that were written to be examples. How often a conventional operator hits a
+  calculation depends on how much a program calculates.
+- The robot family is made for the vocabulary of each example, and conventional mutants know nothing of it:
+  *refused* and *indistinguishable* are as good as the vocabulary's refusals and probes.
+- The robot family leaves out beforehand what would change nothing in the baseline, and so do the others as
+  far as they can tell. What was left out is in no number here.
+- *Informative* counts mutants that no test reaches. They tell that a test is missing, many times over.
+- A mutant that tells suites apart is not for that reason like a fault that engineers make.
+"""
+
+
+class PageError(Exception):
+    """The page cannot be written; the text says why."""
+
+
+def store(name: str, source: Path, folder: Path) -> None:
+    """Keep a comparison under a name, without the single mutants."""
+    data = _read(source)
+    if not data.get("finished"):
+        raise PageError(f"{source}: that campaign was {data.get('state')}; only complete ones are compared")
+    folder.mkdir(parents=True, exist_ok=True)
+    kept = {key: value for key, value in data.items() if key != "mutants"}
+    text = json.dumps(kept, indent=1, ensure_ascii=False)
+    (folder / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+
+
+def store_all(arguments: Sequence[str], folder: Path) -> None:
+    """Keep each of ``NAME=FILE``."""
+    for argument in arguments:
+        name, _, source = argument.partition("=")
+        if not source or not name.isidentifier():
+            raise PageError(f"{argument!r} is not NAME=FILE")
+        store(name, Path(source), folder)
+
+
+def load(folder: Path) -> dict[str, Data]:
+    """The stored comparisons by name, in the order of the page."""
+    files = {file.stem: file for file in sorted(folder.glob("*.json"))}
+    names = [*(name for name in ORDER if name in files), *(name for name in files if name not in ORDER)]
+    return {name: _read(files[name]) for name in names}
+
+
+def pages(comparisons: Mapping[str, Data]) -> dict[str, str]:
+    """Path below docs -> text, of the page and its pictures."""
+    return {
+        "comparison.md": page(comparisons),
+        **{f"img/comparison-{name}.svg": picture(data, name) for name, data in comparisons.items()},
+    }
+
+
+def page(comparisons: Mapping[str, Data]) -> str:
+    """The text of the page."""
+    lines = [HEAD, *_summary(comparisons)]
+    for claim in CLAIMS:
+        lines += _claim(claim, comparisons)
+    for name, data in comparisons.items():
+        lines += _example(name, data)
+    return "\n".join([*lines, "", TAIL])
+
+
+def picture(data: Data, name: str) -> str:
+    """The ends of each family as bars."""
+    bars = [
+        Bar(
+            family["family"],
+            f"{family['role']} · {family['mutants']} mutants",
+            {End(end): share["count"] for end, share in family["ends"].items()},
+        )
+        for family in data["families"]
+    ]
+    return svg(draw(bars, f"What became of the mutants: {name}"))
+
+
+def _summary(comparisons: Mapping[str, Data]) -> Iterator[str]:
+    yield from ("## In short", "")
+    yield _row("claim", "family", *comparisons)
+    yield f"|{'---|' * (2 + len(comparisons))}"
+    for claim in CLAIMS:
+        for family in CONVENTIONAL:
+            stances = [finding(claim, data, family).stance for data in comparisons.values()]
+            yield _row(claim.name, family, *(_shown(stance) for stance in stances))
+    yield ""
+
+
+def _claim(claim: Claim, comparisons: Mapping[str, Data]) -> Iterator[str]:
+    yield from (f"## {claim.name[0].upper()}{claim.name[1:]}?", "", f"*{claim.statement}*", "")
+    found = {
+        (name, family): finding(claim, data, family)
+        for name, data in comparisons.items()
+        for family in CONVENTIONAL
+    }
+    for stance in Stance:
+        for (name, _), one in found.items():
+            if one.stance is stance:
+                yield f"- {_shown(stance)}, on {name}: {one.sentence}."
+    yield ""
+
+
+def _example(name: str, data: Data) -> Iterator[str]:
+    yield from (f"## The numbers of {name}", "", _circumstances(data), "")
+    yield from (f"![ends of the mutants of {name}](img/comparison-{name}.svg)", "")
+    families = data["families"]
+    yield _row("", *(f"{family['family']} · {family['role']}" for family in families))
+    yield f"|---|{'---:|' * len(families)}"
+    for label, cells in _rows(families):
+        yield _row(label, *cells)
+    yield ""
+    lines = further(data)
+    yield from (f"- {line}" for line in lines)
+    if lines:
+        yield ""
+
+
+def _rows(families: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, list[str]]]:
+    for key in ("mutants", "places"):
+        yield key, [str(family[key]) for family in families]
+    for key, label in (("wall", "wall clock"), ("cpu", "processor time"), ("simulated", "simulated time")):
+        yield f"{label}, s", [_seconds(family["cost"][key]) for family in families]
+    for end in End:
+        shares = [family["ends"][end.value] for family in families]
+        if any(share["count"] for share in shares):
+            yield end.value, [share_text(share) for share in shares]
+    yield "score", [_score(family["scores"], "score", "killed") for family in families]
+    yield "check score", [_score(family["scores"], "check_score", "by_check") for family in families]
+    if any(family["without_oracle"] for family in families):
+        yield (
+            "score without an oracle",
+            [_score(family["without_oracle"], "score", "killed") for family in families],
+        )
+    for key in ("trivial", "informative"):
+        yield key, [share_text(family[key]) for family in families]
+    for key in ("redundant", "dominators"):
+        yield key, [f"{family[key]} of {family['killed_mutants']} killed" for family in families]
+
+
+def _circumstances(data: Data) -> str:
+    meta = data["meta"]
+    parts = [f"{meta['rounds']} rounds", f"seed {meta['seed']}", f"engine {meta['engine']}"]
+    parts += [f"{meta['jobs']} processes at a time"] if meta.get("jobs") else []
+    if meta.get("seconds"):
+        parts.append(f"{meta['seconds']:.0f} s in all")
+    parts += [f"mutabot {meta['mutabot']}", f"Python {meta['python']}"]
+    if data["sample"] is not None:
+        parts.append(f"a sample of {data['sample']['selected']} mutants")
+    if meta.get("started"):
+        parts.append(f"measured on {datetime.fromtimestamp(meta['started'], UTC):%Y-%m-%d}")
+    return f"{', '.join(parts)}."
+
+
+def _score(scores: Mapping[str, Any] | None, key: str, counted: str) -> str:
+    if scores is None or scores[key] is None:
+        return "–"
+    interval = scores[{"score": "interval", "check_score": "check_interval"}[key]]
+    between = f", {100 * interval['low']:.0f}–{100 * interval['high']:.0f} %" if interval else ""
+    return f"{percent(scores[key])} ({scores[counted]} of {scores['valid']}{between})"
+
+
+def _seconds(seconds: float | None) -> str:
+    return "–" if seconds is None else f"{seconds:.1f}"
+
+
+def _shown(stance: Stance) -> str:
+    return f"**{stance}**" if stance in {Stance.FOR, Stance.AGAINST} else stance.value
+
+
+def _row(*cells: str) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise PageError(f"{file} cannot be read: {error}") from error
+    if not isinstance(data, dict) or not {"families", "together", "meta"} <= set(data):
+        raise PageError(f"{file} is not what `mutabot compare --json` prints")
+    return data
+
+
+def main(arguments: Sequence[str], docs: Path = DOCS) -> int:
+    """Store, write or check; returns the exit code."""
+    folder, check = docs / "data", list(arguments) == ["--check"]
+    try:
+        store_all([] if check else arguments, folder)
+        comparisons = load(folder)
+    except PageError as error:
+        print(error, file=sys.stderr)
+        return 2
+    if check:
+        return int(_is_outdated(pages(comparisons) if comparisons else {}, docs))
+    if not comparisons:
+        print(f"there is no comparison in {folder}, and so no page", file=sys.stderr)
+        return 0
+    for path, text in pages(comparisons).items():
+        (docs / path).parent.mkdir(parents=True, exist_ok=True)
+        (docs / path).write_text(text, encoding="utf-8")
+    return 0
+
+
+def _is_outdated(wanted: Mapping[str, str], docs: Path) -> bool:
+    """Whether a file is missing, differs, or is there without data."""
+    if not wanted:
+        return (docs / "comparison.md").exists()
+    files = ((docs / path, text) for path, text in wanted.items())
+    return any(not file.is_file() or file.read_text(encoding="utf-8") != text for file, text in files)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
