@@ -34,7 +34,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
-from statistics import mean
+from statistics import linear_regression, mean
 from textwrap import dedent
 from typing import Any
 
@@ -43,8 +43,7 @@ MUTANTS_PER_MOVE = 3  # skip, repeat, reverse
 TESTS_PER_FILE = 25
 #: seconds between two looks at the campaign, and looks between two uses of the yardstick
 PAUSE, EVERY = 0.1, 5
-#: outcomes come in heaps of a test each; marks that lie between two heaps
-FIRST_TENTH, LAST_TENTH = (0.005, 0.105), (0.895, 0.995)
+FIRST_TENTH, LAST_TENTH = (0.001, 0.1), (0.9, 0.999)
 SLOWER, LARGER, SHARE = 1.10, 1.05, 0.1
 TICKS = os.sysconf("SC_CLK_TCK")
 
@@ -250,12 +249,15 @@ def yardstick() -> float:
 
 def per_mutant(campaign: Campaign, tenth: tuple[float, float]) -> dict[str, float]:
     """Milliseconds per mutant within a tenth: by the clock, of the processors, and these in yardsticks."""
-    first, last = map(campaign.at, tenth)
-    number = last.outcomes - first.outcomes
-    cpu = (last.cpu - first.cpu) / number
-    used = mean(took for done, took in campaign.yardsticks if first.outcomes <= done <= last.outcomes)
+    first, last = (round(share * campaign.mutants) for share in tenth)
+    seen = [sample for sample in campaign.samples if first <= sample.outcomes <= last]
+    outcomes = [sample.outcomes for sample in seen]
+    # a slope, and not a difference: outcomes come in heaps, and a look may fall into the middle of one
+    clock = linear_regression(outcomes, [sample.clock for sample in seen]).slope
+    cpu = linear_regression(outcomes, [sample.cpu for sample in seen]).slope
+    used = mean(took for done, took in campaign.yardsticks if first <= done <= last)
     return {
-        "clock_ms": round(1e3 * (last.clock - first.clock) / number, 3),
+        "clock_ms": round(1e3 * clock, 3),
         "cpu_ms": round(1e3 * cpu, 3),
         "yardsticks": round(cpu / used, 3),
     }
