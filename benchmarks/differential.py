@@ -4,8 +4,8 @@ Compared of each (mutant, round): verdict, what noticed it, the test, the messag
 outcome says but what it cost. The tests of a mutant run one after the other until one decides, so two equal
 outcomes stand for as many equal (mutant, test, round) outcomes as tests were run.
 
-Use: ``python benchmarks/differential.py [--examples paper …] [--rounds N] [--json]``. Each example runs in
-a copy. The exit code is 1 if the engines disagree anywhere, or if there is nothing to compare.
+Use: ``python benchmarks/differential.py [--examples paper …] [--rounds N]
+[--families classical …] [--json]``. Each example runs in a copy. The exit code is 1 if the engines disagree anywhere, or if there is nothing to compare.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ from mutabot.vocabulary import load
 ROOT = Path(__file__).resolve().parent.parent
 #: example to its rounds; one round of pick_and_place takes replay minutes
 EXAMPLES = {"paper": 5, "pick_and_place": 1, "scales": 1}
+FAMILIES = ("robot", "classical", "text")
 ENGINES = ("branch", "replay")
 #: what two engines may differ in: what an outcome cost, and who found it
 COST = {"wall", "cpu", "shared", "engine"}
@@ -90,7 +91,7 @@ class Silent:
         """Ignore it."""
 
 
-def compare(example: str, rounds: int) -> Row:
+def compare(example: str, rounds: int, families: tuple[str, ...] = ("robot",)) -> Row:
     """Run one example with both engines in the same copy of it."""
     found: dict[str, dict[Key, Outcome]] = {}
     seconds: dict[str, float] = {}
@@ -100,7 +101,9 @@ def compare(example: str, rounds: int) -> Row:
         shutil.copytree(ROOT / "examples" / example, folder, ignore=ignored)
         for engine in ENGINES:
             began = time.monotonic()
-            with Journal.open(run_campaign(request_for(folder, engine, rounds), Silent())) as journal:
+            with Journal.open(
+                run_campaign(request_for(folder, engine, rounds, families), Silent())
+            ) as journal:
                 found[engine] = {(one.mutant, one.round): one for one in journal.outcomes()}
             seconds[engine] = round(time.monotonic() - began, 1)
     branched = found["branch"].values()  # some of them may have fallen back to replay
@@ -116,14 +119,14 @@ def compare(example: str, rounds: int) -> Row:
     )
 
 
-def request_for(folder: Path, engine: str, rounds: int) -> Request:
+def request_for(folder: Path, engine: str, rounds: int, families: tuple[str, ...] = ("robot",)) -> Request:
     """The campaign: all mutants, and nothing taken over from the other engine."""
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, configuration.root)
     jobs = len(os.sched_getaffinity(0))
     return Request(
         configuration, vocabulary, rounds, configuration.seed, jobs,
-        engine="auto" if engine == "branch" else engine, fresh=True,
+        engine="auto" if engine == "branch" else engine, fresh=True, families=families,
     )  # fmt: skip
 
 
@@ -176,9 +179,10 @@ def main() -> int:
     )
     parser.add_argument("--examples", nargs="+", default=list(EXAMPLES), choices=list(EXAMPLES))
     parser.add_argument("--rounds", type=int, help="the same for all examples; by default 5, 1 and 1")
+    parser.add_argument("--families", nargs="+", default=["robot"], choices=FAMILIES)
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
     given = parser.parse_args()
-    rows = [compare(example, given.rounds or EXAMPLES[example]) for example in given.examples]
+    rows = [compare(one, given.rounds or EXAMPLES[one], tuple(given.families)) for one in given.examples]
     if given.json:
         print(json.dumps([asdict(row) for row in rows], indent=2))
     else:
