@@ -5,7 +5,8 @@ outcome says but what it cost. The tests of a mutant run one after the other unt
 outcomes stand for as many equal (mutant, test, round) outcomes as tests were run.
 
 Use: ``python benchmarks/differential.py [--examples paper …] [--rounds N]
-[--families classical …] [--json]``. Each example runs in a copy. The exit code is 1 if the engines disagree anywhere, or if there is nothing to compare.
+[--families classical …] [--json]``. Each example runs in a copy. The exit code is 1 if the engines disagree
+anywhere, or if there is nothing to compare.
 """
 
 from __future__ import annotations
