@@ -63,9 +63,12 @@ def is_like(pattern: str, text: str) -> bool:
 def _from_file(file: Path, mutants: Sequence[Mutant], set_aside: Sequence[str]) -> list[Mutant]:
     found: dict[str, Mutant] = {}
     unknown: list[str] = []
-    ids = {mutant.id for mutant in mutants} | {*set_aside}
-    for pattern in _patterns(file, ids):
-        here = _of_id(pattern, mutants) or [mutant for mutant in mutants if is_like(pattern, mutant.id)]
+    by_id = {mutant.id: mutant for mutant in mutants}
+    for pattern in _patterns(file, by_id.keys() | {*set_aside}):
+        if pattern in by_id:  # as nearly all are, be there thousands; an id may hold signs that are wild
+            here = [by_id[pattern]]
+        else:
+            here = [mutant for mutant in mutants if is_like(pattern, mutant.id)]
         if not here and not any(is_like(pattern, other) for other in set_aside):
             unknown.append(pattern)
         for mutant in here:

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import ast
 import os
+import sys
 from collections.abc import Callable
 from importlib.machinery import SourceFileLoader
 from types import CodeType, ModuleType
 from typing import Any, cast
 
 import wrapt
-from _pytest.assertion import rewrite
 
 from mutabot.model import Role
 
@@ -64,6 +64,7 @@ class NoOracle:
 
     def _switch_off_rewriting(self) -> None:
         """Pytest compiles test files itself; what it compiled in earlier sessions is not used."""
+        rewrite: Any = sys.modules["_pytest.assertion.rewrite"]
         original = rewrite.rewrite_asserts
 
         def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
@@ -71,7 +72,7 @@ class NoOracle:
                 _Remover().visit(tree)
             original(tree, source, path, *rest)
 
-        rewrite.rewrite_asserts = rewrite_asserts  # type: ignore[assignment]  # called by place
+        rewrite.rewrite_asserts = rewrite_asserts
         rewrite._read_pyc = lambda *arguments, **named: None
 
     def _switch_off_imports(self) -> None:
