@@ -65,12 +65,13 @@ def rotation_from_euler(theta_x: float, theta_y: float, theta_z: float) -> Array
 
 def euler_from_rotation(rotation: Array) -> tuple[float, float, float]:
     """Euler angles in degrees, each in (-180, 180], of a rotation matrix of shape (3, 3)."""
-    sine_y = -float(rotation[2, 0])
+    (r00, r01, _), (r10, r11, _), (r20, r21, r22) = rotation.tolist()
+    sine_y = -r20
     if abs(sine_y) > 1.0 - 1e-12:  # gimbal lock: only theta_z - theta_x (or the sum) is defined
         theta_y = math.copysign(math.pi / 2, sine_y)
-        return (0.0, math.degrees(theta_y), math.degrees(math.atan2(-rotation[0, 1], rotation[1, 1])))
-    theta_x = math.atan2(rotation[2, 1], rotation[2, 2])
-    theta_z = math.atan2(rotation[1, 0], rotation[0, 0])
+        return (0.0, math.degrees(theta_y), math.degrees(math.atan2(-r01, r11)))
+    theta_x = math.atan2(r21, r22)
+    theta_z = math.atan2(r10, r00)
     return (math.degrees(theta_x), math.degrees(math.asin(sine_y)), math.degrees(theta_z))
 
 

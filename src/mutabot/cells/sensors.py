@@ -17,6 +17,7 @@ from .simulation import Simulation
 DISTANCE_RANGE = (0.02, 2.0)
 """Range of the distance sensor, m; further away it reads its upper end."""
 _DISTANCE_START = 0.085
+_BASE = np.array(BASE_POSITION)
 """The distance sensor sits in the gripper's palm, this far beyond the interface, m."""
 
 
@@ -95,20 +96,20 @@ class Sensors:
 
 def true_tool_pose(simulation: Simulation) -> Pose:
     """Exact tool pose in the base frame."""
-    site = simulation.model.site("tool").id
-    position = simulation.data.site_xpos[site] - np.array(BASE_POSITION)
+    site = simulation.id_of("site", "tool")
+    position = simulation.data.site_xpos[site] - _BASE
     return pose_of(position, simulation.data.site_xmat[site].reshape(3, 3))
 
 
 def true_box_position(simulation: Simulation, box: Box) -> Position:
     """Exact middle of the box's bottom face (the face that was below at the start), world frame."""
-    body = simulation.model.body(box.name).id
+    body = simulation.id_of("body", box.name)
     centre = simulation.data.xpos[body]
-    up = simulation.data.xmat[body].reshape(3, 3)[:, 2]
+    up = simulation.data.xmat[body][2::3]
     return Position(*(centre - 0.5 * box.edge * up).tolist())
 
 
 def true_box_tilt(simulation: Simulation, box: Box) -> float:
     """Exact angle between the box's own up and the world's up, degrees."""
-    body = simulation.model.body(box.name).id
+    body = simulation.id_of("body", box.name)
     return math.degrees(math.acos(min(1.0, max(-1.0, float(simulation.data.xmat[body][8])))))

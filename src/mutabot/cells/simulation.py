@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Literal
 
 import mujoco
 import numpy as np
@@ -45,12 +46,20 @@ class Simulation:
         self.before_tick: list[Callable[[], None]] = []
         self.after_tick: list[Callable[[], None]] = []
         self._ticks = 0
+        self._ids: dict[tuple[str, str], int] = {}
         self._speeds, self._places = self.data.qvel, self.data.qpos  # views of the physics' own memory
 
     @property
     def time(self) -> float:
         """Simulated time since the cell was made, s."""
         return self._ticks * TICK
+
+    def id_of(self, kind: Literal["body", "site"], name: str) -> int:
+        """Number of a body or site of the model; looked up once, since checks ask for it at every tick."""
+        found = self._ids.get((kind, name))
+        if found is None:
+            found = self._ids[kind, name] = int(getattr(self.model, kind)(name).id)
+        return found
 
     def tick(self) -> float:
         """Advance by one control tick (`TICK` s) and return the simulated time, s.
