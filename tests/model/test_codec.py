@@ -7,6 +7,7 @@ import types
 from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from enum import Enum
+from functools import cache
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import pytest
@@ -46,6 +47,7 @@ def values_of(kind: Any) -> st.SearchStrategy[Any]:
     return of_plain_type(kind)
 
 
+@cache  # one strategy per class, so that classes may hold themselves
 def instances_of(kind: Any) -> st.SearchStrategy[Any]:
     hints = get_type_hints(kind)
     return st.deferred(
