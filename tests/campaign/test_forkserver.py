@@ -31,7 +31,7 @@ TESTS = """
 def project(folder: Path, *, conftest: str, tests: str = TESTS) -> Path:
     """A project whose diary says what happened in its processes; it lies beside it."""
     head = f"""
-    import atexit, os, random, tempfile, threading
+    import atexit, os, random, tempfile, threading, time
     import pytest
 
     def note(text):
@@ -171,6 +171,7 @@ def test_death_of_the_process_that_collected_the_tests_is_a_clear_error(tmp_path
     def shot():
         if os.getpid() != HERE:
             os.kill(HERE, 9)
+            time.sleep(60)  # a copy that is quick may be done before it is taken along
     """
     root = project(tmp_path, conftest="HERE = os.getpid()\n" + shot)
     with pytest.raises(BaselineError, match="killed by signal 9"):
