@@ -188,6 +188,10 @@ class Trial:
             return "start-up"
         with Journal.open(self.journal) as journal:
             results = read_results(journal)
+        if results.state == "complete":  # it was over; the kill came while the results were printed
+            whole = len(results.mutants) * self.rounds
+            self.expect(results.done == whole, f"complete with {results.done} of {whole} outcomes")
+            return "printing"
         self.expect(results.state == "killed", f"a killed campaign is shown as {results.state}")
         if results.mutants:
             return "mutants" if results.done else "controls"
