@@ -135,16 +135,16 @@ def test_an_alternative_chosen_at_the_first_evaluation_stands_at_once(tmp_path: 
     with imported(tmp_path, text) as (module, hook):
         told: list[int] = []
 
-        def fork(number: int) -> None:
+        def fork(number: int, indexes: frozenset[int]) -> None:
             told.append(number)
             if len(told) == 2:  # the second test is where this process becomes the mutant
                 hook.alternatives.activate(choices(text)[0][0])
 
         hook.alternatives.on_place = fork
-        hook.alternatives.watch([place.number])
+        hook.alternatives.watch({place.number: frozenset(range(8))})
         assert [module.f(5, 3), module.f(5, 3)] == [8, 8]
         assert told == [1]
-        hook.alternatives.watch([place.number])
+        hook.alternatives.watch({place.number: frozenset(range(8))})
         assert [module.f(5, 3), module.f(5, 3)] == [2, 2]
         assert told == [1, 1]
         hook.alternatives.activate()

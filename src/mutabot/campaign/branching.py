@@ -7,7 +7,7 @@ the second run of the original. What could not be branched, or got lost with a t
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from mutabot.model import (
     Acted,
@@ -21,6 +21,7 @@ from mutabot.model import (
     SiteSeen,
     TestEnd,
     Unbranched,
+    Undiverged,
 )
 from mutabot.model.job import Line
 
@@ -137,6 +138,7 @@ class _Trunk:
         self._passed: set[str] = set()
         self._failed: set[str] = set()
         self._waiting: dict[str, set[str]] = {}
+        self._undiverged: dict[str, Mapping[str, int]] = {}
         self._trunk_places: dict[int, Place] = {}
 
     def add(self, mutant: Mutant, tests: tuple[str, ...]) -> None:
@@ -191,6 +193,8 @@ class _Trunk:
                 self._note(line)
             case Unbranched():
                 remainder.reasons.setdefault(line.test, line.reason)
+            case Undiverged():
+                self._undiverged[line.test] = line.hits
             case SiteSeen():
                 self._trunk_places[line.index] = place_of(line, self._sources)
             case TestEnd():
@@ -239,19 +243,29 @@ class _Trunk:
 
     def _test_ended(self, end: TestEnd, remainder: Remainder) -> Iterator[Outcome]:
         """The trunk has run a test: the second opinion on the original."""
+        undiverged = self._undiverged.pop(end.test, {})
         if end.outcome == "passed":
             self._passed.add(end.test)
-            self._compare_with_baseline(end)
+            found = observation(end, self._trunk_places)
+            self._compare_with_baseline(end.test, found)
+            self._take_undiverged(end, found, undiverged)
         else:
             self._failed.add(end.test)
             remainder.suspects.append((self._round, end.test))
-        for mutant in self._waiting.pop(end.test, set()):
+        for mutant in self._waiting.pop(end.test, set()) | undiverged.keys():
             if mutant in self._open:
                 yield from self._settle(mutant)
 
-    def _compare_with_baseline(self, end: TestEnd) -> None:
-        key = (self._round, end.test)
-        found = observation(end, self._trunk_places)
+    def _take_undiverged(self, end: TestEnd, found: Observation, hits: Mapping[str, int]) -> None:
+        """The trunk has run its test for these mutants too, up to the end."""
+        for mutant in hits.keys() & self._open.keys():
+            branches = self._open[mutant]
+            own = replace(end, hits=hits[mutant], acted=0, wall=0.0, cpu=0.0, trace=())
+            branches.take(BranchEnd(mutant, own, (), end.simulated))
+            branches.observations[end.test] = found
+
+    def _compare_with_baseline(self, test: str, found: Observation) -> None:
+        key = (self._round, test)
         probes = self._request.vocabulary.probes
         if not compare(self._baseline.observations[key], found, probes).indistinguishable:
             self._baseline.restless.add(key)

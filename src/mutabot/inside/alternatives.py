@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import builtins
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Mapping
 from types import CodeType, FrameType
 from typing import Any, NoReturn
 
 from mutabot.model.alternative import FATAL, IDENTITY, RUNTIME, Choice
 from mutabot.operators.control import FatalFault
+
+from .foresee import Forms, differing, value_of
 
 
 class Bomb(Exception):  # noqa: N818  # the name that the literature gives it
@@ -31,19 +33,19 @@ class Switch:
     Attributes:
         place: its number.
         index: the alternative that is active there; None if the place is only watched.
-        watched: whether its next evaluation is to be told.
+        watched: alternatives that are to be told as soon as they would change something.
     """
 
     __slots__ = ("_before", "_code", "_owner", "index", "place", "watched")
 
-    def __init__(self, owner: Alternatives, place: int, index: int | None, watched: bool) -> None:
+    def __init__(self, owner: Alternatives, place: int, index: int | None, watched: frozenset[int]) -> None:
         self._owner, self.place, self.index, self.watched = owner, place, index, watched
         self._before: Any = _UNKNOWN
         self._code: CodeType | None = None
 
     def chosen(self) -> bool:
         """Asked at every evaluation: whether an alternative stands for the original."""
-        return self._owner.reached(self)
+        return self._owner.reached(self, sys._getframe(1))
 
     # what instrumented text calls around an alternative, so that one sees whether it changed anything
 
@@ -55,8 +57,9 @@ class Switch:
     def became(self, value: Any, original: str = "") -> Any:
         """The alternative's value; ``original`` is the original as text if computing it has no effect."""
         before, self._before = self._before, _UNKNOWN
-        if before is _UNKNOWN and original:
-            before = self._value_of(original, sys._getframe(1))
+        if before is _UNKNOWN:
+            frame = sys._getframe(1)
+            before = self._value_of(original, frame) if original else self._owner.foreseen(self.place, frame)
         self._owner.note(self.place, before, value)
         return value
 
@@ -72,6 +75,8 @@ class Switch:
 _UNKNOWN = object()
 #: items of a list or tuple that is shown
 _SHOWN = 12
+#: evaluations of a place in one test after which it is no longer looked ahead: that takes its time
+_LOOKS = 1000
 
 
 class Alternatives:
@@ -80,11 +85,14 @@ class Alternatives:
     Attributes:
         active: index of the active alternative by place; more than one for mutants of higher order.
         hits: evaluations of each place that was on.
-        idle: evaluations of each active place at which the alternative had the value of the original.
+        idle: evaluations of each active place at which the alternative had the value of the original; of a
+            watched place, those at which all alternatives that are still watched had it.
         examples: value of the original and of the alternative when they first differed, by place; of what
             is no plain value, its type.
-        on_place: told the number of a watched place before its value is computed; it may activate one of
-            the place's alternatives, which then stands for the original at once.
+        on_place: told the number of a watched place, and which of its watched alternatives are about to
+            differ from the original for the first time, or may be; it may activate one of them, which then
+            stands for the original at once.
+        forms: gives a place as trees that can be looked ahead of; None for statements.
         on_act: told the number of an active place when its alternative is known to change something, or
             may do so, for the first time since ``start``.
         switches: what instrumented program text looks at; item 0 is this object.
@@ -97,7 +105,9 @@ class Alternatives:
         self.idle: dict[int, int] = {}
         self.examples: dict[int, tuple[Any, Any]] = {}
         self._told: set[int] = set()
-        self.on_place: Callable[[int], None] | None = None
+        self.on_place: Callable[[int, frozenset[int]], None] | None = None
+        self.forms: Callable[[int], Forms | None] = lambda place: None
+        self._forms: dict[int, Forms | None] = {}
         self.on_act: Callable[[int], None] | None = None
         self.switches: list[Any] = [self, *([False] * size)]
 
@@ -108,7 +118,7 @@ class Alternatives:
     def remove(self) -> None:
         """Switch everything off; program text that is already instrumented goes on as the original."""
         self.active = {}
-        self._set(frozenset())
+        self._set({})
 
     def start(self) -> None:
         """A new test begins: count anew."""
@@ -141,30 +151,63 @@ class Alternatives:
         self.active = {choice.place: choice.index for choice in choices}
         self._set(watched)
 
-    def watch(self, places: Iterable[int]) -> None:
-        """Tell the next evaluation of each of these places, once, and of no other."""
-        self._set(frozenset(places))
+    def watch(self, live: Mapping[int, frozenset[int]]) -> None:
+        """Tell each of these alternatives, by place, when it is about to change something, and no other.
+
+        What cannot be foreseen is told when it is reached; negative indexes always are.
+        """
+        self._set(live)
 
     @property
-    def watched(self) -> frozenset[int]:
-        """Places whose next evaluation will be told."""
-        return frozenset(switch.place for switch in self.switches[1:] if switch and switch.watched)
+    def watched(self) -> dict[int, frozenset[int]]:
+        """Alternatives that are yet to be told, by place."""
+        return {switch.place: switch.watched for switch in self.switches[1:] if switch and switch.watched}
 
-    def reached(self, switch: Switch) -> bool:
+    def reached(self, switch: Switch, frame: FrameType) -> bool:
         """A place that is on is evaluated; whether an alternative stands for it."""
         place = switch.place
         self.hits[place] = self.hits.get(place, 0) + 1
         if switch.watched:
-            switch.watched = False
-            if switch.index is None:
-                self.switches[place] = False
-            if self.on_place is not None:
-                self.on_place(place)
+            self._look_ahead(switch, frame)
         index = self.active.get(place)
         if index is not None and index < 0:
             self._control(place, index)
             return False
         return index is not None
+
+    def _look_ahead(self, switch: Switch, frame: FrameType) -> None:
+        place = switch.place
+        due = self._differing(switch, frame)
+        switch.watched -= due
+        if not switch.watched and switch.index is None:
+            self.switches[place] = False
+        if due and self.on_place is not None:
+            self.on_place(place, due)
+        if switch.watched and place not in self.active:
+            self.idle[place] = self.idle.get(place, 0) + 1
+
+    def foreseen(self, place: int, frame: FrameType) -> Any:
+        """What the original gives, if that can be known without letting anything happen."""
+        forms = self._forms_of(place)
+        try:
+            return _UNKNOWN if forms is None else value_of(forms.original, frame)
+        except (
+            Exception
+        ):  # it cannot be known; or the original would have raised this, the alternative did not
+            return _UNKNOWN
+
+    def _forms_of(self, place: int) -> Forms | None:
+        if place not in self._forms:
+            self._forms[place] = self.forms(place)
+        return self._forms[place]
+
+    def _differing(self, switch: Switch, frame: FrameType) -> frozenset[int]:
+        place = switch.place
+        forms = self._forms_of(place)
+        foreseeable = frozenset(index for index in switch.watched if index >= 0)
+        if forms is None or self.hits[place] > _LOOKS:
+            return switch.watched
+        return switch.watched - foreseeable | differing(forms, foreseeable, frame)
 
     def _control(self, place: int, index: int) -> None:
         """The controls, which every place knows: nothing happens, or it raises."""
@@ -174,11 +217,13 @@ class Alternatives:
         assert index == IDENTITY
         self.idle[place] = self.idle.get(place, 0) + 1
 
-    def _set(self, watched: frozenset[int]) -> None:
-        on = watched | self.active.keys()
+    def _set(self, watched: Mapping[int, frozenset[int]]) -> None:
+        on = watched.keys() | self.active.keys()
         for place in range(1, len(self.switches)):
             self.switches[place] = (
-                Switch(self, place, self.active.get(place), place in watched) if place in on else False
+                Switch(self, place, self.active.get(place), watched.get(place, frozenset()))
+                if place in on
+                else False
             )
 
     # what templates call
@@ -214,6 +259,8 @@ def _plain(value: Any) -> Any:
 
 def _is_same(before: Any, after: Any) -> bool:
     """Whether two values are the same to any program: equal, and of one type."""
+    if before is after:
+        return True
     if type(before) is not type(after):
         return False
     try:

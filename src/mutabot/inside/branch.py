@@ -11,10 +11,11 @@ import os
 import select
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from mutabot.model import BranchDied, Branching, Mutant, Span, TokensHeld, Unbranched
+from mutabot.model import BranchDied, Branching, Mutant, Span, TokensHeld, Unbranched, Undiverged
+from mutabot.model.alternative import AT_ONCE
 
 from .forkable import open_sockets, why_not
 from .isolate import Foot, isolate_files
@@ -109,23 +110,53 @@ class Trunk:
         """
         return self._branch((span, operation, pattern))
 
-    def branch_at_place(self, place: int) -> Mutant | None:
-        """The same at a place of the program text."""
-        return self._branch(place)
+    def branch_at_place(self, place: int, indexes: frozenset[int]) -> Mutant | None:
+        """The same at a place of the program text, for the mutants that are these alternatives."""
+        return self._branch(place, indexes)
 
-    def places(self) -> list[int]:
-        """The places of the program text that have live mutants in the running test."""
-        return [
-            key
-            for key, mutants in self._live.items()
-            if isinstance(key, int) and any(self._test in self._tests.get(one.id, ()) for one in mutants)
-        ]
+    def places(self) -> dict[int, frozenset[int]]:
+        """The alternatives of the program text that are live in the running test, by place."""
+        found = {place: [self._index(one, place) for one in self._judged_at(place)] for place in self._places}
+        return {place: frozenset(indexes) for place, indexes in found.items() if indexes}
 
-    def _branch(self, key: Key) -> Mutant | None:
+    def tell_undiverged(self, hits: Mapping[int, int]) -> None:
+        """The test is over: tell which mutants of the program text were no different from the original.
+
+        ``hits``: evaluations of each place in this test.
+        """
+        same = {
+            mutant.id: hits[place]
+            for place in self._places
+            if hits.get(place)
+            for mutant in self._judged_at(place)
+            if self._index(mutant, place) >= 0 and self._is_due(mutant)
+        }
+        if same:
+            self.pipe.send(Undiverged(self._test, same))
+
+    @property
+    def _places(self) -> list[int]:
+        return [key for key in self._live if isinstance(key, int)]
+
+    def _judged_at(self, place: int) -> Iterator[Mutant]:
+        return (one for one in self._live[place] if self._test in self._tests.get(one.id, ()))
+
+    def _index(self, mutant: Mutant, place: int) -> int:
+        """Which alternative the mutant is; negative if it cannot wait until that changes something."""
+        choices = self.branching.choices[mutant.id]
+        is_alone = len(choices) == 1 and not any(single.operation for single in mutant.singles)
+        return choices[0].index if is_alone else AT_ONCE
+
+    def _branch(self, key: Key, indexes: frozenset[int] | None = None) -> Mutant | None:
         mutants = self._live.get(key)
         if not mutants:
             return None
-        due = [mutant for mutant in mutants if self._is_due(mutant)]
+        here = (
+            mutants
+            if indexes is None or not isinstance(key, int)
+            else [one for one in mutants if self._index(one, key) in indexes]
+        )
+        due = [mutant for mutant in here if self._is_due(mutant)]
         self._live[key] = [one for one in mutants if one.id not in self._decided]
         if not due:
             return None

@@ -7,6 +7,7 @@ are without it. No compiled file is read or written for an instrumented module.
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import os
 import sys
@@ -18,7 +19,8 @@ from typing import Any, cast
 from mutabot.model.alternative import Instrumentation, ProgramText
 
 from .alternatives import Alternatives
-from .instrument import MismatchError, compile_text
+from .foresee import Forms
+from .instrument import MismatchError, compile_text, forms_of
 from .recording import Recording
 
 GetCode = Callable[[SourceFileLoader, str], CodeType | None]
@@ -52,6 +54,9 @@ class ImportHook:
         self.recording: Recording | None = None
         if instrumentation.record:
             self.recording = Recording(size, {place.number: place.text for place in places if place.variable})
+        self._places = {place.number: place for place in places}
+        self._originals: dict[int, ast.expr] = {}
+        self.alternatives.forms = self._forms
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
         self._real_paths: dict[str, str] = {}
         self._original: GetCode | None = None
@@ -96,12 +101,17 @@ class ImportHook:
             self._refuse(text, "it has changed since its mutants were made")
             return None
         try:
-            code = compile_text(source, path, text, record=self.recording is not None)
+            record = self.recording is not None
+            code = compile_text(source, path, text, record=record, originals=self._originals)
         except (MismatchError, RecursionError, SyntaxError, ValueError) as error:
             self._refuse(text, f"it cannot be instrumented: {error}")
             return None
         self.imported.append(text.file)
         return code
+
+    def _forms(self, place: int) -> Forms | None:
+        original = self._originals.get(place)
+        return forms_of(self._places[place], original) if original is not None else None
 
     def _refuse(self, text: ProgramText, reason: str) -> None:
         self.problems[text.file] = reason

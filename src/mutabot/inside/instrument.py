@@ -17,6 +17,8 @@ from typing import TypeVar
 
 from mutabot.model.alternative import RUNTIME, Alternative, Extent, ProgramText, TextPlace, kept_name
 
+from .foresee import Forms
+
 _Key = tuple[str, Extent]
 _Node = TypeVar("_Node", bound=ast.AST)
 #: expressions without effects; attributes and items may be readings of a robot
@@ -28,24 +30,46 @@ class MismatchError(ValueError):
     """A place is not where the plan says."""
 
 
-def compile_text(source: bytes, filename: str, text: ProgramText, *, record: bool = False) -> CodeType:
+def compile_text(
+    source: bytes,
+    filename: str,
+    text: ProgramText,
+    *,
+    record: bool = False,
+    originals: dict[int, ast.expr] | None = None,
+) -> CodeType:
     """Code of a module with all alternatives of its places in it, or with recording.
+
+    ``originals`` takes the expressions at the places as they stand in the text, by number.
 
     Raises SyntaxError like ``compile``, MismatchError if a place cannot be found.
     """
-    tree = instrumented(ast.parse(source, filename), text.places, record=record)
+    tree = instrumented(ast.parse(source, filename), text.places, record=record, originals=originals)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SyntaxWarning)  # alternatives may look as if they were slips
         return compile(tree, filename, "exec", dont_inherit=True)
 
 
-def instrumented(tree: ast.Module, places: Iterable[TextPlace], *, record: bool = False) -> ast.Module:
+def instrumented(
+    tree: ast.Module,
+    places: Iterable[TextPlace],
+    *,
+    record: bool = False,
+    originals: dict[int, ast.expr] | None = None,
+) -> ast.Module:
     """The tree with its places instrumented; the tree itself is changed. Raises MismatchError."""
-    instrumenter = _Instrumenter(places, record)
+    instrumenter = _Instrumenter(places, record, originals)
     instrumenter.visit(tree)
     instrumenter.check()
     _declare_global(tree)
     return tree
+
+
+def forms_of(place: TextPlace, original: ast.expr) -> Forms:
+    """The original and the alternatives as trees that nothing observes."""
+    return Forms(
+        original, tuple(_expression_of(one, place, original, observed=False) for one in place.alternatives)
+    )
 
 
 def is_place(node: ast.AST) -> bool:
@@ -61,10 +85,13 @@ def extent_of(node: ast.expr | ast.stmt) -> Extent:
 
 
 class _Instrumenter(ast.NodeTransformer):
-    def __init__(self, places: Iterable[TextPlace], record: bool) -> None:
+    def __init__(
+        self, places: Iterable[TextPlace], record: bool, originals: dict[int, ast.expr] | None
+    ) -> None:
         self._places: dict[_Key, TextPlace] = {(place.node, place.extent): place for place in places}
         self._found: set[_Key] = set()
         self._record = record
+        self._originals = originals
 
     def check(self) -> None:
         """Every place was met."""
@@ -99,6 +126,8 @@ class _Instrumenter(ast.NodeTransformer):
         if not others:
             self.generic_visit(node)
             return node
+        if self._originals is not None:
+            self._originals[place.number] = copy.deepcopy(node)
         *firsts, tree = others
         for index in reversed(range(len(firsts))):
             tree = _at(ast.IfExp(_is_index(place, index), firsts[index], tree), node)
@@ -166,9 +195,11 @@ def _is_index(place: TextPlace, index: int) -> ast.expr:
     return ast.Compare(actual, [ast.Eq()], [ast.Constant(index)])
 
 
-def _expression_of(alternative: Alternative, place: TextPlace, node: ast.expr) -> ast.expr:
+def _expression_of(
+    alternative: Alternative, place: TextPlace, node: ast.expr, *, observed: bool = True
+) -> ast.expr:
     made = ast.parse(alternative.template, mode="eval").body
-    return _filled(made, place, node)
+    return _filled(made, place, node, observed=observed)
 
 
 def _statement_of(alternative: Alternative, place: TextPlace, node: ast.stmt) -> ast.stmt:
@@ -176,8 +207,11 @@ def _statement_of(alternative: Alternative, place: TextPlace, node: ast.stmt) ->
     return _filled(made, place, node)
 
 
-def _filled(made: _Node, place: TextPlace, node: ast.AST) -> _Node:
-    """A template at the position of its place, with the kept parts put in."""
+def _filled(made: _Node, place: TextPlace, node: ast.AST, *, observed: bool = True) -> _Node:
+    """A template at the position of its place, with the kept parts put in.
+
+    ``observed``: whether the value of the whole original is told, where a template keeps it.
+    """
     if not place.kept:
         return _moved(made, node)
     wanted = set(place.kept)
@@ -189,7 +223,7 @@ def _filled(made: _Node, place: TextPlace, node: ast.AST) -> _Node:
     if missing:
         raise MismatchError(f"{place.span.file}: no expression at {min(missing)}")
     filler = _Filler({kept_name(index): parts[extent] for index, extent in enumerate(place.kept)})
-    if isinstance(node, ast.expr) and place.extent in parts:
+    if observed and isinstance(node, ast.expr) and place.extent in parts:
         was = ast.Attribute(_switch(place.number), "was", ast.Load())
         whole = _at(ast.Call(was, [parts[place.extent]], []), node)
         filler.parts[kept_name(place.kept.index(place.extent))] = whole

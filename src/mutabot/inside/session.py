@@ -138,7 +138,7 @@ class Session:
             self.trunk.start_test(test)
         if self.texts is not None:
             branch = self._branch_at_place if self.trunk is not None else None
-            self.texts.start_test(test, branch, self.trunk.places() if self.trunk is not None else ())
+            self.texts.start_test(test, branch, self.trunk.places() if self.trunk is not None else {})
         if self.trunk is not None:
             self._become(self.trunk.branch_at_start())
         if self.branch is None:  # else it has just become its mutant
@@ -152,6 +152,8 @@ class Session:
         """The test and its fixtures are over."""
         self.meter = None
         if self.texts is not None:
+            if self.trunk is not None:
+                self.trunk.tell_undiverged(self.texts.hits)
             self.texts.end_test()
 
     def finish(self) -> None:
@@ -318,10 +320,10 @@ class Session:
         pattern = call.pattern.text if call.pattern is not None else None
         self._become(trunk.branch(span, call.operation.target, pattern))
 
-    def _branch_at_place(self, place: int) -> None:
-        """The same for the mutants of a place in the program text."""
+    def _branch_at_place(self, place: int, indexes: frozenset[int]) -> None:
+        """The same for the mutants of a place in the program text that are these alternatives."""
         if self.trunk is not None:
-            self._become(self.trunk.branch_at_place(place))
+            self._become(self.trunk.branch_at_place(place, indexes))
 
     def _become(self, mutant: Mutant | None) -> None:
         """In a branch that was just forked: take on its mutant."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from mutabot.model import Call, Choice, Job, NotInstrumented, PlacesReached, TextsSeen
@@ -57,8 +57,15 @@ class Texts:
         """Whether an alternative is active."""
         return bool(self.hook.alternatives.active)
 
-    def start_test(self, test: str, branch: Callable[[int], None] | None, live: Iterable[int]) -> None:
-        """A test begins. In a trunk, ``branch`` is told each of the ``live`` places when it is reached."""
+    def start_test(
+        self,
+        test: str,
+        branch: Callable[[int, frozenset[int]], None] | None,
+        live: Mapping[int, frozenset[int]],
+    ) -> None:
+        """A test begins. In a trunk, ``branch`` is told a place and which of its ``live`` alternatives are
+        about to change something.
+        """
         if not self._begun:
             self._note_early()
         self._test, self._refusal, self._unknown = test, None, False
@@ -75,7 +82,7 @@ class Texts:
         if self.hook.recording is not None:
             self._tell_reached()
         elif self.hook.alternatives.on_place is not None:
-            self.hook.alternatives.watch(())  # what is reached between tests belongs to none
+            self.hook.alternatives.watch({})  # what is reached between tests belongs to none
 
     def finish(self) -> None:
         """All tests are over."""
@@ -87,8 +94,13 @@ class Texts:
         """In a branch that was just forked: let these alternatives stand in the text from now on."""
         alternatives = self.hook.alternatives
         alternatives.on_place = None
-        alternatives.watch(())
+        alternatives.watch({})
         alternatives.activate(*choices)
+
+    @property
+    def hits(self) -> Mapping[int, int]:
+        """Evaluations in the running test of each place that was on."""
+        return self.hook.alternatives.hits
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""

@@ -34,6 +34,7 @@ from .job import TestStart as TestStart
 from .job import TextsSeen as TextsSeen
 from .job import TokensHeld as TokensHeld
 from .job import Unbranched as Unbranched
+from .job import Undiverged as Undiverged
 from .mutant import Mutant as Mutant
 from .operation import Clock as Clock
 from .operation import Operation as Operation

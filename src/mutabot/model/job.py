@@ -219,6 +219,21 @@ class Unbranched:
 
 
 @dataclass(frozen=True, slots=True)
+class Undiverged:
+    """Mutants of the program text that were reached in a trunk's test and always had the original's value.
+
+    The trunk itself has run this test for them.
+
+    Attributes:
+        test: the test, which is about to end.
+        hits: evaluations of the mutant's place in it, by mutant id.
+    """
+
+    test: str
+    hits: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
 class TokensHeld:
     """How many tokens a trunk and its branches hold: what the pool gets back if the trunk dies."""
 
@@ -365,6 +380,7 @@ Line = (
     | BranchEnd
     | BranchDied
     | Unbranched
+    | Undiverged
     | TokensHeld
     | Problem
     | Serving
