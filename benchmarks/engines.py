@@ -7,9 +7,13 @@ Four ways to run the same mutants, in one go on the same machine:
   replay   a fresh process per mutant and round, with the tests that reach the site
   fresh    a fresh pytest per mutant and round with the whole suite until a test fails, as general tools do it
 
+Our workers spare themselves what a plain pytest does for nothing: where hypothesis is installed, its plugin
+imports all of it for a summary at the end. `fresh` does not, for a general tool starts a plain pytest.
+
 The physics bound of a row is the least time in which its steps can be simulated here: steps, divided by the
-rate of the bare engine on one core, divided by cores. Efficiency is that bound divided by the wall time. The
-peak of memory is that of the largest process.
+rate at which the bare engine repeats a run of the example's program on one core while all cores do so,
+divided by cores. Efficiency is that bound divided by the wall time. The peak of memory is that of the largest
+process.
 
 Usage: python benchmarks/engines.py [--examples paper …] [--engines branch …] [--limit N] [--output FILE]
                                     [--page FILE]
@@ -18,16 +22,19 @@ Usage: python benchmarks/engines.py [--examples paper …] [--engines branch …
 from __future__ import annotations
 
 import argparse
+import importlib
+import importlib.util
 import json
 import multiprocessing
 import os
 import resource
 import shutil
 import statistics
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -102,27 +109,28 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=None)
     parser.add_argument("--page", type=Path, default=None, help="page whose last part is written anew")
     options = parser.parse_args()
-    rate = raw_step_rate(len(os.sched_getaffinity(0)))
+    cores = len(os.sched_getaffinity(0))
+    rates = {example: raw_step_rate(example, cores) for example in options.examples if example in PROGRAMS}
     rows = [
-        apart(measure, example, engine, options.limit, rate)
+        apart(measure, example, engine, options.limit, rates.get(example))
         for example in options.examples
         for engine in options.engines
     ]
-    show(rows, rate)
+    show(rows, rates)
     if options.page is not None:
-        write_page(options.page, rows, rate)
+        write_page(options.page, rows, rates)
     if options.output is not None:
-        data = {"raw_steps_per_second": rate, "rows": [row.data for row in rows]}
+        data = {"raw_steps_per_second": rates, "rows": [row.data for row in rows]}
         options.output.write_text(json.dumps(data, indent=1), encoding="utf-8")
 
 
-def write_page(page: Path, rows: list[Row], rate: float) -> None:
+def write_page(page: Path, rows: list[Row], rates: dict[str, float]) -> None:
     """Put the table at the end of a page, after the mark."""
     kept = page.read_text(encoding="utf-8").partition(MARK)[0]
     lines = [
         f"{kept}{MARK}",
         "",
-        f"On {len(os.sched_getaffinity(0))} cores, in one run; bare physics: {rate:,.0f} steps/s on each.",
+        f"On {len(os.sched_getaffinity(0))} cores, in one run; {bare(rates)}.",
         "",
         f"| {' | '.join(HEADINGS)} |",
         f"|---|---|{'---:|' * (len(HEADINGS) - 2)}",
@@ -131,6 +139,12 @@ def write_page(page: Path, rows: list[Row], rate: float) -> None:
         *ratios(rows),
     ]
     page.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def bare(rates: dict[str, float]) -> str:
+    """The rates of the bare engine in words."""
+    found = ", ".join(f"{example} {rate:,.0f}" for example, rate in rates.items())
+    return f"bare physics, steps/s on each: {found}"
 
 
 def ratios(rows: list[Row]) -> Iterator[str]:
@@ -153,13 +167,15 @@ def apart(function: Callable[..., Row], *arguments: Any) -> Row:
         return pool.apply(function, arguments)
 
 
-def measure(example: str, engine: str, limit: int | None, rate: float) -> Row:
+def measure(example: str, engine: str, limit: int | None, rate: float | None) -> Row:
     """Run one example with one engine in a copy, baseline and start-up included."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name) / example
         shutil.copytree(ROOT / "examples" / example, folder, ignore=shutil.ignore_patterns(".mutabot"))
         before, started = cpu_seconds(), time.monotonic()
         request = request_for(folder, **EXAMPLES[example])
+        if engine == "fresh":
+            request = as_plain_pytest(request)
         with Workers(request.root, request.arguments, request.jobs) as workers:
             shared = engine in ("branch", "fork")
             baseline, results = take_baseline(
@@ -174,7 +190,7 @@ def measure(example: str, engine: str, limit: int | None, rate: float) -> Row:
         originals *= 2  # the trunks run the same again
     simulated = originals + sum((one.simulated or 0.0) - (one.shared or 0.0) for one in outcomes)
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
-    bound = None if example == "scales" else simulated * STEPS_PER_SECOND / rate / request.jobs
+    bound = None if rate is None else simulated * STEPS_PER_SECOND / rate / request.jobs
     return Row(example, engine, len(outcomes), wall, cpu, simulated, peak, bound)
 
 
@@ -202,36 +218,57 @@ def request_for(folder: Path, *, selection: str | None, rounds: int) -> Request:
     return Request(configuration, vocabulary, rounds, 1, jobs, selection=file)
 
 
+def as_plain_pytest(request: Request) -> Request:
+    """The same with what hypothesis's plugin imports in a plain pytest, if it is installed."""
+    if importlib.util.find_spec("hypothesis") is None:
+        return request
+    configuration = request.configuration
+    arguments = (*configuration.pytest_args, "-p", "hypothesis")
+    return replace(request, configuration=replace(configuration, pytest_args=arguments))
+
+
 def cpu_seconds() -> float:
     """Processor time of this process and of all that have ended below it, s."""
     own, children = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     return own.ru_utime + own.ru_stime + children.ru_utime + children.ru_stime
 
 
-def raw_step_rate(cores: int) -> float:
+def raw_step_rate(example: str, cores: int) -> float:
     """Physics steps per second and core of the bare engine, with as many processes as there are cores.
 
-    A recorded run is stepped again without control. All cores are busy, as they are in a campaign: cores
-    that share something are slower together than one alone.
+    A recorded run of the example's program is stepped again without control. All cores are busy, as they are
+    in a campaign: cores that share something are slower together than one alone.
     """
     with multiprocessing.get_context("spawn").Pool(cores) as pool:
-        return statistics.mean(pool.map(step_bare, [recorded_inputs()] * cores))
+        inputs = pool.apply(recorded_inputs, (example,))
+        return statistics.mean(pool.map(step_bare, [inputs] * cores))
 
 
-def recorded_inputs() -> list[Any]:
-    """Inputs of all servos at every physics step of half the published program."""
+def recorded_inputs(example: str) -> list[Any]:
+    """Inputs of all servos at every physics step of a run of the example's program."""
     from mutabot.cells import Cell  # noqa: PLC0415  # only this needs it
 
+    sys.path.insert(0, str(ROOT / "examples" / example))
     cell = Cell(1)
     inputs: list[Any] = []
     cell.simulation.after_tick.append(lambda: inputs.extend(cell.simulation.setpoints.copy()))
-    cell.arm.move_by(y=0.2)
-    cell.arm.move_by(theta_x=80)
-    cell.arm.move_by(z=-0.29)
-    cell.gripper.command(1.0)
-    cell.wait(1.5)
-    cell.arm.home()
+    PROGRAMS[example](cell)
     return inputs
+
+
+def run_paper(cell: Any) -> None:
+    """The published program."""
+    kinova, mission = importlib.import_module("kinova"), importlib.import_module("mission")
+    kinova.connect(cell)
+    mission.run()
+
+
+def run_pick_and_place(cell: Any) -> None:
+    """The sorting program."""
+    importlib.import_module("sorting").run(cell)
+
+
+PROGRAMS: dict[str, Callable[[Any], None]] = {"paper": run_paper, "pick_and_place": run_pick_and_place}
 
 
 def step_bare(inputs: list[Any]) -> float:
@@ -262,9 +299,9 @@ def cells(row: Row) -> list[str]:
     ]  # fmt: skip
 
 
-def show(rows: list[Row], rate: float) -> None:
+def show(rows: list[Row], rates: dict[str, float]) -> None:
     """Print the table."""
-    table = Table(title=f"raw physics: {rate:,.0f} steps/s on each core")
+    table = Table(title=bare(rates))
     for heading in HEADINGS:
         table.add_column(heading, justify="left" if heading in ("example", "engine") else "right")
     for row in rows:

@@ -45,9 +45,9 @@ comparisons, `await`, `yield`, `:=`, `super()`, `locals()` and class bodies mean
 - The plus of UOI, which changes no number; ABS of literals, whose sign is UOI's; plain assignments for ASR,
   since a name may have no value before.
 
-An alternative that has the original's value has not acted. That is known where the original is made of
-names, constants and operators, or is a part of the alternative; any other alternative counts as having acted
-when it is reached.
+An alternative that has the original's value has not acted. That is known where the original is a part of the
+alternative, or is made of names, constants, operators, plain attributes and items, or functions of
+mathematics; any other alternative counts as having acted when it is reached.
 
 Values that are computed while the program is imported (constants, taught points, default arguments of
 functions at the top level) have mutants too; they are marked, since they need a process of their own.

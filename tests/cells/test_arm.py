@@ -63,7 +63,8 @@ def test_tool_speed_limit_holds(cell: Cell) -> None:
 
 @pytest.mark.parametrize("move", [{"y": 0.2}, {"z": -0.2}, {"x": -0.2, "y": 0.3}], ids=str)
 def test_tool_travels_in_a_straight_line_within_a_millimetre(cell: Cell, move: dict[str, float]) -> None:
-    start = np.array(cell.truth.tool_pose().position)
+    assert cell.truth.tool_position() == cell.truth.tool_pose().position
+    start = np.array(cell.truth.tool_position())
     direction = np.array([move.get(axis, 0.0) for axis in "xyz"])
     direction /= np.linalg.norm(direction)
     _, poses = record(cell)

@@ -35,7 +35,7 @@ and a little more at the moment they touch it."""
 
 def watch_gripper(cell: Cell) -> None:
     """For every test case: no finger touches what the box lies on, and the arm waits for the fingers."""
-    motion = Motion(cell, lambda: cell.truth.tool_pose().position)
+    motion = Motion(cell, cell.truth.tool_position)
     cell.always(lambda: clearance(cell) > FINGER_CLEARANCE, "the fingers keep clear of conveyor and table")
     cell.always(
         lambda: (
@@ -66,7 +66,7 @@ def height(cell: Cell) -> float:
 
 def clearance(cell: Cell) -> float:
     """Of the fingers above conveyor, table or floor, when they point down."""
-    tool = cell.truth.tool_pose()
+    tool = cell.truth.tool_position()
     return tool.z + BASE_HEIGHT - FINGERS - _top(tool.x)
 
 

@@ -16,7 +16,7 @@ from .monitors import Condition, Monitors, Values
 from .noise import Noise
 from .robotiq import STROKE
 from .scene import Box, Scene
-from .sensors import Sensors, true_box_position, true_box_tilt, true_tool_pose
+from .sensors import Sensors, true_box_position, true_box_tilt, true_tool_pose, true_tool_position
 from .simulation import Simulation
 
 _current: weakref.ref[Cell] | None = None
@@ -32,6 +32,10 @@ class Truth:
     def tool_pose(self) -> Pose:
         """Exact tool pose, base frame."""
         return true_tool_pose(self._simulation)
+
+    def tool_position(self) -> Position:
+        """Exact tool position, base frame; quicker than the whole pose."""
+        return true_tool_position(self._simulation)
 
     def box_position(self, name: str = "box") -> Position:
         """Exact middle of the box's bottom face, world frame."""

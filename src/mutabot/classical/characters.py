@@ -5,6 +5,7 @@ The naive operator: it knows nothing of the command that the text is. Made to be
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterable, Iterator
 from hashlib import sha256
 from itertools import pairwise
@@ -42,9 +43,9 @@ class _Characters(ClassicalOperator):
                 taken.add(changed)
                 yield Draft(variant, (repr(changed),))
 
+    @abstractmethod
     def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:
         """Variants, and the texts they make."""
-        raise NotImplementedError
 
 
 class DropCharacter(_Characters):
