@@ -51,6 +51,32 @@ VOCABULARY = """
     call = "robot:Arm.position"
     result = { kind = "position", axis = "x", unit = "m", noise = 0.5 }
 """
+#: a program, and tests of which the second passes only after the first
+DEPENDENT = (
+    """
+    def prepare(arm):
+        arm.move_by(0.25)
+
+    def finish(arm):
+        arm.position()
+    """,
+    """
+    import mission
+    from robot import Arm
+
+    ARM = Arm()
+
+    def test_a_prepares():
+        mission.prepare(ARM)
+        for _ in range(3):
+            ARM.position()
+        assert ARM.x == 0.25
+
+    def test_b_finishes():
+        mission.finish(ARM)
+        assert ARM.x == 0.25
+    """,
+)
 CONFIGURATION = """
     program = ["mission.py"]
     vocabulary = ["robot.toml"]

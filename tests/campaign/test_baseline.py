@@ -18,7 +18,17 @@ from mutabot.errors import (
 )
 from mutabot.model import Verdict
 
-from .project import CONFIGURATION, ROBOT, VOCABULARY, Quiet, outcomes, request_for, run, write_project
+from .project import (
+    CONFIGURATION,
+    DEPENDENT,
+    ROBOT,
+    VOCABULARY,
+    Quiet,
+    outcomes,
+    request_for,
+    run,
+    write_project,
+)
 
 MISSION = """
     def run(arm):
@@ -188,24 +198,7 @@ def test_the_robots_state_is_its_own_in_every_process(tmp_path: Path) -> None:
 
 def test_a_test_that_passes_only_after_another_is_judged_by_the_whole_suite(tmp_path: Path) -> None:
     """Run alone it would fail, and every mutant it reaches would count as killed."""
-    mission = "def prepare(arm):\n    arm.move_by(0.25)\n\ndef finish(arm):\n    arm.position()\n"
-    tests = """
-        import mission
-        from robot import Arm
-
-        ARM = Arm()
-
-        def test_a_prepares():
-            mission.prepare(ARM)
-            for _ in range(3):
-                ARM.position()
-            assert ARM.x == 0.25
-
-        def test_b_finishes():
-            mission.finish(ARM)
-            assert ARM.x == 0.25
-    """
-    write_project(tmp_path, mission, tests)
+    write_project(tmp_path, *DEPENDENT)
     progress = Quiet()
     path = run_campaign(request_for(tmp_path), progress)
     verdicts = {outcome.mutant.split(":")[1]: outcome.verdict for outcome in outcomes(path)}

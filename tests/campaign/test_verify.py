@@ -17,7 +17,7 @@ from mutabot.cli import main
 from mutabot.errors import UnstableError
 from mutabot.model import By, Outcome, Verdict
 
-from .project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+from .project import CONFIGURATION, DEPENDENT, Quiet, outcomes, request_for, write_project
 
 MISSION = """
     def run(arm):
@@ -133,24 +133,7 @@ def test_a_time_out_that_does_not_come_again_is_unstable(tmp_path: Path) -> None
 
 
 def test_tests_that_pass_only_together_are_verified_together(tmp_path: Path) -> None:
-    mission = "def prepare(arm):\n    arm.move_by(0.25)\n\ndef finish(arm):\n    arm.position()\n"
-    tests = """
-        import mission
-        from robot import Arm
-
-        ARM = Arm()
-
-        def test_a_prepares():
-            mission.prepare(ARM)
-            for _ in range(3):
-                ARM.position()
-            assert ARM.x == 0.25
-
-        def test_b_finishes():
-            mission.finish(ARM)
-            assert ARM.x == 0.25
-    """
-    write_project(tmp_path, mission, tests)
+    write_project(tmp_path, *DEPENDENT)
     results, _ = campaign(tmp_path, engine="replay", verify=100, only=("*:reverse", "*:negate"))
     assert results.verification is not None
     assert results.verification.checked == 2

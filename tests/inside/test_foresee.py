@@ -201,6 +201,16 @@ def test_a_variable_without_a_value_yet_is_no_global_of_that_name() -> None:
     assert function() == "local"
 
 
+def test_what_a_function_keeps_of_its_local_names_is_not_brought_up_to_date() -> None:
+    x = 1
+    kept = locals()
+    x = 2
+    with pytest.raises(UnforeseenError):
+        value_of(ast.parse("x", mode="eval").body, sys._getframe(0))
+    assert kept["x"] == 1
+    assert x == 2
+
+
 @pytest.mark.parametrize(
     ("one", "other", "same"),
     [

@@ -163,12 +163,10 @@ def check(request: Request, progress: Progress) -> CheckReport:
 
 def _baseline(request: Request, workers: Workers, progress: Progress) -> tuple[Baseline, list[Result]]:
     branches = engine_of(request) == "branch"
-    taken = take_baseline(
-        request, workers, progress, repetitions=repetitions_for(request), may_share=branches
+    workers.on_unshared = lambda reason: progress.note(
+        f"each run starts anew, imports and collection included: {reason}"
     )
-    if workers.unshared is not None:
-        progress.note(f"each run starts anew, imports and collection included: {workers.unshared}")
-    return taken
+    return take_baseline(request, workers, progress, repetitions=repetitions_for(request), may_share=branches)
 
 
 def selected(request: Request, plan: Plan, baseline: Baseline) -> Plan:

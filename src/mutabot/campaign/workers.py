@@ -10,7 +10,7 @@ import os
 import selectors
 import tempfile
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
@@ -143,7 +143,7 @@ class Workers:
 
     Attributes:
         pool: the tokens of trunks and branches.
-        unshared: why tasks that might have begun as copies of a fork server did not; None if they did.
+        on_unshared: told why tasks that might begin as copies of a fork server do not, once that is known.
     """
 
     def __init__(self, root: Path, arguments: Iterable[str], jobs: int) -> None:
@@ -153,7 +153,8 @@ class Workers:
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
         self._servers: list[ForkServer] = []
-        self.unshared: str | None = None
+        self.on_unshared: Callable[[str], None] = lambda reason: None
+        self._may_share = True
         self.pool = TokenPool(self._jobs)
         home = root / ".mutabot"
         try:
@@ -232,7 +233,7 @@ class Workers:
     def _server_for(self, task: Task) -> ForkServer | None:
         """The fork server for such a task; None if there can be none."""
         found = next((server for server in self._servers if server.serves(task.job)), None)
-        if found is not None or self.unshared is not None:
+        if found is not None or not self._may_share:
             return found
         for idle in [server for server in self._servers if server.is_idle]:
             self._end_server(idle)  # what it was for is over
@@ -241,9 +242,11 @@ class Workers:
         )
         self._servers.append(server)
         self._selector.register(server.pipe, selectors.EVENT_READ, server)
-        self.unshared = server.wait_until_ready(task.startup)
-        if self.unshared is None:
+        reason = server.wait_until_ready(task.startup)
+        if reason is None:
             return server
+        self._may_share = False
+        self.on_unshared(reason)
         self._end_server(server)
         return None
 

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from mutabot.model.alternative import FATAL, IDENTITY, RUNTIME, Choice
 from mutabot.operators.control import FatalFault
 
-from .foresee import Forms, differing, value_of
+from .foresee import Forms, differing, locals_of, value_of
 
 
 class Bomb(Exception):  # noqa: N818  # the name that the literature gives it
@@ -67,7 +67,7 @@ class Switch:
         try:
             if self._code is None:
                 self._code = compile(original, "<original>", "eval")
-            return eval(self._code, frame.f_globals, frame.f_locals)
+            return eval(self._code, frame.f_globals, locals_of(frame))
         except Exception:  # what the original would have raised; the alternative did not
             return _UNKNOWN
 

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import ast
 import builtins
+import inspect
 import math
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import FrameType, MemberDescriptorType, ModuleType
 from typing import Any, NamedTuple
@@ -28,6 +29,8 @@ _PLAIN_LOOK_UPS: tuple[Any, ...] = (
     ModuleType.__getattribute__,
 )
 
+#: functions that hand out the local names
+_LOOKING = frozenset(("locals", "vars", "dir", "eval", "exec", "f_locals"))
 _NUMBERS = frozenset((bool, int, float))
 _PLAIN = _NUMBERS | {str, bytes, type(None)}
 _CALLABLE: tuple[Callable[..., Any], ...] = (
@@ -127,11 +130,23 @@ def value_of(node: ast.expr, frame: FrameType) -> Any:
     return _Reader(frame).read(node)
 
 
+def locals_of(frame: FrameType) -> Mapping[str, Any]:
+    """The local names of a frame.
+
+    Raises UnforeseenError in a function that calls ``locals`` itself: to look would bring the dictionary up to
+    date that it may have kept.
+    """
+    code = frame.f_code
+    if code.co_flags & inspect.CO_OPTIMIZED and not _LOOKING.isdisjoint(code.co_names):
+        raise UnforeseenError
+    return frame.f_locals
+
+
 class _Reader:
     """Reads expressions in one frame."""
 
     def __init__(self, frame: FrameType) -> None:
-        self._locals, self._globals = frame.f_locals, frame.f_globals
+        self._locals, self._globals = locals_of(frame), frame.f_globals
         code = frame.f_code
         self._own = {*code.co_varnames, *code.co_cellvars, *code.co_freevars}
 
