@@ -183,22 +183,28 @@ def test_what_would_take_long_or_warn_or_raise_is_not_foreseen(text: str) -> Non
         foresee(text, big=1 << 300)
 
 
-LATER = "global"
-
-
 def test_a_variable_without_a_value_yet_is_no_global_of_that_name() -> None:
     """An evaluation would raise UnboundLocalError there."""
-    later = ast.parse("LATER", mode="eval").body
-    assert value_of(later, sys._getframe(0)) == "global"
+    program = """
+def before():
+    frame = sys._getframe(0)
+    return frame
+    x = 1
 
-    def function() -> str:
-        with pytest.raises(UnforeseenError):
-            value_of(later, sys._getframe(0))
-        LATER = "local"  # noqa: N806  # a local that hides the global
-        assert value_of(later, sys._getframe(0)) == "local"
-        return LATER
+def after():
+    x = "local"
+    return sys._getframe(0)
 
-    assert function() == "local"
+def elsewhere():
+    return sys._getframe(0)
+"""
+    space: dict[str, Any] = {"sys": sys, "x": "global"}
+    exec(program, space)
+    x = ast.parse("x", mode="eval").body
+    assert value_of(x, space["elsewhere"]()) == "global"
+    assert value_of(x, space["after"]()) == "local"
+    with pytest.raises(UnforeseenError):
+        value_of(x, space["before"]())
 
 
 def test_what_a_function_keeps_of_its_local_names_is_not_brought_up_to_date() -> None:

@@ -133,8 +133,8 @@ def value_of(node: ast.expr, frame: FrameType) -> Any:
 def locals_of(frame: FrameType) -> Mapping[str, Any]:
     """The local names of a frame.
 
-    Raises UnforeseenError in a function that calls ``locals`` itself: to look would bring the dictionary up to
-    date that it may have kept.
+    Raises UnforeseenError in a function that calls ``locals`` itself: to look would bring up to date what it
+    may have kept.
     """
     code = frame.f_code
     if code.co_flags & inspect.CO_OPTIMIZED and not _LOOKING.isdisjoint(code.co_names):
