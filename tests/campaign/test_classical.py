@@ -199,6 +199,28 @@ def test_a_mutant_without_effect_needs_no_branch_and_one_with_a_late_effect_bran
         assert (one.hits, one.acted, one.example) == (again.hits, again.acted, again.example)
 
 
+def test_a_difference_in_a_process_that_the_test_forked_is_not_overlooked(tmp_path: Path) -> None:
+    mission = "def size(x):\n    return x\n"
+    tests = """
+        import multiprocessing
+
+        import mission
+
+        def test_size():
+            assert mission.size(1) == 1
+            with multiprocessing.get_context("fork").Pool(1) as pool:
+                assert pool.apply(mission.size, (-1,)) == -1
+    """
+    project = write_project(tmp_path, mission, tests)
+    mutant = "mission.py:size:x#1:ABS=abs"
+    ends = {
+        engine: run(project, engine=engine, families=("classical",), only=(mutant,), fresh=True)[mutant]
+        for engine in ("auto", "replay")
+    }
+    assert ends["auto"].engine == "replay"
+    assert ends["auto"].verdict is ends["replay"].verdict is Verdict.UNSTABLE
+
+
 def test_a_loop_without_end_times_out(ends: dict[str, dict[str, Outcome]]) -> None:
     found = end(ends, "count:total += 1#1:ASR=sub")
     assert found.verdict is Verdict.TIMEOUT

@@ -79,8 +79,12 @@ class Trunk:
     _children: dict[int, Child] = field(default_factory=dict)
     _sockets: frozenset[int] = frozenset()
     _test: str = ""
+    _pid: int = field(default_factory=os.getpid)
+    _forking: bool = False
+    _copied: bool = False
 
     def __post_init__(self) -> None:
+        os.register_at_fork(before=self._note_copy)
         reading, writing = self.branching.tokens
         self._tokens = Tokens(reading, writing, lambda held: self.pipe.send(TokensHeld(held)))
         self._tests = {mutant: frozenset(tests) for mutant, tests in self.branching.tests.items()}
@@ -102,6 +106,7 @@ class Trunk:
         """A test begins."""
         self._test = test
         self._branched.clear()
+        self._copied = False
 
     def branch(self, span: Span, operation: str, pattern: str | None) -> Mutant | None:
         """Fork for every live mutant here that has no branch in this test yet.
@@ -122,8 +127,11 @@ class Trunk:
     def tell_undiverged(self, hits: Mapping[int, int]) -> None:
         """The test is over: tell which mutants of the program text were no different from the original.
 
-        ``hits``: evaluations of each place in this test.
+        ``hits``: evaluations of each place in this test. If the test has forked copies of this process they
+        are not all: a mutant may have differed in one.
         """
+        if self._copied:
+            return
         same = {
             mutant.id: hits[place]
             for place in self._places
@@ -149,7 +157,7 @@ class Trunk:
 
     def _branch(self, key: Key, indexes: frozenset[int] | None = None) -> Mutant | None:
         mutants = self._live.get(key)
-        if not mutants:
+        if not mutants or os.getpid() != self._pid:  # a copy that the test has forked for itself
             return None
         here = (
             mutants
@@ -198,7 +206,9 @@ class Trunk:
         for mutant in mutants:
             self._branched.add(mutant.id)
             foot = Foot()
+            self._forking = True
             pid = os.fork()
+            self._forking = False
             if pid == 0:
                 self._become_branch(foot)
                 return mutant
@@ -208,6 +218,10 @@ class Trunk:
             self._children[pidfd] = child
             self._take_token()
         return None
+
+    def _note_copy(self) -> None:
+        """This process is about to be forked, by whomever."""
+        self._copied = self._copied or not self._forking
 
     def _become_branch(self, foot: Foot) -> None:
         self.on_child()
