@@ -32,6 +32,17 @@ def test_a_pipe_is_told_the_time_left() -> None:
     assert "mutants 1/2, 0 s left" in out.getvalue()
 
 
+def test_the_time_left_is_not_guessed_from_the_first_few() -> None:
+    out = io.StringIO()
+    with Lines(make_console(out), every=0.0) as progress:
+        progress.stage("mutants", 100)
+        for _ in range(10):
+            progress.advance()
+    *first, last = out.getvalue().splitlines()[1:]
+    assert not any("left" in line for line in first)
+    assert last == "mutants 10/100, 0 s left"
+
+
 def test_a_stage_of_unknown_length_only_counts() -> None:
     out = io.StringIO()
     with Lines(make_console(out), every=0.0) as progress:

@@ -13,6 +13,8 @@ from .console import plain
 
 #: seconds between two plain lines
 EVERY = 5.0
+#: part of a stage after which the time left is worth telling: the first outcomes say little about the others
+_TELLING = 0.1
 
 
 class Reporter(Protocol):
@@ -117,7 +119,10 @@ class Lines:
             return str(self._done)
         if self._done >= self._total:
             return f"{self._done}/{self._total}, took {spent:.0f} s"
-        return f"{self._done}/{self._total}, {spent / self._done * (self._total - self._done):.0f} s left"
+        done = f"{self._done}/{self._total}"
+        if self._done < _TELLING * self._total:
+            return done
+        return f"{done}, {spent / self._done * (self._total - self._done):.0f} s left"
 
     def _print(self, text: str) -> None:
         self._console.print(plain(text), soft_wrap=True)
