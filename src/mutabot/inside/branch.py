@@ -11,7 +11,7 @@ import os
 import select
 import signal
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from mutabot.model import BranchDied, Branching, Mutant, Span, TokensHeld, Unbranched, Undiverged
@@ -113,11 +113,13 @@ class Trunk:
 
         Returns the mutant to become, in a branch; None in the trunk.
         """
-        return self._branch((span, operation, pattern))
+        key = (span, operation, pattern)
+        return self._branch(key, self._live.get(key, ()))
 
     def branch_at_place(self, place: int, indexes: frozenset[int]) -> Mutant | None:
         """The same at a place of the program text, for the mutants that are these alternatives."""
-        return self._branch(place, indexes)
+        here = self._live.get(place, ())
+        return self._branch(place, [one for one in here if self._index(one, place) in indexes])
 
     def places(self) -> dict[int, frozenset[int]]:
         """The alternatives of the program text that are live in the running test, by place."""
@@ -155,17 +157,11 @@ class Trunk:
         is_alone = len(choices) == 1 and not any(single.operation for single in mutant.singles)
         return choices[0].index if is_alone else AT_ONCE
 
-    def _branch(self, key: Key, indexes: frozenset[int] | None = None) -> Mutant | None:
-        mutants = self._live.get(key)
-        if not mutants or os.getpid() != self._pid:  # a copy that the test has forked for itself
+    def _branch(self, key: Key, here: Sequence[Mutant]) -> Mutant | None:
+        if not here or os.getpid() != self._pid:  # a copy that the test has forked for itself
             return None
-        here = (
-            mutants
-            if indexes is None or not isinstance(key, int)
-            else [one for one in mutants if self._index(one, key) in indexes]
-        )
         due = [mutant for mutant in here if self._is_due(mutant)]
-        self._live[key] = [one for one in mutants if one.id not in self._decided]
+        self._live[key] = [one for one in self._live[key] if one.id not in self._decided]
         if not due:
             return None
         reason = why_not((child.pid for child in self._children.values()), self._sockets)

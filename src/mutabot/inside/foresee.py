@@ -8,7 +8,6 @@ items, operators on plain values, and a few functions of mathematics. All else i
 from __future__ import annotations
 
 import ast
-import builtins
 import inspect
 import math
 import operator
@@ -146,7 +145,8 @@ class _Reader:
     """Reads expressions in one frame."""
 
     def __init__(self, frame: FrameType) -> None:
-        self._locals, self._globals = locals_of(frame), frame.f_globals
+        self._locals = locals_of(frame)
+        self._elsewhere = (frame.f_globals, frame.f_builtins)
         code = frame.f_code
         self._own = {*code.co_varnames, *code.co_cellvars, *code.co_freevars}
 
@@ -163,7 +163,7 @@ class _Reader:
         if node.id in self._locals:
             return self._locals[node.id]
         if node.id not in self._own and not _is_mangled(node.id):  # else it has no value yet
-            for names in (self._globals, vars(builtins)):
+            for names in self._elsewhere:
                 if node.id in names:
                     return names[node.id]
         raise UnforeseenError
