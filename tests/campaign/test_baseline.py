@@ -79,6 +79,30 @@ def test_no_mutants_stop_the_campaign(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("clock", "words"),
+    [
+        ('{ tick = "robot:Arm.move_by" }', "clock · time: what robot:Arm.move_by returns gives None"),
+        ('{ tick = "robot:Arm.move_by", time = "self.y" }', "clock · time: self.y: Arm has no .y"),
+    ],
+)
+def test_a_clock_that_gives_no_number_stops_the_campaign_and_names_the_key(
+    tmp_path: Path, clock: str, words: str
+) -> None:
+    write_project(tmp_path, MISSION, TESTS, vocabulary=f"    clock = {clock}\n{VOCABULARY}")
+    error = stopped(tmp_path, ConfigurationError, words)
+    assert error.exit_code == 2
+    assert str(error).startswith("robot.toml:1 · clock")
+
+
+def test_check_tells_a_clock_that_never_ticks(tmp_path: Path) -> None:
+    write_project(
+        tmp_path, MISSION, TESTS, vocabulary=f'    clock = {{ tick = "robot:Arm.position" }}\n{VOCABULARY}'
+    )
+    lines = check(request_for(tmp_path), Quiet()).lines
+    assert "unused    clock: no test calls robot:Arm.position, so there is no simulated time" in lines
+
+
+@pytest.mark.parametrize(
     ("ending", "words"),
     [
         ("os._exit(0)", "exit code 0"),

@@ -161,6 +161,8 @@ CLOCKED = """
         def __init__(self): self.time = 0.0
         def tick(self): self.time += 10.0; return self.time
         def step(self): self.time += 10.0
+        def odd(self, state=None): return None
+        async def atick(self): self.time += 10.0; return self.time
 """
 
 
@@ -169,6 +171,7 @@ CLOCKED = """
     [
         'clock = { tick = "robot:Simulation.tick", unit = "ms" }',
         'clock = { tick = "robot:Simulation.step", time = "self.time", unit = "ms" }',
+        'clock = { tick = "robot:Simulation.step", step = 10, unit = "ms" }',
     ],
 )
 def test_more_simulated_time_than_the_budget_ends_the_test(make_stage: Make, clock: str) -> None:
@@ -179,6 +182,67 @@ def test_more_simulated_time_than_the_budget_ends_the_test(make_stage: Make, clo
     session = stage.session(budget=Budget(simulated=1.0))
     with pytest.raises(BudgetExceeded, match="simulated time"):
         stage.run(session)
+
+
+@pytest.mark.parametrize(
+    ("clock", "used"),
+    [
+        ('{ tick = "robot:Simulation.step", step = 0.25 }', 0.75),
+        ('{ tick = "robot:Simulation.step", step = 250, unit = "ms" }', 0.75),
+        ('{ tick = "robot:Simulation.step", time = "self.time", unit = "ms" }', 0.02),
+        ('{ tick = "robot:Simulation.atick", unit = "ms" }', 0.02),
+        ('{ tick = "robot:Simulation.atick", step = 0.25 }', 0.75),
+    ],
+)
+def test_simulated_time_is_read_or_counted_in_fixed_steps(make_stage: Make, clock: str, used: float) -> None:
+    """What is read begins at the first reading; every fixed step counts."""
+    tick = "asyncio.run(simulation.atick())" if "atick" in clock else "simulation.step()"
+    program = f"""
+        import asyncio
+        import robot
+
+        def run():
+            simulation = robot.Simulation()
+            for _ in range(3):
+                {tick}
+    """
+    stage = make_stage(CLOCKED, program, f'clock = {clock}\n[[operation]]\ncall = "robot:Simulation.tick"\n')
+    session = stage.session()
+    stage.run(session)
+    assert session.meter is not None
+    assert session.meter.simulated == pytest.approx(used)
+
+
+@pytest.mark.parametrize(
+    ("clock", "words"),
+    [
+        ('{ tick = "robot:Simulation.odd" }', ["what", "Simulation.odd returns gives None", "no number"]),
+        ('{ tick = "robot:Simulation.tick", time = ".time" }', ["float has no .time"]),
+        ('{ tick = "robot:Simulation.tick", time = "self.tme" }', ["no .tme", "'.time'"]),
+        ('{ tick = "robot:Simulation.tick", time = "self" }', ["the path 'self' gives", "no number"]),
+        ('{ tick = "robot:Simulation.odd", time = "state.t" }', ["NoneType has no .t"]),
+        ('{ tick = "robot:Simulation.odd", time = "stat.t" }', ["no argument 'stat'", "it has state"]),
+        ('{ tick = "robot:plain", time = "self.t" }', ["no method", "no self"]),
+        ('{ tick = "robot:nan" }', ["gives nan, which is no number"]),
+    ],
+)
+def test_a_clock_that_gives_no_number_is_a_problem_and_leaves_the_program_alone(
+    make_stage: Make, clock: str, words: list[str]
+) -> None:
+    robot = CLOCKED + "\n    def plain(): pass\n\n    def nan(): return float('nan')\n"
+    program = """
+        import robot
+
+        def run():
+            simulation = robot.Simulation()
+            return [simulation.odd(), simulation.tick(), robot.plain(), robot.nan()][:2]
+    """
+    stage = make_stage(robot, program, f'clock = {clock}\n[[operation]]\ncall = "robot:Simulation.step"\n')
+    session = stage.session()
+    assert stage.run(session) == [None, 10.0]
+    (problem,) = [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    assert (problem.source, problem.key) == ("robot.toml:1 · clock", "time")
+    assert all(word in problem.text for word in [*words, "step = …"])
 
 
 def test_an_operator_that_fails_is_a_failure_of_the_tool_not_of_the_program(make_stage: Make) -> None:

@@ -104,6 +104,14 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
         GOOD_OPERATION + "[clock]\ntick = 'sim:step'\nunit = 'mm'",
         ["robot.toml:5", "clock.unit", "did you mean 'ms'"],
     ),
+    "clock_that_is_read_and_counted": (
+        GOOD_OPERATION + "[clock]\ntick = 'sim:step'\ntime = 'self.t'\nstep = 0.01",
+        ["robot.toml:6", "clock.step", "not both"],
+    ),
+    "clock_that_stands_still": (
+        GOOD_OPERATION + "[clock]\ntick = 'sim:step'\nstep = 0",
+        ["robot.toml:5", "clock.step", "more than 0"],
+    ),
     "clock_with_a_bad_path": (
         GOOD_OPERATION + "[clock]\ntick = 'sim:step'\ntime = 'self..t'",
         ["robot.toml:5", "clock.time", "'..t'"],

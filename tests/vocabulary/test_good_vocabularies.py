@@ -290,6 +290,12 @@ def test_the_time_is_in_the_result_or_in_an_argument(time: str, rooted: bool, tm
     assert (clock.time, clock.rooted, clock.unit) == (time, rooted, "s")
 
 
+def test_a_clock_may_count_fixed_steps(tmp_path: Path) -> None:
+    clock = loaded(tmp_path, "clock = { tick = 'pybullet:stepSimulation', step = 0.004166 }").clock
+    assert clock is not None
+    assert (clock.step, clock.unit, clock.rooted) == (0.004166, "s", False)
+
+
 def test_files_are_put_together_and_equal_descriptions_are_one(tmp_path: Path) -> None:
     common = "refusals = ['a:B']\nclock = { tick = 'sim:step' }\n[[operation]]\ncall = 'a:b'\n"
     (tmp_path / "one.toml").write_text(common)

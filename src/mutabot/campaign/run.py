@@ -288,6 +288,9 @@ def _report(
         for round, test in sorted(baseline.restless)
     ]
     lines += [f"unused    {target}: no test reaches it from the program or the oracle" for target in never]
+    clock = request.vocabulary.clock
+    if clock is not None and all(end.simulated is None for end in baseline.ends.values()):
+        lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
     lines += [f"replay    {test}: {why}" for test, why in remainder.reasons.items()]
     data = {
         "replay": dict(remainder.reasons),

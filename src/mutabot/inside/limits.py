@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import resource
 from dataclasses import dataclass
-from typing import Any
 
-from mutabot.model import Budget, Clock
-from mutabot.model.path import Path
-from mutabot.model.units import convert
+from mutabot.model import Budget
 
 
 class BudgetExceeded(BaseException):  # it is no error of the program's
@@ -48,6 +45,15 @@ class Meter:
         elif time < self.now:  # a new simulation began in the same test
             self.used += self.now - self.started
             self.started = time
+        self._reach(time)
+
+    def advance(self, seconds: float) -> None:
+        """The simulation has advanced by a step (s). Raises BudgetExceeded beyond the limit."""
+        if self.started is None or self.now is None:
+            self.started = self.now = 0.0
+        self._reach(self.now + seconds)
+
+    def _reach(self, time: float) -> None:
         self.now = time
         limit = self.budget.simulated
         if limit is not None and (self.simulated or 0.0) > limit:
@@ -63,27 +69,6 @@ class Meter:
     def _exceed(self, text: str) -> None:
         self.exceeded = self.exceeded or text
         raise BudgetExceeded(text)
-
-
-@dataclass(slots=True)
-class ClockReader:
-    """Reads simulated time from a call of the clock's tick."""
-
-    clock: Clock
-    path: Path
-
-    @classmethod
-    def of(cls, clock: Clock) -> ClockReader:
-        return cls(clock, Path.parse(clock.time, rooted=clock.rooted))
-
-    def seconds(self, result: Any, instance: Any, bound: dict[str, Any]) -> float:
-        """Simulated time in s after the call."""
-        if not self.clock.rooted:
-            value = self.path.get(result)
-        else:
-            start = instance if self.path.root == "self" else bound[self.path.root or ""]
-            value = self.path.get(start)
-        return convert(float(value), self.clock.unit, "s")
 
 
 def limit_memory(limit: int) -> None:

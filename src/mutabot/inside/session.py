@@ -30,9 +30,10 @@ from mutabot.model import (
 
 from .activate import Activation, Evidence, together
 from .branch import Trunk
+from .clock import ClockReader
 from .door import Door
 from .intercept import Handler, Interception, NotFoundError, resolve
-from .limits import ClockReader, Meter
+from .limits import Meter
 from .pipe import Held, Pipe
 from .record import Recorder
 from .seeds import derive
@@ -88,9 +89,9 @@ class Session:
             self._doors.append(door)
             self.interception.wrap(operation.target, self._handler(door))
         if vocabulary.clock is not None:
-            self.interception.wrap(
-                vocabulary.clock.tick, self._clock_handler(ClockReader.of(vocabulary.clock))
-            )
+            clock = vocabulary.clock
+            reader = ClockReader(clock, lambda: self.meter, partial(self._tell, clock.source))
+            self.interception.wrap(clock.tick, reader.handler())
         if self.job.mutant is not None:
             self.activate(self.job.mutant)
 
@@ -342,21 +343,6 @@ class Session:
         read = reply.values if reply is not None else {}
         returned = reply.payload if reply is not None and call.operation.command else None
         self.recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned)
-
-    def _clock_handler(self, reader: ClockReader) -> Handler:
-        def handle(
-            wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
-        ) -> Any:
-            __tracebackhide__ = True
-            result = wrapped(*args, **kwargs)
-            if self.meter is not None:
-                bound = (
-                    inspect.signature(wrapped).bind(*args, **kwargs).arguments if reader.clock.rooted else {}
-                )
-                self.meter.tick(reader.seconds(result, instance, bound))
-            return result
-
-        return handle
 
     def _acted(self, part: str) -> None:
         """A part of the mutant changed something; the one of the program text has no name."""

@@ -89,7 +89,8 @@ class Clock:
         time: path to the time, in the unit below: into the result (``""`` is the result itself) or,
             starting with an argument's name or ``self``, into an argument after the call.
         rooted: whether ``time`` starts at an argument.
-        unit: unit of that time.
+        unit: unit of that time, or of the step.
+        step: simulated time that every tick takes, in the unit; None if it is read from ``time``.
     """
 
     tick: str
@@ -97,6 +98,7 @@ class Clock:
     rooted: bool = False
     unit: str = "s"
     source: str = ""
+    step: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

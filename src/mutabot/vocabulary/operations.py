@@ -45,7 +45,7 @@ def read_operation(check: Check, raw: Any, place: Place) -> Operation | None:
 
 
 def read_clock(check: Check, raw: dict[str, Any], place: Place) -> Clock | None:
-    """``clock = { tick = …, time = …, unit = … }``; None if it has mistakes, which are noted."""
+    """``clock = { tick = …, time or step = …, unit = … }``; None if it has mistakes, which are noted."""
     table = check.table(ClockTable, raw, place)
     if table is None:
         return None
@@ -58,7 +58,9 @@ def read_clock(check: Check, raw: dict[str, Any], place: Place) -> Clock | None:
         Path.parse(table.time, rooted=rooted)
     except ValueError as error:
         check.error((*place, "time"), str(error))
-    return Clock(table.tick, table.time, rooted, table.unit, source_of(check, place, "clock"))
+    if table.step is not None and "time" in raw:
+        check.error((*place, "step"), "the time is either read (time) or counted (step), not both")
+    return Clock(table.tick, table.time, rooted, table.unit, source_of(check, place, "clock"), table.step)
 
 
 def read_probe(check: Check, raw: Any, place: Place) -> Probe | None:

@@ -63,11 +63,12 @@ class OperationTable(Table):
 
 
 class ClockTable(Table):
-    """``clock = { tick = "module:qualname", time = "self.time", unit = "s" }``"""
+    """``clock = { tick = "module:qualname", time = "self.time", unit = "s" }``, or with a fixed ``step``"""
 
     tick: str
     time: str = ""
     unit: str = "s"
+    step: Annotated[float | None, Field(gt=0)] = None
 
 
 class ProbeTable(Table):
