@@ -241,7 +241,7 @@ def test_missing_simulator_says_what_to_install() -> None:
         "try: cells.Cell\n"
         "except cells.SimulatorMissing as error: print(error)"
     )
-    assert "pip install 'mutabot[cells]'" in run_python(code)
+    assert "install mutabot with its extra 'cells'" in run_python(code)
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs Linux's /proc")

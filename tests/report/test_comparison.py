@@ -201,7 +201,7 @@ def test_a_picture_that_cannot_be_drawn_is_a_usage_error(
 def test_png_without_pillow_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(as_png, "find_spec", lambda name: None)
     check_picture(tmp_path / "ends.svg")
-    with pytest.raises(UsageError, match=r"pip install mutabot\[png\]"):
+    with pytest.raises(UsageError, match=r"pip install pillow"):
         check_picture(tmp_path / "ends.png")
 
 

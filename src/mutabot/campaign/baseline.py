@@ -6,7 +6,7 @@ relied on. What differs between the two runs of a round is flaky, and is set asi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -19,6 +19,7 @@ from .comparison import Event, Observation, compare
 from .places import Place
 from .program_text import ProgramTexts, read_texts
 from .request import Progress, Request
+from .said import ABNORMAL, last_line, said_in
 from .sites import Sources
 from .workers import Result, Task, Workers
 
@@ -153,7 +154,7 @@ def take_baseline(
     for result in workers.run(_tasks(request, repetitions, texts, may_share)):
         run: _Run = result.task.key
         results[run.round, run.repetition] = result
-        _refuse(result)
+        _refuse(result, request.arguments)
         progress.advance(f"baseline, round {run.round + 1}, run {run.repetition + 1}: {_counts(result)}")
     baseline = Baseline()
     sources = Sources(request.root)
@@ -182,18 +183,21 @@ def _tasks(
             yield Task(_Run(round, repetition), job, startup=300.0, may_share=may_share)
 
 
-def _refuse(result: Result) -> None:
+def _refuse(result: Result, arguments: Sequence[str]) -> None:
     """Stop at once if this run of the suite cannot be a baseline."""
     if result.problems:
         raise _worst_problem(result)
     if result.end is None:
-        raise BaselineError(
-            f"the tests cannot be run on the original: {death(result)}", tests=_running(result)
-        )
+        text = f"the tests cannot be run on the original: {death(result, said=False)}"
+        raise BaselineError(f"{text}{said_in(result.log)}", tests=_running(result))
     if result.end.errors:
         raise BaselineError("the tests cannot be collected:\n" + "\n".join(result.end.errors))
+    how = ABNORMAL.get(result.end.exit_status)
+    if how is not None:
+        text = f"pytest ended with exit status {result.end.exit_status} ({how})"
+        raise BaselineError(f"the tests cannot be run on the original: {text}{said_in(result.log)}")
     if not result.end.collected:
-        raise NothingToDoError(f"pytest finds no tests ({last_line(result.log)})")
+        raise NothingToDoError(f"pytest finds no tests with {' '.join(arguments)}{said_in(result.log)}")
     broken = [end for end in result.ends if end.failure is not None]
     if broken:
         raise BaselineError(
@@ -213,21 +217,15 @@ def _running(result: Result) -> list[str]:
     return [result.running] if result.running is not None else []
 
 
-def death(result: Result) -> str:
-    """How a worker ended that did not end in an orderly way."""
+def death(result: Result, *, said: bool = True) -> str:
+    """How a worker ended that did not end in an orderly way, and the last that it ``said``."""
     during = f" during {result.running}" if result.running else ""
     if result.overdue:
         return f"{result.overdue}{during}"
     code = result.exit_code
     how = f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
-    said = last_line(result.log)
-    return f"{how}{during}{f'; it said last: {said}' if said else ''}"
-
-
-def last_line(log: str) -> str:
-    """The last line with text in it."""
-    lines = [line.strip() for line in log.splitlines() if line.strip()]
-    return lines[-1][:300] if lines else ""
+    line = last_line(result.log) if said else ""
+    return f"{how}{during}{f'; it said last: {line}' if line else ''}"
 
 
 def _counts(result: Result) -> str:

@@ -12,22 +12,12 @@ import sys
 import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 from shutil import disk_usage
 
 from mutabot.model import Job, to_data
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, Line, line_from_data
 
-#: plug-ins that would run tests elsewhere, again, or in another order, and how to stop each
-_SWITCHED_OFF = {
-    "xdist": ("-p", "no:xdist"),
-    "pytest_rerunfailures": ("-p", "no:rerunfailures"),
-    "flaky": ("-p", "no:flaky"),
-    "pytest_randomly": ("-p", "no:randomly"),
-    "pytest_random_order": ("-p", "no:random_order"),
-    "pytest_cov": ("-p", "no:cov"),
-}
 _LOG_BYTES = 4000
 #: bytes that must be free on the disk for a process to print what it prints
 _ROOM = 1 << 14
@@ -166,11 +156,10 @@ def _line(text: bytes) -> Line | None:
 
 def command(arguments: Iterable[str], home: Path) -> list[str]:
     """The command line of a worker."""
-    off = [word for module, words in _SWITCHED_OFF.items() if find_spec(module) for word in words]
     # the native traceback is the one that pytest need not parse any source for: that took a killed mutant
     # longer than all else together
     own = ["--maxfail=0", "--tb=native", "-o", f"cache_dir={home / 'cache'}"]
-    return [sys.executable, "-m", "pytest", "-p", "mutabot", *off, *arguments, *own]
+    return [sys.executable, "-m", "pytest", "-p", "mutabot", *arguments, *own]
 
 
 def environment(job_file: Path, pipe: int) -> dict[str, str]:

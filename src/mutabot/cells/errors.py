@@ -26,7 +26,7 @@ class SimulatorMissing(CellError, ImportError):
     """A library of the extra `cells` is not installed."""
 
     def __init__(self, library: str) -> None:
-        super().__init__(f"mutabot.cells needs '{library}': pip install 'mutabot[cells]'")
+        super().__init__(f"mutabot.cells needs '{library}': install mutabot with its extra 'cells'")
         self.library = library
 
 

@@ -76,6 +76,8 @@ def classify(
 
 def _text(error: BaseException) -> str:
     text = _ADDRESS.sub("0x…", str(error))
+    if isinstance(error, pytest.FixtureLookupError):
+        text = error.msg or f"fixture {error.argname!r} not found"
     lines = text.strip().splitlines() or [type(error).__name__]
     return "\n".join(lines[:12])[:2000]
 

@@ -19,6 +19,18 @@ SEED_VARIABLE = "MUTABOT_SEED"
 _conductor: Conductor | None = None
 
 
+def pytest_addoption(pluginmanager: pytest.PytestPluginManager) -> None:
+    """Before pytest loads other plug-ins: if there is a job, keep out those that it cannot do with."""
+    if JOB_VARIABLE not in os.environ:
+        return
+    from .unrewritten import import_us_unrewritten  # noqa: PLC0415  # a sleeping plugin costs nothing
+
+    import_us_unrewritten()
+    from .switched_off import switch_off  # noqa: PLC0415
+
+    switch_off(pluginmanager)
+
+
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_load_initial_conftests() -> Generator[None, Any, Any]:
     """Before any of the user's code is imported: wake up if there is a job."""
@@ -26,10 +38,7 @@ def pytest_load_initial_conftests() -> Generator[None, Any, Any]:
     if JOB_VARIABLE in os.environ and _conductor is None:
         # tests that start pytest themselves must not find the job again
         job, pipe = os.environ.pop(JOB_VARIABLE), os.environ.pop(PIPE_VARIABLE)
-        from .unrewritten import import_us_unrewritten  # noqa: PLC0415  # a sleeping plugin costs nothing
-
-        import_us_unrewritten()
-        from .conductor import Conductor  # noqa: PLC0415
+        from .conductor import Conductor  # noqa: PLC0415  # a sleeping plugin costs nothing
 
         _conductor = Conductor.from_files(job, int(pipe))
     try:

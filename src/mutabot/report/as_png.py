@@ -22,7 +22,7 @@ def require_png() -> None:
     """Raise UsageError if PNG files cannot be written here."""
     if find_spec("PIL") is None:
         raise UsageError(
-            "PNG needs Pillow, which is not installed: `pip install mutabot[png]`; SVG needs nothing"
+            "PNG needs Pillow, which is not installed: `pip install pillow`; SVG needs nothing"
         )
 
 

@@ -1,0 +1,127 @@
+"""Plug-ins that mutabot switches off: what a project says about them is accepted and has no effect."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from campaign.project import run, write_project
+from mutabot.errors import MutabotError
+from mutabot.model import By, Outcome, Verdict
+
+MISSION = """
+    def go(arm):
+        arm.move_by(0.25)
+"""
+TESTS = """
+    import mission
+    from robot import Arm
+
+    def test_goes():
+        arm = Arm()
+        mission.go(arm)
+        assert arm.x == 0.25
+"""
+SKIP = "mission.py:go:arm.move_by#1:call:skip"
+#: everything that a project may say about xdist, cov and rerunfailures
+CONFIGURED = """
+    [pytest]
+    addopts = {more} -n 2 --dist loadfile --maxprocesses=4 --cov=mission --cov-report term --cov-fail-under=99
+        --reruns 2 --reruns-delay 1 --strict-config --strict-markers
+    required_plugins = pytest-xdist pytest_cov>=1 pytest-rerunfailures
+    filterwarnings = error
+    reruns = 3
+    rsyncdirs = .
+"""
+USED = """
+    import mission
+    import pytest
+    from robot import Arm
+
+    @pytest.mark.flaky(reruns=2)
+    @pytest.mark.xdist_group("arms")
+    @pytest.mark.no_cover
+    def test_goes(worker_id, testrun_uid, cov, pytestconfig):
+        assert (worker_id, cov) == ("master", None)
+        assert pytestconfig.getoption("--reruns") is pytestconfig.getoption("numprocesses") is None
+        assert pytestconfig.option.dist == "no"
+        arm = Arm()
+        mission.go(arm)
+        assert arm.x == 0.25
+"""
+#: a plug-in in the place of another, which must not come into play
+SHUFFLING = """
+    def pytest_addoption(parser):
+        parser.addoption("--randomly-seed", dest="randomly_seed", type=int)
+
+    def pytest_collection_modifyitems(items):
+        items.clear()
+"""
+HOOKS = """
+    def pytest_xdist_setupnodes(config, specs):
+        raise AssertionError("nothing is distributed")
+"""
+
+
+def is_killed_by_the_test(outcome: Outcome) -> bool:
+    return outcome.verdict is Verdict.KILLED and outcome.by is By.CHECK
+
+
+@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("more", ["", "-p xdist -p pytest_cov.plugin -p no:cacheprovider -d"])
+def test_options_settings_markers_fixtures_and_hooks_of_plugins_are_accepted_and_without_effect(
+    tmp_path: Path, engine: str, more: str
+) -> None:
+    files = {"pytest.ini": CONFIGURED.replace("{more}", more), "conftest.py": HOOKS}
+    outcomes = run(write_project(tmp_path, MISSION, USED, more=files), engine=engine)
+    assert is_killed_by_the_test(outcomes[SKIP])
+    assert len(outcomes) == 3
+    assert not list(tmp_path.glob(".coverage*"))
+
+
+def test_options_may_come_from_the_environment_and_name_plugins_of_the_project(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PYTEST_ADDOPTS", "-n auto -p pytest_randomly --randomly-seed=7")
+    files = {"pytest_randomly.py": SHUFFLING, "setup.cfg": "[tool:pytest]\naddopts = -n2 --reruns=1\n"}
+    outcomes = run(write_project(tmp_path, MISSION, TESTS, more=files))
+    assert is_killed_by_the_test(outcomes[SKIP])
+
+
+@pytest.mark.parametrize(
+    ("tests", "files", "said"),
+    [
+        (TESTS, {"pytest.ini": "[pytest]\naddopts = --nonsense=3\n"}, "unrecognized arguments: --nonsense=3"),
+        (
+            TESTS,
+            {"conftest.py": "import nowhere\n"},
+            "conftest.py:1: in <module>\n      import nowhere\n  E   ModuleNotFoundError: No module named",
+        ),
+        (
+            TESTS,
+            {"pytest.ini": "[pytest]\nrequired_plugins = pytest-nowhere pytest-xdist\n"},
+            "Missing required plugins: pytest-nowhere",
+        ),
+        (
+            TESTS,
+            {"pytest.ini": "[pytest]\naddopts = --strict-config\nnonsense = 3\n"},
+            "Unknown config option: nonsense",
+        ),
+        (
+            TESTS,
+            {"conftest.py": "def pytest_collection_modifyitems():\n    1 / 0\n"},
+            "ZeroDivisionError: division by zero",
+        ),
+        ("import nowhere\n", {}, "import nowhere\nE   ModuleNotFoundError: No module named 'nowhere'"),
+        ("def test_it(nowhere):\n    pass\n", {}, "test_it: fixture 'nowhere' not found"),
+        ("HERE = 1\n", {}, "pytest finds no tests with tests -o pythonpath=."),
+    ],
+)
+def test_where_tests_cannot_be_run_pytests_own_message_is_shown(
+    tmp_path: Path, tests: str, files: dict[str, str], said: str
+) -> None:
+    with pytest.raises(MutabotError) as caught:
+        run(write_project(tmp_path, MISSION, tests, more=files))
+    assert said in str(caught.value)
+    assert "rootdir" not in str(caught.value)
