@@ -21,9 +21,7 @@ _ANCHORS = {"start": "ls", "middle": "ms", "end": "rs"}
 def require_png() -> None:
     """Raise UsageError if PNG files cannot be written here."""
     if find_spec("PIL") is None:
-        raise UsageError(
-            "PNG needs Pillow, which is not installed: `pip install pillow`; SVG needs nothing"
-        )
+        raise UsageError("PNG needs Pillow, which is not installed: `pip install pillow`; SVG needs nothing")
 
 
 def write_png(picture: Picture, path: Path) -> None:
