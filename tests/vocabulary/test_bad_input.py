@@ -100,6 +100,27 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
         + "arguments.force = { kind = 'output', range = [0, 9] }",
         ["robot.toml:3", "only g:close has 'force'"],
     ),
+    "argument_in_self": (
+        GOOD_OPERATION + "arguments.self.speed = { kind = 'duration', unit = 's' }",
+        ["robot.toml:3", "arguments.self.speed", "not an argument", "Name an argument"],
+    ),
+    "argument_self": (
+        GOOD_OPERATION + "arguments.self = { kind = 'duration', unit = 's' }",
+        ["robot.toml:3", "not an argument"],
+    ),
+    "signature_without_brackets": (
+        GOOD_OPERATION + "signature = 'x, y'",
+        ["robot.toml:3", "signature", "bracket", "(body, joints"],
+    ),
+    "signature_with_a_name_twice": (GOOD_OPERATION + "signature = '(x, x)'", ["robot.toml:3", "'x' twice"]),
+    "signature_without_the_argument": (
+        GOOD_OPERATION + "signature = '(body, joint)'\narguments.joints = { kind = 'duration', unit = 's' }",
+        ["robot.toml:4", "unknown argument 'joints'", "'joint'"],
+    ),
+    "signature_without_the_message": (
+        GOOD_OPERATION + "signature = '(text)'\nmessage = 'texts'",
+        ["robot.toml:4", "message", "'texts'", "'text'"],
+    ),
     "clock_with_a_length": (
         GOOD_OPERATION + "[clock]\ntick = 'sim:step'\nunit = 'mm'",
         ["robot.toml:5", "clock.unit", "did you mean 'ms'"],

@@ -290,6 +290,14 @@ def test_the_time_is_in_the_result_or_in_an_argument(time: str, rooted: bool, tm
     assert (clock.time, clock.rooted, clock.unit) == (time, rooted, "s")
 
 
+def test_a_signature_names_the_arguments_of_a_callable_that_does_not(tmp_path: Path) -> None:
+    text = """signature = "(body, joints, …)"
+    arguments.force = { kind = "output", range = [0, 9] }
+    arguments.body = { kind = "output", range = [0, 9] }
+    """
+    assert only(tmp_path, text).signature == "(body, joints, …)"
+
+
 def test_a_clock_may_count_fixed_steps(tmp_path: Path) -> None:
     clock = loaded(tmp_path, "clock = { tick = 'pybullet:stepSimulation', step = 0.004166 }").clock
     assert clock is not None

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.errors import BaselineError, NothingToDoError
-from mutabot.model import Budget, Instrumentation, Mutant, ProgramText, SiteSeen, TestEnd
+from mutabot.model import Budget, Instrumentation, Mutant, ProgramText, Remark, SiteSeen, TestEnd
+from mutabot.model.job import Line
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 
@@ -62,6 +63,7 @@ class Baseline:
         skipped: number of tests that skipped themselves.
         startup: seconds from a worker's start to the end, less the tests; the longest.
         program: the program text, if a family of mutants needs it.
+        remarks: what is to be known about the vocabulary.
     """
 
     tests: list[list[str]] = field(default_factory=list)
@@ -76,6 +78,7 @@ class Baseline:
     skipped: int = 0
     startup: float = 0.0
     program: ProgramTexts = field(default_factory=ProgramTexts)
+    remarks: tuple[Remark, ...] = ()
 
     @property
     def places(self) -> list[Place]:
@@ -151,12 +154,14 @@ def take_baseline(
     load_all()  # a broken plug-in is told now rather than after the baseline
     progress.stage("baseline", request.rounds * repetitions)
     results: dict[tuple[int, int], Result] = {}
-    for result in workers.run(_tasks(request, repetitions, texts, may_share)):
+    remarks: list[Remark] = []
+    events = workers.events(_tasks(request, repetitions, texts, may_share))
+    for result in _told_as_they_come(events, progress, remarks):
         run: _Run = result.task.key
         results[run.round, run.repetition] = result
         _refuse(result, request.arguments)
         progress.advance(f"baseline, round {run.round + 1}, run {run.repetition + 1}: {_counts(result)}")
-    baseline = Baseline()
+    baseline = Baseline(remarks=tuple(dict.fromkeys(remarks)))
     sources = Sources(request.root)
     for round in range(request.rounds):
         runs = [results[round, repetition] for repetition in range(repetitions)]
@@ -168,6 +173,18 @@ def take_baseline(
     if not any(baseline.tests):
         raise NothingToDoError(_no_tests(baseline))
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
+
+
+def _told_as_they_come(
+    events: Iterator[Result | tuple[Task, Line]], progress: Progress, remarks: list[Remark]
+) -> Iterator[Result]:
+    """Results; remarks are told when they are made, which is before the tests run where that is possible."""
+    for event in events:
+        if isinstance(event, Result):
+            yield event
+        elif isinstance(event[1], Remark):
+            remarks.append(event[1])
+            progress.note(str(event[1]))
 
 
 def _tasks(

@@ -291,6 +291,7 @@ def _report(
     clock = request.vocabulary.clock
     if clock is not None and all(end.simulated is None for end in baseline.ends.values()):
         lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
+    lines += [f"note      {remark}" for remark in baseline.remarks]
     lines += [f"replay    {test}: {why}" for test, why in remainder.reasons.items()]
     data = {
         "replay": dict(remainder.reasons),
@@ -303,6 +304,7 @@ def _report(
         "unstable": [{"round": r, "test": t, "reason": why} for (r, t), why in baseline.unstable.items()],
         "restless": [{"round": r, "test": t} for r, t in sorted(baseline.restless)],
         "unused": never,
+        "remarks": [to_data(remark) for remark in baseline.remarks],
     }
     return CheckReport(lines, data)
 

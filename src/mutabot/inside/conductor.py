@@ -171,6 +171,7 @@ class Conductor:
         if self._server is not None and commission is None:
             session.items.clear()
         if commission is None:
+            self.session.look_ahead()
             seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
             result = yield
             drop_idle_plugins(session.config)
@@ -205,6 +206,7 @@ class Conductor:
         if cache is not None:  # what one job keeps there, others must not find
             cache._cachedir = Path(commission.home, "cache")
         self._begin(commission.home)
+        self.session.look_ahead()
         seeds.seed_all(seeds.derive(job.seed, job.round, "session"))
 
     def _say_why(self, error: BaseException) -> int:

@@ -16,10 +16,10 @@ from typing import Any
 from mutabot.errors import PathError
 from mutabot.model import Call, Operation, Pattern, Quantity, Reply
 from mutabot.model.notation import Notation
-from mutabot.model.path import Path, Step
 from mutabot.model.quantity import Value, is_reading_of
 from mutabot.operators.driving import same
 
+from .arguments import Arguments, signature_for
 from .intercept import resolve
 
 
@@ -31,7 +31,7 @@ class Invocation:
         wrapped: the original callable, bound.
         instance: the object it is bound to, or None.
         args, kwargs: as the program gave them.
-        bound: the arguments by name, defaults applied; None if they do not fit the signature.
+        arguments: the same by name; None if they do not fit the signature.
         message: the text command, or None.
     """
 
@@ -39,7 +39,7 @@ class Invocation:
     instance: Any
     args: tuple[Any, ...]
     kwargs: dict[str, Any]
-    bound: inspect.BoundArguments | None
+    arguments: Arguments | None
     message: str | bytes | None = None
 
 
@@ -65,7 +65,6 @@ class Door:
         self._reading = reading
         self._on_problem = on_problem
         self._signature: inspect.Signature | None = None
-        self._paths: dict[str, Path] = {}
         self._last_replies: dict[str | None, Any] = {}
         self.commands = 0
 
@@ -91,25 +90,24 @@ class Door:
     def perform(self, call: Call, original: Call) -> Any:
         """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
         invocation: Invocation = call.payload
-        fits = invocation.bound is not None or self._signature is None
+        fits = invocation.arguments is not None or self.operation.signature is not None
         self.commands += self.operation.command and fits  # what does not fit never reaches the robot
         wrapped = self._opposite(invocation) if call.reversed and call.pattern is None else invocation.wrapped
         changed = {
             name: value for name, value in call.values.items() if not same(value, original.values.get(name))
         }
-        if invocation.bound is None or (not changed and not call.reversed):
+        if invocation.arguments is None or (not changed and not call.reversed):
             return wrapped(*invocation.args, **invocation.kwargs)
         if call.pattern is not None:
-            arguments = self._with_message(invocation, call, call.pattern)
-        elif changed:
-            arguments = self._with_values(invocation.bound, changed)
+            args, kwargs = self._with_message(invocation.arguments, invocation, call, call.pattern)
         else:
-            return wrapped(*invocation.args, **invocation.kwargs)
-        return wrapped(*arguments.args, **arguments.kwargs)
+            args, kwargs = self._with_values(invocation.arguments, changed)
+        return wrapped(*args, **kwargs)
 
     def reply(self, call: Call, result: Any) -> Reply:
         """The reply as operators see it."""
         self._refuse_coroutine(result)
+        self._refuse_signature(call.payload)
         values: dict[str, Value] = {}
         for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
             try:
@@ -142,27 +140,30 @@ class Door:
             )
             self._on_problem("call", error)
 
+    def _refuse_signature(self, invocation: Invocation) -> None:
+        """A call that went well, although the vocabulary's signature does not take it."""
+        if invocation.arguments is None and self.operation.signature is not None:
+            given = [*("…" for _ in invocation.args), *(f"{name}=…" for name in invocation.kwargs)]
+            text = f"{self.operation.signature} does not take the call ({', '.join(given)})"
+            self._on_problem("signature", PathError(text, path="", step="", found=""))
+
     def _bind(
         self, wrapped: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]
-    ) -> inspect.BoundArguments | None:
-        try:
-            if self._signature is None:
-                self._signature = inspect.signature(wrapped)
-            bound = self._signature.bind(*args, **kwargs)
-        except (TypeError, ValueError):  # the call itself will say what is wrong; builtins have no signature
-            return None
-        bound.apply_defaults()
-        return bound
+    ) -> Arguments | None:
+        if self._signature is None:
+            self._signature = signature_for(self.operation.signature, wrapped)
+        return Arguments.of(self._signature, args, kwargs)  # None: the call itself will say what is wrong
 
     def _written(self, invocation: Invocation) -> tuple[Pattern | None, dict[str, Value]]:
-        if invocation.bound is None:
+        if invocation.arguments is None:
             return None, {}
         if self.operation.message is not None:
-            return self._read_message(invocation, invocation.bound)
+            return self._read_message(invocation, invocation.arguments)
         values = {}
         for quantity in self.operation.arguments:
+            start = invocation.arguments.get(quantity.path.root or "")
             try:
-                value = self._path(quantity).get(self._start(quantity, invocation.bound))
+                value = quantity.path.get(start) if start is not None else None
             except PathError as error:
                 self._on_problem(f"arguments.{quantity.name}", error)
                 continue
@@ -171,9 +172,9 @@ class Door:
         return None, values
 
     def _read_message(
-        self, invocation: Invocation, bound: inspect.BoundArguments
+        self, invocation: Invocation, arguments: Arguments
     ) -> tuple[Pattern | None, dict[str, Value]]:
-        message = bound.arguments.get(self.operation.message or "")
+        message = arguments.get(self.operation.message or "")
         if not isinstance(message, str | bytes):
             return None, {}
         invocation.message = message
@@ -185,9 +186,10 @@ class Door:
                 return pattern, {name: value for name, value in values.items() if name in named}
         return None, {}
 
-    def _with_message(self, invocation: Invocation, call: Call, pattern: Pattern) -> inspect.BoundArguments:
-        bound, message = invocation.bound, invocation.message
-        assert bound is not None
+    def _with_message(
+        self, arguments: Arguments, invocation: Invocation, call: Call, pattern: Pattern
+    ) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        message = invocation.message
         assert message is not None
         text, ending = _body(message)
         notation = Notation.compile(pattern.text)
@@ -196,45 +198,19 @@ class Door:
             written = Notation.compile(pattern.opposite).write(values, looks=notation.looks(text)) + ending
         else:
             written = notation.write(values, like=text) + ending
-        changed = copy.copy(bound)
-        changed.arguments = dict(bound.arguments)
-        name = self.operation.message or ""
-        changed.arguments[name] = written.encode() if isinstance(message, bytes) else written
-        return changed
+        changed = written.encode("utf-8", "surrogateescape") if isinstance(message, bytes) else written
+        return arguments.replaced({self.operation.message or "": changed})
 
     def _with_values(
-        self, bound: inspect.BoundArguments, values: Mapping[str, Value]
-    ) -> inspect.BoundArguments:
-        changed = copy.copy(bound)
-        changed.arguments = dict(bound.arguments)
+        self, arguments: Arguments, values: Mapping[str, Value]
+    ) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        changed: dict[str, Any] = {}
         for quantity in self.operation.arguments:
             if quantity.name in values:
-                root = self._path(quantity).root or ""
-                changed.arguments[root] = self._path(quantity).put(
-                    changed.arguments[root], values[quantity.name]
-                )
-        return changed
-
-    def _path(self, quantity: Quantity) -> Path:
-        """The quantity's path; an argument that goes through ``**kwargs`` is a key of that."""
-        path = self._paths.get(quantity.name)
-        if path is None:
-            path = quantity.path
-            parameters = self._signature.parameters if self._signature is not None else {}
-            if path.root not in parameters:
-                for parameter in parameters.values():
-                    if parameter.kind is inspect.Parameter.VAR_KEYWORD:
-                        path = Path(parameter.name, (Step(item=path.root), *path.steps))
-            self._paths[quantity.name] = path
-        return path
-
-    def _start(self, quantity: Quantity, bound: inspect.BoundArguments) -> Any:
-        path = self._path(quantity)
-        first = path.steps[0] if path.steps else None
-        start = bound.arguments.get(path.root or "")
-        if path is not quantity.path and first is not None and first.item not in (start or {}):
-            return {first.item: None}  # this call does not give it
-        return start
+                root = quantity.path.root or ""
+                start = changed.get(root, arguments.get(root))
+                changed[root] = quantity.path.put(start, values[quantity.name])
+        return arguments.replaced(changed)
 
     def _opposite(self, invocation: Invocation) -> Callable[..., Any]:
         assert self.operation.opposite is not None

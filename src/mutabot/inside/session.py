@@ -22,6 +22,7 @@ from mutabot.model import (
     MutatedCall,
     Operation,
     Problem,
+    Remark,
     Reply,
     Role,
     SiteSeen,
@@ -34,6 +35,7 @@ from .clock import ClockReader
 from .door import Door
 from .intercept import Handler, Interception, NotFoundError, resolve
 from .limits import Meter
+from .parameters import look_at
 from .pipe import Held, Pipe
 from .record import Recorder
 from .seeds import derive
@@ -165,6 +167,12 @@ class Session:
             self.texts.finish()
         if self.job.inspect:
             self.inspect_targets()
+
+    def look_ahead(self) -> None:
+        """The tests are about to begin: say what can be said about the targets that are there already."""
+        if self.job.inspect:
+            for operation in self.job.vocabulary.operations:
+                self._check_arguments(operation)
 
     def inspect_targets(self) -> None:
         """Import what no test imported, so that every target of the vocabulary is looked at."""
@@ -369,19 +377,11 @@ class Session:
         original = self.interception.found.get(operation.target)
         if original is None:
             return
-        try:
-            parameters = inspect.signature(getattr(original, "__func__", original)).parameters
-        except (TypeError, ValueError):  # builtins without a signature: arguments by keyword only
-            return
-        if any(parameter.kind is inspect.Parameter.VAR_KEYWORD for parameter in parameters.values()):
-            return
-        known = tuple(name for name in parameters if name not in ("self", "cls"))
-        roots = {quantity.path.root or "": f"arguments.{quantity.name}" for quantity in operation.arguments}
-        if operation.message is not None:
-            roots[operation.message] = "message"
-        for root, key in roots.items():
-            if root not in parameters:
-                self._tell(operation.source, key, f"{operation.target} has no argument {root!r}", root, known)
+        for found in look_at(operation, original):
+            if found.is_remark:
+                self._remark(operation.source, found.key, found.text)
+            else:
+                self._tell(operation.source, found.key, found.text, found.name, found.known)
 
     def _source_of(self, target: str) -> str:
         vocabulary = self.job.vocabulary
@@ -391,6 +391,11 @@ class Session:
         if vocabulary.clock is not None and vocabulary.clock.tick == target:
             return vocabulary.clock.source
         return next((probe.source for probe in vocabulary.probes if probe.target == target), "")
+
+    def _remark(self, source: str, key: str, text: str) -> None:
+        if (source, key) not in self._told:
+            self._told.add((source, key))
+            self.pipe.send(Remark(source, key, text))
 
     def _tell(
         self, source: str, key: str, text: str, name: str | None = None, known: tuple[str, ...] = ()

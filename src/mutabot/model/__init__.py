@@ -26,6 +26,7 @@ from .job import MutatedCall as MutatedCall
 from .job import NotInstrumented as NotInstrumented
 from .job import PlacesReached as PlacesReached
 from .job import Problem as Problem
+from .job import Remark as Remark
 from .job import Serving as Serving
 from .job import SessionEnd as SessionEnd
 from .job import SiteSeen as SiteSeen

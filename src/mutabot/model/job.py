@@ -332,6 +332,24 @@ class Problem:
 
 
 @dataclass(frozen=True, slots=True)
+class Remark:
+    """Something about the vocabulary that the user should know; the program can be tested all the same.
+
+    Attributes:
+        source: where the vocabulary says so.
+        key: the key below the source.
+        text: what there is to say, and what to do about it.
+    """
+
+    source: str
+    key: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.source} · {self.key}: {self.text}"
+
+
+@dataclass(frozen=True, slots=True)
 class Serving:
     """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``."""
 
@@ -383,6 +401,7 @@ Line = (
     | Undiverged
     | TokensHeld
     | Problem
+    | Remark
     | Serving
     | Copied
     | CopyEnded

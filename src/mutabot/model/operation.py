@@ -47,6 +47,7 @@ class Operation:
         message: argument that holds a text command; None for operations that are not text.
         patterns: the text commands, if ``message`` is given.
         source: where the vocabulary says so (``robot.toml:12 · robot:Arm.move_by``).
+        signature: what its arguments are, for a callable that does not tell; see ``model.signature``.
     """
 
     target: str
@@ -59,6 +60,7 @@ class Operation:
     message: str | None = None
     patterns: tuple[Pattern, ...] = ()
     source: str = ""
+    signature: str | None = None
 
     @property
     def module(self) -> str:

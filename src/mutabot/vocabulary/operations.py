@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mutabot.model import Clock, Operation, Path, Pattern, Probe, Quantity
+from mutabot.model.signature import parse_signature
 from mutabot.model.units import UNITS, Dimension, dimension_of
 
 from .explain import Check
@@ -27,6 +28,7 @@ def read_operation(check: Check, raw: Any, place: Place) -> Operation | None:
     result = read_result(check, table.result, (*place, "result"))
     patterns = read_patterns(check, table.patterns, (*place, "patterns"), source)
     _check_message(check, table, arguments, place)
+    _check_signature(check, table, arguments, place)
     operation = Operation(
         target=table.call,
         arguments=arguments,
@@ -38,6 +40,7 @@ def read_operation(check: Check, raw: Any, place: Place) -> Operation | None:
         message=table.message,
         patterns=patterns,
         source=source,
+        signature=table.signature,
     )
     if not (table.arguments or table.result or table.message or operation.command):
         check.error(place, "says nothing: no arguments, no result, no patterns, and command = false")
@@ -103,6 +106,26 @@ def _check_message(
     if any(quantity.path.root == table.message for quantity in arguments):
         where = (*place, "arguments", table.message)
         check.error(where, "holds the text command, which patterns describe")
+
+
+def _check_signature(
+    check: Check, table: OperationTable, arguments: tuple[Quantity, ...], place: Place
+) -> None:
+    if table.signature is None:
+        return
+    try:
+        signature = parse_signature(table.signature)
+    except ValueError as error:
+        check.error((*place, "signature"), str(error))
+        return
+    if any(one.kind is one.VAR_KEYWORD for one in signature.parameters.values()):
+        return
+    for quantity in arguments:
+        if quantity.path.root not in signature.parameters:
+            name = quantity.path.root or ""
+            check.unknown((*place, "arguments", name), "argument", name, signature.parameters)
+    if table.message is not None and table.message not in signature.parameters:
+        check.unknown((*place, "message"), "argument", table.message, signature.parameters)
 
 
 def _is_command(

@@ -99,6 +99,13 @@ def _path(check: Check, text: str, place: Place, written: bool) -> Path | None:
     except ValueError as error:
         check.error(place, str(error))
         return None
+    if written and path.root == "self":
+        check.error(
+            place,
+            "self is the object that the call belongs to, not an argument: only what a call is given can be "
+            "changed. Name an argument of the call; what lies in the object is set by some other call",
+        )
+        return None
     if any(step.bounds is not None for step in path.steps[:-1]):
         check.error(place, f"path {text!r}: a slice can only be the last step")
         return None

@@ -59,6 +59,7 @@ class OperationTable(Table):
     opposite: str | None = None
     refusals: list[str] = Field(default_factory=list)
     message: str | None = None
+    signature: str | None = None
     patterns: list[Any] = Field(default_factory=list)
 
 
