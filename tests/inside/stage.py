@@ -76,7 +76,9 @@ class Stage:
     def vocabulary(self) -> Vocabulary:
         return load(["robot.toml"], self.folder)
 
-    def session(self, mutant: Mutant | None = None, *, budget: Budget | None = None) -> Session:
+    def session(
+        self, mutant: Mutant | None = None, *, budget: Budget | None = None, inspect: bool = False
+    ) -> Session:
         """A session with everything in place, in the middle of a test."""
         job = Job(
             root=str(self.folder),
@@ -87,6 +89,7 @@ class Stage:
             round=0,
             mutant=mutant,
             budgets={"test": budget or Budget()},
+            inspect=inspect,
         )
         locator = Locator(job.root, job.program, job.oracle)
         session = Session(job, self.pipe, locator.locate)  # type: ignore[arg-type]  # the same two methods

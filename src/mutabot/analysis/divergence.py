@@ -77,6 +77,8 @@ def _world_text(outcome: Outcome) -> str:
         return "the world ended as in the original (indistinguishable)"
     if outcome.divergence:
         return outcome.divergence[0]
+    if outcome.gaps:
+        return f"not compared with the original: {outcome.gaps[0]}"
     if outcome.distance is not None:
         return "every probe ended within its tolerance"
     return "nothing tells how the world ended (the vocabulary names no probe)"

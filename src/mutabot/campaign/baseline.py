@@ -19,6 +19,7 @@ from mutabot.vocabulary import problem_error
 from .comparison import Event, Observation, compare
 from .places import Place
 from .program_text import ProgramTexts, read_texts
+from .readability import note_readability, refuse_unreadable
 from .request import Progress, Request
 from .said import ABNORMAL, last_line, said_in
 from .sites import Sources
@@ -172,6 +173,8 @@ def take_baseline(
         _add_text_places(baseline)
     if not any(baseline.tests):
         raise NothingToDoError(_no_tests(baseline))
+    refuse_unreadable(request.vocabulary, list(baseline.ends.values()))
+    note_readability(request.vocabulary, list(baseline.ends.values()), progress)
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
 
 
@@ -348,4 +351,4 @@ def _observations(result: Result, sources: Sources) -> dict[str, Observation]:
 def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     """What is compared of a test."""
     events = [Event(places[index].key, written, read) for index, written, read, _ in end.trace]
-    return Observation(events, end.probes, end.truncated)
+    return Observation(events, end.probes, end.truncated, end.unread)

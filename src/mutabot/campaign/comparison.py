@@ -37,12 +37,14 @@ class Observation:
     Attributes:
         events: the calls.
         probes: values by ``target.part``.
+        unread: why a probe could not be read, by target.
         truncated: whether the list of calls was cut off.
     """
 
     events: Sequence[Event] = ()
     probes: Mapping[str, Any] = field(default_factory=dict)
     truncated: bool = False
+    unread: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,15 +52,17 @@ class Comparison:
     """How far a mutant's test is from the original's.
 
     Attributes:
-        indistinguishable: whether calls and probes are equal within the tolerance.
+        indistinguishable: whether all that was compared is equal within the tolerance.
         distance: greatest difference of a probe, in multiples of its tolerance (``OTHER_WORLD`` for one
-            that is not of numbers); None without probes.
+            that is not of numbers); None without probes, or if none that differs more is all that is known.
         divergence: one line per difference, worst probe first, then the first call that differs.
+        gaps: what could not be compared, one line each.
     """
 
     indistinguishable: bool
     distance: float | None
     divergence: tuple[str, ...]
+    gaps: tuple[str, ...] = ()
 
 
 def compare(original: Observation, mutant: Observation, probes: Sequence[Probe] = ()) -> Comparison:
@@ -68,13 +72,23 @@ def compare(original: Observation, mutant: Observation, probes: Sequence[Probe] 
     they differ by no more than the greatest tolerance of any probe. All else is compared by equality.
     Two cut-off traces are compared as far as they go.
     """
-    probe_lines = _probe_differences(original.probes, mutant.probes, probes)
+    probe_lines = _probe_differences(original, mutant, probes)
+    gaps = tuple(
+        f"{_short(target)} cannot be read: {mutant.unread[target]}"
+        for target in original.unread
+        if target in mutant.unread
+    )
+    if probes and not (original.probes or mutant.probes or original.unread or mutant.unread):
+        gaps = ("no probe reads anything",)
     tolerance = max((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
     trace_line = _first_difference(original, mutant, tolerance)
     distances = [distance for distance, _ in probe_lines]
     different = [line for distance, line in probe_lines if distance > 1.0]
     lines = [*different, *([trace_line] if trace_line else [])]
-    return Comparison(not lines, max(distances) if distances else None, tuple(lines))
+    distance = max(distances, default=None)
+    if gaps and not different:  # what cannot be read may be anywhere
+        distance = None
+    return Comparison(not lines, distance, tuple(lines), gaps)
 
 
 def farthest(comparisons: Sequence[Comparison]) -> Comparison:
@@ -87,18 +101,35 @@ def farthest(comparisons: Sequence[Comparison]) -> Comparison:
     distances = [one.distance for one in comparisons if one.distance is not None]
     lines = dict.fromkeys(line for one in ranked for line in one.divergence)
     together = all(one.indistinguishable for one in comparisons)
-    return Comparison(together, max(distances) if distances else None, tuple(lines))
+    gaps = tuple(dict.fromkeys(gap for one in comparisons for gap in one.gaps))
+    distance = max(distances, default=None)
+    if gaps and (distance or 0.0) <= 1.0:
+        distance = None
+    return Comparison(together, distance, tuple(lines), gaps)
 
 
 def _probe_differences(
-    original: Mapping[str, Any], mutant: Mapping[str, Any], probes: Sequence[Probe]
+    original: Observation, mutant: Observation, probes: Sequence[Probe]
 ) -> list[tuple[float, str]]:
-    found = []
-    for key in dict.fromkeys([*original, *mutant]):
-        before, after = original.get(key), mutant.get(key)
+    unread = original.unread.keys() | mutant.unread.keys()
+    found = [
+        (OTHER_WORLD, f"{_short(target)}: {_readable(original, mutant, target)}")
+        for target in sorted(original.unread.keys() ^ mutant.unread.keys())
+    ]
+    for key in dict.fromkeys([*original.probes, *mutant.probes]):
+        if any(key == target or _lies_below(key, target) for target in unread):
+            continue
+        before, after = original.probes.get(key), mutant.probes.get(key)
         distance = _distance(before, after) / _tolerance(key, probes)
         found.append((min(distance, OTHER_WORLD), f"{_short(key)}: {_change(before, after)}"))
     return sorted(found, key=lambda item: -item[0])
+
+
+def _readable(original: Observation, mutant: Observation, target: str) -> str:
+    """How a probe that only one side can read differs."""
+    if target in mutant.unread:
+        return f"cannot be read, as it could be in the original: {mutant.unread[target]}"
+    return f"can be read, as it could not be in the original: {original.unread[target]}"
 
 
 def _tolerance(key: str, probes: Sequence[Probe]) -> float:
@@ -110,7 +141,7 @@ def _tolerance(key: str, probes: Sequence[Probe]) -> float:
 
 
 def _lies_below(key: str, target: str) -> bool:
-    return key.startswith(target) and key[len(target)] in ".["
+    return key.startswith(target) and key[len(target)] in ".[#"
 
 
 def _distance(before: Any, after: Any) -> float:

@@ -176,10 +176,16 @@ def _compared(outcome: Outcome, run: Run, request: Request, baseline: Baseline) 
     for test, found in run.observations.items():
         key = (run.round, test)
         if key in baseline.restless:
-            return outcome
+            return replace(outcome, gaps=(f"equal runs of the original differ in {test}",))
         if key in baseline.observations:
             comparisons.append(compare(baseline.observations[key], found, request.vocabulary.probes))
     worst = farthest(comparisons)
     # Without a probe, equal traces say only that the program did the same, not that the world ended so.
-    equal = worst.indistinguishable if worst.distance is not None or worst.divergence else None
-    return replace(outcome, indistinguishable=equal, distance=worst.distance, divergence=worst.divergence)
+    is_claimed = worst.divergence or (worst.distance is not None and not worst.gaps)
+    return replace(
+        outcome,
+        indistinguishable=worst.indistinguishable if is_claimed else None,
+        distance=worst.distance,
+        divergence=worst.divergence,
+        gaps=worst.gaps,
+    )

@@ -27,7 +27,7 @@ from .limits import limit_memory
 from .locate import Locator
 from .no_oracle import NoOracle
 from .pipe import Held, Pipe
-from .probes import take
+from .probes import Reading
 from .session import Session
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class Conductor:
         self._server = server
         self._ending: Ending | None = None
         self._outcome = "passed"
-        self._probes: dict[str, Any] = {}
+        self._reading = Reading()
         self._collected: tuple[str, ...] = ()
         self._errors: list[str] = []
         self._started = (0.0, 0.0)
@@ -221,7 +221,7 @@ class Conductor:
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
         """One test, its fixtures included."""
-        self._ending, self._outcome, self._probes = None, "passed", {}
+        self._ending, self._outcome, self._reading = None, "passed", Reading()
         self._pipe.send(TestStart(item.nodeid))
         seeds.seed_all(self.seed_of(item.nodeid))
         self._item = item
@@ -243,9 +243,7 @@ class Conductor:
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_teardown(self) -> Generator[None, Any, Any]:
         """Before fixtures take the world down: take the probes."""
-        meter, self.session.meter = self.session.meter, None  # probes are no operations of the program's
-        self._probes = take(self.job.vocabulary.probes)
-        self.session.meter = meter
+        self._reading = self.session.take_probes()
         return (yield)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -355,7 +353,8 @@ class Conductor:
             simulated=meter.simulated,
             trace=tuple(session.recorder.trace) if self.job.record else (),
             truncated=session.recorder.truncated,
-            probes=self._probes,
+            probes=self._reading.values,
+            unread=self._reading.unread,
         )
 
 

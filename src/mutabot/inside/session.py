@@ -33,10 +33,13 @@ from .activate import Activation, Evidence, together
 from .branch import Trunk
 from .clock import ClockReader
 from .door import Door
+from .inspection import why_not_asked
+from .instances import Instances
 from .intercept import Handler, Interception, NotFoundError, resolve
 from .limits import Meter
 from .parameters import look_at
 from .pipe import Held, Pipe
+from .probes import Reading, take
 from .record import Recorder
 from .seeds import derive
 from .texts import Texts
@@ -67,6 +70,7 @@ class Session:
     locate: Callable[[FrameType | None], tuple[Span, Role] | None]
     recorder: Recorder = field(init=False)
     interception: Interception = field(init=False)
+    instances: Instances = field(default_factory=Instances)
     trunk: Trunk | None = None
     branch: str | None = None
     activations: list[Activation] = field(default_factory=list)
@@ -76,6 +80,9 @@ class Session:
     _doors: list[Door] = field(default_factory=list)
     _told: set[tuple[str, str]] = field(default_factory=set)
     _parts: set[str] = field(default_factory=set)
+    _askers: dict[str, type | None] = field(default_factory=dict)
+    _unfit: dict[tuple[str, str], Callable[[], None]] = field(default_factory=dict)
+    _fit: dict[str, set[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.recorder = Recorder(self._site_seen)
@@ -90,6 +97,7 @@ class Session:
             door = Door(operation, reading, partial(self._path_is_wrong, operation))
             self._doors.append(door)
             self.interception.wrap(operation.target, self._handler(door))
+        self.instances.watch(probe.owner for probe in vocabulary.probes)
         if vocabulary.clock is not None:
             clock = vocabulary.clock
             reader = ClockReader(clock, lambda: self.meter, partial(self._tell, clock.source))
@@ -135,6 +143,7 @@ class Session:
         self._parts.clear()
         self.meter = Meter(self.job.budgets.get(test, Budget()))
         self.recorder.start()
+        self.instances.start()
         for door in self._doors:
             door.reset()
         if self.trunk is not None:
@@ -158,6 +167,15 @@ class Session:
             if self.trunk is not None:
                 self.trunk.tell_undiverged(self.texts.hits)
             self.texts.end_test()
+
+    def take_probes(self) -> Reading:
+        """Read all probes: at the end of a test, before its fixtures take the world down."""
+        meter, self.meter = self.meter, None  # probes are no operations of the program's
+        try:
+            return take(self.job.vocabulary.probes, self.instances)
+        finally:
+            self.meter = meter
+            self.instances.start()  # what the program is done with may go
 
     def finish(self) -> None:
         """All tests are over: wait for branches, tell what was seen, and check the vocabulary if asked to."""
@@ -189,9 +207,15 @@ class Session:
                 )
         for operation in self.job.vocabulary.operations:
             self._check_arguments(operation)
+            self._check_current(operation)
+        for tell in self._unfit.values():
+            tell()
         self._check_exceptions()
         for probe in self.job.vocabulary.probes:
-            self._look_up(probe.source or probe.target, "call", probe.target)
+            # what its objects have is not known to a class
+            owner = self._look_up(probe.source, "call", probe.owner or probe.target)
+            if owner is not None and probe.owner and not isinstance(owner, type):
+                self._look_up(probe.source, "call", probe.target)
 
     def _check_exceptions(self) -> None:
         """A misspelt refusal would turn refusals into kills; so each name must be an exception."""
@@ -227,7 +251,11 @@ class Session:
             wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
         ) -> Any:
             __tracebackhide__ = True
-            if self.meter is None or _under_way.get():
+            if self.meter is None:
+                return wrapped(*args, **kwargs)
+            if instance is not None and not self.instances.is_idle:
+                self.instances.used(instance)
+            if _under_way.get():
                 return wrapped(*args, **kwargs)
             self.meter.count()
             located = self.locate(sys._getframe(1))
@@ -351,6 +379,10 @@ class Session:
         read = reply.values if reply is not None else {}
         returned = reply.payload if reply is not None and call.operation.command else None
         self.recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned)
+        if self.job.inspect:
+            self._fit.setdefault(call.operation.target, set()).update(read)
+            instance = call.payload.instance
+            self._askers[call.operation.target] = None if instance is None else type(instance)
 
     def _acted(self, part: str) -> None:
         """A part of the mutant changed something; the one of the program text has no name."""
@@ -371,7 +403,25 @@ class Session:
     def _path_is_wrong(self, operation: Operation, key: str, error: PathError) -> None:
         # only a path has names to choose from
         name = error.step if error.path else None
-        self._tell(operation.source, key, str(error), name, error.known)
+
+        def tell() -> None:
+            if key.partition(".")[2] not in self._fit.get(operation.target, ()):
+                self._tell(operation.source, key, str(error), name, error.known)
+
+        if operation.patterns or not key.startswith("result."):
+            tell()
+        elif self.job.inspect:  # one result may lack what others have
+            self._unfit.setdefault((operation.source, key), tell)
+
+    def _check_current(self, operation: Operation) -> None:
+        if operation.current is None or operation.target not in self._askers:
+            return
+        try:
+            why = why_not_asked(operation.current, self._askers[operation.target])
+        except (NotFoundError, AttributeError, KeyError):  # it is told as an operation of its own
+            return
+        if why is not None:
+            self._tell(operation.source, "current", why)
 
     def _check_arguments(self, operation: Operation) -> None:
         original = self.interception.found.get(operation.target)

@@ -267,7 +267,9 @@ class TestEnd:
         simulated: simulated seconds, or None if there is no clock.
         trace: per hit: site index, values written, values read, and what a command returned.
         truncated: whether the trace was cut off.
-        probes: values of each probe by ``target.part``.
+        probes: values of each probe by ``target.part``; those of the second object of a class by
+            ``target#2.part``.
+        unread: why a probe could not be read, by target.
     """
 
     __test__ = False  # not a test class, whatever pytest may think of the name
@@ -296,6 +298,7 @@ class TestEnd:
     trace: tuple[Any, ...] = ()
     truncated: bool = False
     probes: Mapping[str, Any] = field(default_factory=dict)
+    unread: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def notices(self) -> bool:

@@ -108,13 +108,21 @@ class Probe:
     """A reading that mutabot takes at the end of a test, to compare worlds.
 
     Attributes:
-        target: callable without arguments, as ``module:qualified.name``.
+        target: callable without arguments, or a value, as ``module:qualified.name``. A method, property or
+            attribute of a class's objects is read from those that the program uses.
         tolerance: greatest difference between two equal worlds, in the reading's own units.
     """
 
     target: str
     tolerance: float = 1e-6
     source: str = ""
+
+    @property
+    def owner(self) -> str:
+        """The object or class in which the target lies; empty for what its module has itself."""
+        module, _, qualname = self.target.partition(":")
+        parent = qualname.rpartition(".")[0]
+        return f"{module}:{parent}" if parent else ""
 
 
 @dataclass(frozen=True, slots=True)

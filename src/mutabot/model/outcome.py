@@ -49,8 +49,9 @@ class Outcome:
         indistinguishable: whether trace and probes equal the original's; None if that was not compared
             (only survivors are).
         distance: greatest difference of a probe from the original's, in multiples of its tolerance;
-            None without probes.
+            None without probes, or if one cannot be read.
         divergence: what ended otherwise than in the original, one line each, worst first.
+        gaps: what could not be compared with the original, one line each.
         engine: ``replay`` or ``branch``.
         complete: whether every test that reaches the mutant was run, also after one had noticed it.
         kills: the tests that noticed it, in the order in which they ran: all of them if ``complete``, else
@@ -78,6 +79,7 @@ class Outcome:
     indistinguishable: bool | None = None
     distance: float | None = None
     divergence: tuple[str, ...] = ()
+    gaps: tuple[str, ...] = ()
     engine: str = "replay"
     complete: bool = False
     kills: tuple[Kill, ...] = ()

@@ -198,6 +198,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "indistinguishable": outcome.indistinguishable,
         "distance": outcome.distance,
         "divergence": list(outcome.divergence),
+        "gaps": list(outcome.gaps),
         "engine": outcome.engine,
     }
 

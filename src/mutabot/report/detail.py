@@ -128,4 +128,5 @@ def _evidence(outcome: Outcome) -> Iterator[str]:
     if outcome.indistinguishable:
         yield "calls and probes as in the original (indistinguishable)"
     yield from outcome.divergence
+    yield from (f"not compared: {gap}" for gap in outcome.gaps)
     yield f"acted at {outcome.acted} of {outcome.hits} hits, {outcome.tests} tests run, {outcome.wall:.1f} s"
