@@ -81,7 +81,7 @@ def init(
         list[Path] | None, typer.Argument(help="Files or folders of the robot program.")
     ] = None,
 ) -> None:
-    """Look at the program and propose a configuration and a vocabulary."""
+    """Run the tests once, look at what the program calls, and propose a configuration and a vocabulary."""
     from mutabot.campaign.proposal import propose
 
     for line in propose(context.obj, program or []):

@@ -1,3 +1,3 @@
-"""Proposing a configuration and a vocabulary for a project, by reading its text and never importing it."""
+"""Proposing a configuration and a vocabulary for a project, from one plain run of its tests."""
 
 from .propose import propose as propose

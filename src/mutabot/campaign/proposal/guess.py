@@ -23,7 +23,9 @@ _TIMES = frozenset(
 _OPENINGS = frozenset(
     {"position", "opening", "width", "pos", "fraction", "value", "state", "command", "percent"}
 )
-_SWITCHES = frozenset({"on", "state", "enabled", "value", "level", "active", "closed", "open", "grip"})
+_SWITCHES = frozenset(
+    {"on", "state", "enabled", "value", "val", "signal", "level", "active", "closed", "open", "grip"}
+)
 _UNIT_WORDS = {
     "mm": "mm", "millimetre": "mm", "millimeter": "mm", "cm": "cm", "centimetre": "cm", "centimeter": "cm",
     "m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m",
@@ -34,11 +36,17 @@ _UNIT_WORDS = {
 }  # fmt: skip
 _UNITS_OF = {"length": ("m", "cm", "mm"), "angle": ("deg", "rad"), "time": ("s", "ms")}
 _RELATIVE = re.compile(
-    r"(?:^|_)(?:by|relative|rel|offset|shift|jog|translate|rotate|turn|forward|back|lift|drop)"
+    r"(?:^|_)(?:by|relative|rel|offset|shift|jog|translate|rotate|turn|forward|back|lift|drop|delta)"
 )
-_ABSOLUTE = re.compile(r"(?:^|_)(?:to|absolute|abs|goto|target|set)(?:_|$)")
+_ABSOLUTE = re.compile(
+    r"(?:^|_)(?:to|absolute|abs|goto|target|set|move[ljpc]|servo[ljc]|[ljp]_?move|ptp|lin)(?:_|$)"
+)
 _GRIPPER = re.compile(r"grip|(?:^|_)hand(?:_|$)|finger|claw|jaw|vacuum|suction")
-_OUTPUT = re.compile(r"output|digital|signal|valve|relay|lamp|(?:^|_)io(?:_|$)|(?:^|_)do(?:_|$)")
+_OUTPUT = re.compile(r"output|digital|signal|valve|relay|lamp|coil|(?:^|_)io(?:_|$)|(?:^|_)do(?:_|$)")
+
+
+#: more different numbers than these are no settings, but a scale
+_MOST_VALUES = 5
 
 
 @dataclass
@@ -62,7 +70,7 @@ class Setting:
         words: names of the callable, its class and module, in lower case.
         doc: docstrings of the callable and its class.
         annotation: type as written, or empty.
-        constants: constants the program calls it with, or compares the result with.
+        constants: values that were seen, and what the program compares them with.
     """
 
     words: str
@@ -73,7 +81,7 @@ class Setting:
 
 def guess_argument(name: str, setting: Setting) -> Guess:
     """What an argument means; an empty guess if its name says nothing."""
-    stem, unit = _split_unit(name.lower())
+    stem, unit = split_unit(name.lower())
     if _GRIPPER.search(setting.words) and stem in _OPENINGS | _SWITCHES:
         return _opening(stem, unit, setting)
     if (_OUTPUT.search(setting.words) and stem in _SWITCHES) or _is_switch(stem, setting):
@@ -81,24 +89,24 @@ def guess_argument(name: str, setting: Setting) -> Guess:
     motion = _motion(stem)
     if motion is not None:
         kind, axis, relative = motion
-        return _moved(kind, axis, relative, unit, setting)
+        return moved(kind, axis, relative, unit, setting)
     if stem in _TIMES and "timeout" not in name:
         unit = "ms" if "milli" in stem else unit
-        return _measured({"kind": "duration"}, "time", unit, setting)
+        return measured({"kind": "duration"}, "time", unit, setting)
     return Guess()
 
 
 def guess_reading(name: str, setting: Setting) -> Guess:
     """What a result, or the part of it with this name, means."""
-    stem, unit = _split_unit(name.lower())
+    stem, unit = split_unit(name.lower())
     motion = _motion(stem)
     if motion is not None and stem not in _LENGTHS | _HEIGHTS:
         kind, axis, _ = motion
         if axis is not None and axis.startswith("j"):
-            return _measured({"kind": "angle", "axis": axis}, "angle", unit, setting)
+            return measured({"kind": "angle", "axis": axis}, "angle", unit, setting)
         turned = kind == "rotation"
         table = {"kind": "orientation" if turned else "position", **({"axis": axis} if axis else {})}
-        return _measured(table, "angle" if turned else "length", unit, setting)
+        return measured(table, "angle" if turned else "length", unit, setting)
     return _plain_reading(stem, unit, setting)
 
 
@@ -118,9 +126,9 @@ def _plain_reading(stem: str, unit: str | None, setting: Setting) -> Guess:
     if setting.annotation == "str":
         return _label(setting)
     if words & {"angle", "joint", "heading"}:
-        return _measured({"kind": "angle"}, "angle", unit, setting)
+        return measured({"kind": "angle"}, "angle", unit, setting)
     if words & {"distance", "range", "gap", "height", "width", "length", "depth", "ultrasonic", "lidar"}:
-        return _measured({"kind": "distance"}, "length", unit, setting)
+        return measured({"kind": "distance"}, "length", unit, setting)
     return Guess()
 
 
@@ -141,9 +149,10 @@ def _motion(stem: str) -> tuple[str, str | None, bool | None] | None:
     return ("translation", None, True) if stem in _LENGTHS else None
 
 
-def _moved(kind: str, axis: str | None, relative: bool | None, unit: str | None, setting: Setting) -> Guess:
+def moved(kind: str, axis: str | None, relative: bool | None, unit: str | None, setting: Setting) -> Guess:
+    """A commanded motion; ``relative`` and ``unit`` are None where the name does not tell."""
     table: Table = {"kind": kind, **({"axis": axis} if axis else {})}
-    guess = _measured(table, "angle" if kind == "rotation" else "length", unit, setting)
+    guess = measured(table, "angle" if kind == "rotation" else "length", unit, setting)
     mode = {True: "by", False: "to", None: None}[relative]
     if mode is None and _ABSOLUTE.search(setting.words) and not re.search(r"_by(?:_|$)", setting.words):
         mode = "to"
@@ -155,20 +164,35 @@ def _moved(kind: str, axis: str | None, relative: bool | None, unit: str | None,
     return guess
 
 
-def _measured(table: Table, dimension: str, unit: str | None, setting: Setting) -> Guess:
+def measured(table: Table, dimension: str, unit: str | None, setting: Setting) -> Guess:
+    """A quantity with a unit: as its name or a docstring says, else as its values look."""
     fitting = _UNITS_OF[dimension]
     if unit not in fitting:
         said = [_UNIT_WORDS.get(word) for word in re.findall(r"[^\W\d_]+|°", setting.doc.lower())]
         unit = next((one for one in said if one in fitting), None)
     if unit is not None:
         return Guess({**table, "unit": unit})
-    return Guess({**table, "unit": fitting[0]}, ["unit"])
+    return Guess({**table, "unit": _unit_by_size(dimension, setting.constants) or fitting[0]}, ["unit"])
+
+
+def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
+    """The unit that numbers of this size usually have: no arm reaches 10 m, nor turns by 7 rad."""
+    numbers = [abs(one) for one in values if isinstance(one, int | float) and not isinstance(one, bool)]
+    largest = max(numbers, default=0.0)
+    if dimension == "length":
+        return "mm" if largest > 10 else None
+    if dimension == "angle":
+        is_whole = all(float(number).is_integer() for number in numbers)
+        return "rad" if 0 < largest <= 6.5 and not is_whole else None
+    return "ms" if largest > 60 else None
 
 
 def _opening(stem: str, unit: str | None, setting: Setting) -> Guess:
     if setting.annotation == "bool":
         return Guess({"kind": "opening", "values": [False, True]})
     values = _distinct(setting.constants)
+    if _are_numbers(values) and (len(values) > _MOST_VALUES or any(value < 0 for value in values)):
+        return Guess(_ranged("output", values), ["range"])
     if len(values) >= 2:
         table: Table = {"kind": "opening", "values": values}
         if _are_numbers(values) and any(value > 1 for value in values):
@@ -178,7 +202,15 @@ def _opening(stem: str, unit: str | None, setting: Setting) -> Guess:
         return Guess(
             {"kind": "opening", "unit": unit or "m", "range": [0.0, _stroke(unit or "m")]}, ["range"]
         )
+    if _are_numbers(values) and any(value > 1 for value in values):
+        return Guess(
+            _ranged("output", [0, 255, *values] if values[0] > 100 else [0, 100, *values]), ["range"]
+        )
     return Guess({"kind": "opening", "range": [0.0, 1.0], "unit": "fraction"}, ["range"])
+
+
+def _ranged(kind: str, values: Sequence[Any]) -> Table:
+    return {"kind": kind, "range": [float(min(values)), float(max(values))]}
 
 
 def _stroke(unit: str) -> float:
@@ -206,7 +238,7 @@ def _label(setting: Setting) -> Guess:
     return Guess({"kind": "label"}, ["values"])
 
 
-def _split_unit(name: str) -> tuple[str, str | None]:
+def split_unit(name: str) -> tuple[str, str | None]:
     stem, _, last = name.rpartition("_")
     if stem and last in _UNIT_WORDS:
         return stem, _UNIT_WORDS[last]

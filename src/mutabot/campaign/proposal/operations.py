@@ -1,28 +1,33 @@
-"""Uses of callables turned into proposed operations."""
+"""Calls that were seen turned into proposed operations."""
 
 from __future__ import annotations
 
-import ast
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from .commands import MESSAGES, patterns_of
+from .compared import with_compared
 from .guess import Guess, Setting, guess_argument, guess_reading
-from .resolve import Instance, Resolver, is_property
-from .sources import Definition
-from .uses import Use, parameters
+from .observed import Part, SeenCall, part_of
+from .sequences import guess_elements
 
 _COMMANDS = re.compile(
-    r"(?:^|_)(?:home|park|move|go|pick|place|grasp|grip|release|open|close|wait|sleep|stop|lift|lower|rotate|turn"
-    r"|translate|attach|detach|push|start|feed|insert|press|screw|weld)(?:_|$)"
+    r"(?:^|_)(?:home|park|move[a-z]?|go|goto|pick|place|grasp|grip|release|open|close|wait|sleep|stop|lift|lower"
+    r"|rotate|turn|translate|attach|detach|push|start|feed|insert|press|screw|weld|dock|undock|servo[a-z]?"
+    r"|speed[lj]|step|write|jog|drive|set|send|command|reset|enable|disable|ptp|lin|calibrate)(?:_|$)"
 )
-_READERS = re.compile(r"(?:^|_)(?:read|get|query|ask|measure)(?:_|$)")
-_REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision", re.IGNORECASE)
+_READERS = re.compile(
+    r"(?:^|_)(?:read|get[lj]?|query|ask|measure|is|has|recv|receive|where|locate|detect|scan)(?:_|$)"
+)
+_REFUSAL = re.compile(r"refus|reach|limit|reject|range|unable|collision|violation", re.IGNORECASE)
 _TALK = re.compile(r"(?:^|_)(?:log|print|say|show|info|warn|warning|debug|error|display)(?:_|$)")
 _POSE = re.compile(r"pose|position|locat|where|xyz|point")
 _PAIRS = (("open", "close"), ("grip", "release"), ("grasp", "release"), ("attach", "detach"), ("on", "off"))
 _AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+#: longer texts, and more of them, are no labels
+_LONGEST_LABEL, _MOST_LABELS = 30, 6
 
 
 @dataclass
@@ -30,17 +35,17 @@ class Proposal:
     """One proposed operation.
 
     Attributes:
-        definition: the callable.
+        call: the callable and what was seen of it.
         arguments, result: guesses by path; ``""`` is the result itself.
         message: argument with a text command, or None.
         patterns: notations of the text commands.
         current, opposite: targets of other operations, or None.
-        refusals: exceptions it raises that look like a refusal.
-        certain: whether the program really uses this callable, or only the names suggest it.
+        refusals: exceptions that look like a refusal.
         reads_by_name: whether the text only says what to read.
+        is_plain: whether it is proposed although nothing tells what it means.
     """
 
-    definition: Definition
+    call: SeenCall
     arguments: dict[str, Guess] = field(default_factory=dict)
     result: dict[str, Guess] = field(default_factory=dict)
     message: str | None = None
@@ -48,193 +53,234 @@ class Proposal:
     current: str | None = None
     opposite: str | None = None
     refusals: list[str] = field(default_factory=list)
-    certain: bool = True
     reads_by_name: bool = False
+    is_plain: bool = False
 
     @property
     def target(self) -> str:
         """As vocabularies name it."""
-        return self.definition.target
+        return self.call.target
 
     @property
     def is_reading(self) -> bool:
-        """Whether it takes nothing and answers something."""
+        """Whether it takes nothing that matters and answers something."""
         return bool(self.result) and not self.arguments and self.message is None
 
+    @property
+    def is_operation(self) -> bool:
+        """Whether it can be proposed as it is."""
+        if self.call.facts["problem"]:
+            return False
+        complete = any(is_complete(guess) for guess in [*self.arguments.values(), *self.result.values()])
+        return complete or bool(self.patterns) or self.is_plain or _is_command(self.call)
 
-def proposals(uses: Sequence[Use], resolver: Resolver) -> tuple[list[Proposal], list[Use]]:
-    """Proposed operations, and the uses that look like none."""
-    found: dict[str, Proposal] = {}
-    others = []
-    for use in uses:
-        proposal = _proposal(use, resolver)
-        if _says_something(proposal) or _is_command(use):
-            found[use.definition.target] = proposal
-        else:
-            others.append(use)
+
+def is_complete(guess: Guess) -> bool:
+    """Whether a vocabulary takes it as it is: a label needs all its values."""
+    return guess.table.get("kind") != "label" or "values" in guess.table
+
+
+def proposals(
+    calls: Sequence[SeenCall], groups: Sequence[Sequence[Any]] = ()
+) -> tuple[list[Proposal], list[Proposal]]:
+    """Proposed operations, and those of which nothing shows what they mean to the robot.
+
+    ``groups``: constants that the program compares one and the same thing with.
+    """
+    all_ = [_proposal(call, groups) for call in calls]
+    found = {one.target: one for one in all_ if one.is_operation}
     for proposal in list(found.values()):
-        _find_current(proposal, found, resolver)
+        _find_current(proposal, found)
     for proposal in found.values():
         _find_opposite(proposal, found)
-    return list(found.values()), others
+    return list(found.values()), [one for one in all_ if one.target not in found]
 
 
-def _proposal(use: Use, resolver: Resolver) -> Proposal:
-    definition = use.definition
-    proposal = Proposal(definition, certain=use.certain)
-    proposal.refusals = list(dict.fromkeys(_refusals(definition, resolver)))
-    proposal.message = _message(use)
-    proposal.reads_by_name = proposal.message is not None and _reads(use)
-    for argument in parameters(definition):
-        if argument.arg != proposal.message:
-            proposal.arguments.update(_argument(argument, use, resolver))
+def _proposal(call: SeenCall, groups: Sequence[Sequence[Any]]) -> Proposal:
+    proposal = Proposal(call)
+    raised = [*call.facts["refusals"], *call.facts["raised"]]
+    proposal.refusals = [name for name in dict.fromkeys(raised) if _REFUSAL.search(name.partition(":")[2])]
+    proposal.message = _message(call)
+    proposal.reads_by_name = proposal.message is not None and _reads(call)
+    for name, parts in call.arguments.items():
+        if name != proposal.message:
+            for part in parts:
+                proposal.arguments.update(_argument(name, part, call))
     if proposal.message is not None:
-        proposal.patterns = patterns_of([str(one) for one in use.constants.get(proposal.message, [])])
+        texts = [value for part in call.arguments[proposal.message] for value in part.values]
+        proposal.patterns = patterns_of([str(text) for text in texts])
     else:
-        proposal.result = _result(use, resolver)
+        proposal.result = _result(call, groups)
+        if (proposal.arguments or _is_command(call)) and call.name != "step":
+            proposal.result = _only_measured(proposal.result)
     return proposal
 
 
-def _says_something(proposal: Proposal) -> bool:
-    return bool(proposal.arguments or proposal.result or proposal.patterns)
+def _only_measured(result: dict[str, Guess]) -> dict[str, Guess]:
+    """A command's answer of yes or no says whether it was carried out; no sensor reads it."""
+    return {path: guess for path, guess in result.items() if guess.table["kind"] not in ("flag", "label")}
 
 
-def _is_command(use: Use) -> bool:
-    node = use.definition.node
-    assert not isinstance(node, ast.ClassDef)
-    answers = node.returns is not None and ast.unparse(node.returns) not in ("None", "bool")
-    return not answers and not is_property(use.definition) and bool(_COMMANDS.search(_snake(node.name)))
+def _is_command(call: SeenCall) -> bool:
+    name = snake(call.name)
+    if call.facts["is_property"] or _TALK.search(name) or _reads(call):
+        return False
+    return _COMMANDS.search(name) is not None
 
 
-def _message(use: Use) -> str | None:
+def _reads(call: SeenCall) -> bool:
+    return _READERS.search(snake(call.name)) is not None
+
+
+def _message(call: SeenCall) -> str | None:
     """The argument that holds a text command."""
-    if _TALK.search(_snake(use.definition.node.name)):
+    if _TALK.search(snake(call.name)):
         return None
-    reads = _reads(use)
-    for argument in parameters(use.definition):
-        texts = [one for one in use.constants.get(argument.arg, []) if isinstance(one, str)]
-        if texts and (argument.arg in MESSAGES or (reads and argument.arg == "name")):
-            return argument.arg
+    for name, parts in call.arguments.items():
+        is_text = any(isinstance(value, str) for part in parts for value in part.values)
+        if is_text and (name in MESSAGES or (_reads(call) and name == "name")):
+            return name
     return None
 
 
-def _reads(use: Use) -> bool:
-    return _READERS.search(_snake(use.definition.node.name)) is not None
-
-
-def _argument(argument: ast.arg, use: Use, resolver: Resolver) -> Iterator[tuple[str, Guess]]:
-    definition, name = use.definition, argument.arg
-    setting = _setting(definition, argument.annotation, use.constants.get(name, []))
-    guess = guess_argument(name, setting)
+def _argument(name: str, part: Part, call: SeenCall) -> Iterator[tuple[str, Guess]]:
+    is_whole = part.path == name
+    if not part.always and not is_whole:
+        return  # a path that some calls lack
+    setting = _setting(call, call.facts["annotations"].get(name, "") if is_whole else "", part)
+    own = part.name or name
+    if not is_whole:
+        setting = Setting(f"{setting.words}_{snake(name)}", f"{part.doc}\n{setting.doc}", "", part.values)
+    if part.length is not None:
+        found = guess_elements(own if part.name or is_whole else name, part.length, setting, written=True)
+        yield from ((f"{part.path}{step}", guess) for step, guess in found.items())
+        return
+    if part.values and isinstance(part.values[0], str) and not setting.annotation.startswith("Literal"):
+        return
+    guess = guess_argument(own, setting)
     if guess.table:
-        yield name, guess
-        return
-    known = resolver.annotated(argument.annotation, definition.module)
-    for path, field_name, doc in _fields(known, resolver):
-        inner = Setting(f"{setting.words}_{_snake(name)}", f"{doc}\n{setting.doc}")
-        guess = guess_argument(field_name, inner)
-        if guess.table:
-            yield f"{name}{path}", guess
+        yield part.path, guess
 
 
-def _result(use: Use, resolver: Resolver) -> dict[str, Guess]:
-    definition = use.definition
-    assert not isinstance(definition.node, ast.ClassDef)
-    annotation = definition.node.returns
-    setting = _setting(definition, annotation, use.compared)
-    guesses = {}
-    for path, name, doc in _fields(resolver.annotated(annotation, definition.module), resolver):
-        guesses[path] = guess_reading(name, Setting("", f"{doc}\n{setting.doc}"))
-    for path, name in _parts(definition, setting):
-        guesses.setdefault(path, guess_reading(name, Setting("", setting.doc)))
-    guesses = {path: guess for path, guess in guesses.items() if guess.table}
-    if not guesses and setting.annotation != "None" and _answers(definition.node):
-        guess = guess_reading(
-            _snake(definition.node.name).removeprefix("get_").removeprefix("read_"), setting
-        )
-        guesses = {"": guess} if guess.table else {}
-    return guesses
+def _result(call: SeenCall, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
+    found: dict[str, Guess] = {}
+    for part in call.result:
+        if part.always and part.values:
+            found.update(_reading(call, part, groups))
+    return {path: guess for path, guess in found.items() if guess.table}
 
 
-def _answers(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
-    return node.returns is not None or any(
-        isinstance(one, ast.Return) and one.value is not None for one in ast.walk(node)
-    )
+def _reading(call: SeenCall, part: Part, groups: Sequence[Sequence[Any]]) -> dict[str, Guess]:
+    annotation = call.facts["returns"] if not part.path else ""
+    setting = _setting(call, annotation, part)
+    if part.length is not None:
+        return _elements(call, part, setting)
+    if part.name:  # a field says itself what it is
+        setting = Setting("", f"{part.doc}\n{setting.doc}", part.type if part.type == "bool" else "")
+        values = part.values
+        guess = guess_reading(part.name, Setting("", setting.doc, setting.annotation, values))
+    elif part.path:
+        is_end = call.name == "step" and part.type == "bool"
+        guess = Guess({"kind": "flag"}) if is_end else Guess()
+    else:
+        values = tuple(with_compared(part.values, groups))
+        setting = Setting(setting.words, setting.doc, annotation or part.type, values)
+        guess = guess_reading(snake(call.name).removeprefix("get_").removeprefix("read_"), setting)
+    return {part.path: guess} if _is_believable(guess) else {}
 
 
-def _fields(value: object, resolver: Resolver, depth: int = 2) -> Iterator[tuple[str, str, str]]:
-    """Path, name and docstring of the fields of an object's class."""
-    if not isinstance(value, Instance) or depth == 0:
-        return
-    node = value.type.node
-    assert isinstance(node, ast.ClassDef)
-    doc = ast.get_docstring(node) or ""
-    for statement in node.body:
-        if not isinstance(statement, ast.AnnAssign) or not isinstance(statement.target, ast.Name):
-            continue
-        name = statement.target.id
-        yield f".{name}", name, doc
-        inner = resolver.annotated(statement.annotation, value.type.module)
-        for path, inner_name, inner_doc in _fields(inner, resolver, depth - 1):
-            yield f".{name}{path}", inner_name, inner_doc
+def _is_believable(guess: Guess) -> bool:
+    """Long texts, and many different ones, are messages rather than labels."""
+    values = guess.table.get("values", ())
+    if guess.table.get("kind") != "label":
+        return bool(guess.table)
+    texts = [value for value in values if isinstance(value, str)]
+    return len(values) <= _MOST_LABELS and all(len(text) <= _LONGEST_LABEL for text in texts)
 
 
-def _parts(definition: Definition, setting: Setting) -> Iterator[tuple[str, str]]:
-    """Path and name of the parts of a tuple, list or dict that a function returns."""
-    size = len(re.findall(r"float|int", setting.annotation)) if "uple" in setting.annotation else 0
-    if _POSE.search(setting.words) and size in (2, 3, 6):
-        yield from ((f"[{index}]", name) for index, name in enumerate(_AXES[:size]))
-        return
-    for node in ast.walk(definition.node):
-        value = node.value if isinstance(node, ast.Return) else None
-        if isinstance(value, ast.Tuple | ast.List):
-            names = [getattr(one, "id", getattr(one, "attr", "")) for one in value.elts]
-            yield from ((f"[{index}]", name) for index, name in enumerate(names) if name)
-        elif isinstance(value, ast.Dict):
-            keys = [key.value for key in value.keys if isinstance(key, ast.Constant)]
-            yield from ((f'["{key}"]', key) for key in keys if isinstance(key, str))
+def _elements(call: SeenCall, part: Part, setting: Setting) -> dict[str, Guess]:
+    assert part.length is not None
+    name = part.name or ("" if part.path else snake(call.name))
+    if part.path and not part.name:
+        return {}  # an element of a tuple: nothing tells which one it is
+    words = Setting("" if part.name else setting.words, setting.doc, "", setting.constants)
+    is_place = bool(_POSE.search(f"{words.words}_{name}"))
+    if part.length in (2, 3) and is_place:
+        names = _AXES[: part.length]
+        flat = [number for values in part.values for number in values]
+        inner = Setting("", setting.doc, "", flat)
+        return {f"{part.path}[{index}]": guess_reading(one, inner) for index, one in enumerate(names)}
+    found = guess_elements(name, part.length, words, written=False)
+    return {f"{part.path}{step}": guess for step, guess in found.items()}
 
 
-def _refusals(definition: Definition, resolver: Resolver) -> Iterator[str]:
-    scope = resolver.scope(definition.module, None, None)
-    for node in ast.walk(definition.node):
-        if not isinstance(node, ast.Raise) or node.exc is None:
-            continue
-        raised = scope.value(node.exc.func if isinstance(node.exc, ast.Call) else node.exc)
-        if isinstance(raised, Definition) and _REFUSAL.search(raised.node.name):
-            yield raised.target
-
-
-def _find_current(proposal: Proposal, found: dict[str, Proposal], resolver: Resolver) -> None:
+def _find_current(proposal: Proposal, found: dict[str, Proposal]) -> None:
     """Look for the reading that tells where a moved thing is; it may be one the program never uses."""
-    reading_of = {"translation": "position", "rotation": "orientation"}
     wanted = {
-        (reading_of[guess.table["kind"]], guess.table.get("axis"))
+        (one, axis)
         for guess in proposal.arguments.values()
-        if guess.table.get("kind") in reading_of and guess.table.get("axis")
+        for axis in _axes(guess)
+        for one in _readings_of(guess.table["kind"], axis)
     }
-    owner = proposal.definition.owner
-    if not wanted or owner is None or not isinstance(owner.node, ast.ClassDef):
+    if not wanted:
         return
-    for statement in owner.node.body:
-        if not isinstance(statement, ast.FunctionDef) or statement.name.startswith("_"):
-            continue
-        method = Definition(owner.module, f"{owner.qualname}.{statement.name}", statement, owner)
-        reading = found.get(method.target) or _proposal(Use(method), resolver)
-        read = {(guess.table.get("kind"), guess.table.get("axis")) for guess in reading.result.values()}
-        if not parameters(method) and wanted & read:
-            found.setdefault(method.target, reading)
-            proposal.current = method.target
+    owner = proposal.target.rpartition(".")[0]
+    seen = [one for one in found.values() if one.target.rpartition(".")[0] == owner and one.is_reading]
+    promised = [_promised(raw, proposal.call) for raw in proposal.call.facts["readings"]]
+    for reading in [*seen, *promised]:
+        known = found.get(reading.target, reading)
+        read = {(guess.table["kind"], axis) for guess in known.result.values() for axis in _axes(guess)}
+        if wanted & read and not known.arguments and known.message is None and not _takes_something(known):
+            found.setdefault(known.target, known)
+            proposal.current = known.target
             return
 
 
+def _takes_something(proposal: Proposal) -> bool:
+    return bool(proposal.call.arguments or proposal.call.positional)
+
+
+def _promised(raw: dict[str, Any], other: SeenCall) -> Proposal:
+    """A reading of which only the text is known."""
+    facts = {
+        **other.facts,
+        **raw,
+        "refusals": [],
+        "raised": [],
+        "annotations": {},
+        "problem": "",
+        "readings": [],
+    }
+    call = SeenCall(raw["target"], facts, (), {}, (), tuple(part_of(leaf) for leaf in raw["parts"]))
+    proposal = Proposal(call)
+    for part in call.result:
+        setting = _setting(call, "", part)
+        if part.length is not None:
+            proposal.result.update(_elements(call, part, setting))
+        elif part.name:
+            proposal.result[part.path] = guess_reading(part.name, Setting("", f"{part.doc}\n{setting.doc}"))
+    proposal.result = {path: guess for path, guess in proposal.result.items() if guess.table}
+    return proposal
+
+
+def _axes(guess: Guess) -> list[str]:
+    axis = guess.table.get("axis", "")
+    if guess.table.get("kind") not in ("translation", "rotation", "position", "orientation", "angle"):
+        return []
+    return list(axis) if axis and set(axis) <= set("xyz") else [axis] if axis else []
+
+
+def _readings_of(kind: str, axis: str) -> list[str]:
+    if kind == "translation":
+        return ["position"]
+    return ["angle", "orientation"] if axis.startswith("j") else ["orientation"]
+
+
 def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
-    head, dot, name = (
-        proposal.target.rpartition(".") if "." in proposal.target else proposal.target.rpartition(":")
-    )
+    head, mark, name = re.fullmatch(r"(?:(.*)([.:]))?(.*)", proposal.target).groups()  # type: ignore[union-attr]
     for pair in _PAIRS:
         for one, other in (pair, pair[::-1]):
-            candidate = found.get(f"{head}{dot}{re.sub(rf'(?<![a-z]){one}(?![a-z])', other, name)}")
+            candidate = found.get(f"{head}{mark}{re.sub(rf'(?<![a-z]){one}(?![a-z])', other, name)}")
             if candidate is None or candidate is proposal:
                 continue
             if set(candidate.arguments) == set(proposal.arguments):
@@ -242,20 +288,15 @@ def _find_opposite(proposal: Proposal, found: dict[str, Proposal]) -> None:
                 return
 
 
-def _setting(definition: Definition, annotation: ast.expr | None, constants: Sequence[object]) -> Setting:
-    owner = definition.owner
-    names = (
-        definition.module.name.rpartition(".")[2],
-        owner.node.name if owner else "",
-        definition.node.name,
-    )
-    words = "_".join(_snake(name) for name in names if name)
-    docs = [ast.get_docstring(definition.node) or "", ast.get_docstring(owner.node) or "" if owner else ""]
-    written = ast.unparse(annotation) if annotation is not None else ""
-    return Setting(
-        words, "\n".join(docs), written.rpartition(".")[2] if "[" not in written else written, constants
-    )
+def _setting(call: SeenCall, annotation: str, part: Part) -> Setting:
+    module, _, qualname = call.target.partition(":")
+    names = (module.rpartition(".")[2], *qualname.split("."))
+    words = "_".join(snake(name) for name in names)
+    doc = f"{call.facts['doc']}\n{call.facts['owner_doc']}"
+    written = annotation if "[" in annotation else annotation.rpartition(".")[2]
+    return Setting(words, doc, written, part.values)
 
 
-def _snake(name: str) -> str:
+def snake(name: str) -> str:
+    """A name in lower case, its words apart: ``set_digital_out``, ``move_j``."""
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()

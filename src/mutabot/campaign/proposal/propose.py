@@ -2,72 +2,113 @@
 
 from __future__ import annotations
 
-import ast
 import tomllib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mutabot.errors import ConfigurationError, UsageError
 from mutabot.vocabulary import load
 
-from .operations import Proposal, proposals
-from .resolve import Resolver
-from .sources import Definition, Module, Sources, python_files
+from .compared import Unreached, compared_with, unreached
+from .known import Known, known_vocabularies
+from .layout import look
+from .observed import LIMIT, Observed, SeenCall, observe
+from .operations import proposals
 from .text import vocabulary_text
-from .uses import Use, Uses
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
-#: file names that say "this is a robot program", where there is a choice
-_PROGRAM_NAMES = (
-    "mission",
-    "program",
-    "main",
-    "task",
-    "job",
-    "app",
-    "process",
-    "pick",
-    "place",
-    "pallet",
-    "sort",
-)
 
 
-@dataclass(frozen=True)
-class _Project:
-    root: Path
-    program: list[Path]
-    tests: list[Path]
-    sources: Sources
-    resolver: Resolver
+class _Look:
+    """What was found out about a project.
+
+    Attributes:
+        layout: where what lies.
+        seen: the watched run of the tests.
+        known: shipped vocabularies that fit it.
+        found: proposed operations that no shipped vocabulary has.
+        others: calls of which nothing shows what they mean.
+        oracle: files on the tests' side that read from the robot.
+        unreached: calls of the program's text that no test makes.
+    """
+
+    def __init__(self, root: Path, given: Sequence[Path], limit: float) -> None:
+        self.layout = look(root, given)
+        self.seen: Observed = observe(self.layout, limit)
+        self.program = [self.layout.relative(path) for path in self.layout.program]
+        calls = [call for call in self.seen.calls if call.sites]
+        self.known: list[Known] = known_vocabularies(self.layout, calls)
+        groups = compared_with(self.layout)
+        mine, rest = _by_role(calls, self.program)
+        ours, own = (
+            [call for call in mine if not call.facts["own"]],
+            [call for call in mine if call.facts["own"]],
+        )
+        self.found, self.others = proposals(self._new(ours), groups)
+        if not self.found and not self.known and own:  # program and robot share a file
+            self.found, self.others = proposals([*ours, *own], groups)
+        self._add_readings(rest, groups)
+        if not self.found and not self.known:
+            self._fall_back()
+        self.unreached: list[Unreached] = unreached(self.layout, self._reached())
+
+    @property
+    def vocabulary(self) -> list[str]:
+        """Names for the configuration."""
+        names = [one.name for one in self.known]
+        return [*names, VOCABULARY] if self.found or not names else names
+
+    def _new(self, calls: Sequence[SeenCall]) -> list[SeenCall]:
+        return [call for call in calls if not any(one.describes(call) for one in self.known)]
+
+    def _add_readings(self, rest: Sequence[SeenCall], groups: Sequence[Sequence[object]]) -> None:
+        """Readings that only the tests take, and the files where they take any."""
+        new = [one for one in proposals(self._new(rest), groups)[0] if one.is_reading and one.call.sites]
+        known = {proposal.target: proposal for proposal in self.found}
+        known.update((proposal.target, proposal) for proposal in new)
+        self.found = list(known.values())
+        targets = {proposal.target for proposal in self.found if proposal.is_reading}
+        files = [
+            file
+            for call in self.seen.calls
+            for file, _, _ in call.sites
+            if call.target in targets or any(one.reads(call) for one in self.known)
+        ]
+        self.oracle = [file for file in dict.fromkeys(files) if file not in self.program]
+
+    def _fall_back(self) -> None:
+        """Nothing looks like a robot's: what is called at all can be skipped and repeated."""
+        for proposal in self.others:
+            proposal.is_plain = not proposal.call.facts["problem"] and not proposal.call.facts["is_property"]
+        self.found = [one for one in self.others if one.is_plain]
+        self.others = [one for one in self.others if not one.is_plain]
+
+    def _reached(self) -> list[tuple[str, int, str]]:
+        return [(file, line, call.name) for call in self.seen.calls for file, line, _ in call.sites]
 
 
-def propose(root: Path, program: Sequence[Path] = ()) -> list[str]:
+def propose(root: Path, program: Sequence[Path] = (), *, limit: float = LIMIT) -> list[str]:
     """Write ``mutabot.toml`` and ``robot.toml``; the lines say what was found and what to do next.
 
     ``program`` are files or folders of the robot program, relative to the working folder or to ``root``;
-    without any they are guessed. Nothing is imported and no existing file is touched.
+    without any they are guessed. The tests are run once, for ``limit`` seconds at most, to see what the
+    program calls. No existing file is touched.
 
-    Raises UsageError if there is a configuration already, or nothing to propose.
+    Raises UsageError if there is a configuration already, or no program.
     """
     root = root.resolve()
     _refuse_existing(root)
-    project = _look(root, program)
-    names = [_relative(root, path) for path in project.program]
-    uses = Uses(project.resolver, [project.sources.at(path) for path in project.program])
-    if not proposals(list(uses.found.values()), project.resolver)[0]:
-        raise UsageError(
-            f"{', '.join(names) or root}: no call that looks like a robot's was found; name the files of the "
-            "robot program: mutabot init FILE…"
-        )
-    oracle = _oracle(project)
-    found, others = proposals([*uses.found.values(), *_only_new(oracle, uses)], project.resolver)
-    others = [use for use in others if project.sources.is_local(use.definition.module)]
-    _write(root / VOCABULARY, _loadable(found, others, names))
-    _write(root / CONFIGURATION, _configuration(project, names, [_relative(root, path) for path in oracle]))
-    return _next_steps(root, names, found, guessed=not program)
+    found = _Look(root, program, limit)
+    text = _loadable(found)
+    _write(root / VOCABULARY, text)
+    _write(root / CONFIGURATION, _configuration(found))
+    return _told(found)
+
+
+def _by_role(calls: Sequence[SeenCall], program: Sequence[str]) -> tuple[list[SeenCall], list[SeenCall]]:
+    mine = [call for call in calls if any(file in program for file, _, _ in call.sites)]
+    return mine, [call for call in calls if call not in mine]
 
 
 def _write(path: Path, text: str) -> None:
@@ -92,112 +133,17 @@ def _refuse_existing(root: Path) -> None:
         raise UsageError(f"{root / 'pyproject.toml'} has [tool.mutabot] already; there is nothing to propose")
 
 
-def _look(root: Path, given: Sequence[Path]) -> _Project:
-    files = python_files(root)
-    tests = [path for path in files if _is_test_side(path.relative_to(root))]
-    chosen = _named(root, given) if given else []
-    tests = [path for path in tests if path.resolve() not in chosen]
-    code = [path for path in files if path not in tests and path.name not in ("setup.py", "noxfile.py")]
-    test_folders = list(dict.fromkeys(path.parent for path in tests))
-    sources = Sources([root, root / "src", *test_folders])
-    program = chosen or _guess_program(sources, code)
-    own = {path.resolve() for path in program}
-    known: dict[str, Definition] = {}
-    for path in code:
-        if path.resolve() not in own:
-            known.update(_classes(sources, path))
-    return _Project(root, program, tests, sources, Resolver(sources, known))
-
-
-def _is_test_side(path: Path) -> bool:
-    in_folder = any(part in ("tests", "test", "testing", "features") for part in path.parts[:-1])
-    return (
-        in_folder
-        or path.name.startswith("test_")
-        or path.name.endswith("_test.py")
-        or path.name == "conftest.py"
-    )
-
-
-def _named(root: Path, given: Sequence[Path]) -> list[Path]:
-    found: list[Path] = []
-    for path in given:
-        place = next((one for one in (path, root / path) if one.exists()), None)
-        if place is None:
-            raise UsageError(f"{path}: there is no such file or folder")
-        if not place.resolve().is_relative_to(root):
-            raise UsageError(f"{path} does not lie in {root}; -C names the project's folder")
-        found += python_files(place) if place.is_dir() else [place]
-    return list(dict.fromkeys(path.resolve() for path in found))
-
-
-def _guess_program(sources: Sources, code: Sequence[Path]) -> list[Path]:
-    """Files that use others of the project and are used by none."""
-    modules = [module for path in code if (module := _read(sources, path)) is not None]
-    imported = {name for module in modules for name in _imported(module)}
-    using = [one for one in modules if _imported(one) & {other.name for other in modules} - {one.name}]
-    free = [module for module in using or modules if module.name not in imported]
-    telling = [module for module in free if any(word in module.path.stem for word in _PROGRAM_NAMES)]
-    return [module.path for module in telling or free]
-
-
-def _read(sources: Sources, path: Path) -> Module | None:
-    try:
-        return sources.at(path)
-    except ConfigurationError:
-        return None
-
-
-def _imported(module: Module) -> set[str]:
-    names = {source for source, _ in module.imports.values()}
-    return names | {f"{source}.{inner}" for source, inner in module.imports.values() if inner}
-
-
-def _classes(sources: Sources, path: Path) -> dict[str, Definition]:
-    module = _read(sources, path)
-    if module is None:
-        return {}
-    nodes = module.definitions.items()
-    return {name: Definition(module, name, node) for name, node in nodes if isinstance(node, ast.ClassDef)}
-
-
-def _oracle(project: _Project) -> dict[Path, list[Use]]:
-    """Files on the tests' side that read from the robot or the cell, with those readings."""
-    found = {}
-    inside = {path.resolve() for path in (*project.program, *project.tests)}
-    for path in project.tests:
-        module = _read(project.sources, path)
-        if module is None:
-            continue
-        uses = [
-            use
-            for use in Uses(project.resolver, [module]).found.values()
-            if use.certain
-            and project.sources.is_local(use.definition.module)
-            and use.definition.module.path.resolve() not in inside
-        ]
-        proposed, _ = proposals(uses, project.resolver)
-        targets = {proposal.target for proposal in proposed if proposal.is_reading}
-        if targets:
-            found[path] = [use for use in uses if use.definition.target in targets]
-    return found
-
-
-def _only_new(oracle: Mapping[Path, Sequence[Use]], uses: Uses) -> list[Use]:
-    new = {use.definition.target: use for readings in oracle.values() for use in readings}
-    return [use for target, use in new.items() if target not in uses.found]
-
-
-def _loadable(found: list[Proposal], others: list[Use], names: Sequence[str]) -> str:
-    """The vocabulary's text; what would not load is left out, which only a wrong guess can cause."""
-    text = vocabulary_text(found, others, names)
-    if _loads(text):
+def _loadable(found: _Look) -> str:
+    """The vocabulary's text; what would not load becomes a comment, which only a wrong guess can cause."""
+    text = vocabulary_text(found.found, found.others, found.program, found.unreached)
+    if not found.found or _loads(text):
         return text
-    for proposal in found:
+    for proposal in found.found:
         proposal.current = proposal.opposite = None
-    kept = [proposal for proposal in found if _loads(vocabulary_text([proposal], [], names))]
-    dropped = [Use(proposal.definition) for proposal in found if proposal not in kept]
-    return vocabulary_text(kept, [*others, *dropped], names)
+    kept = [proposal for proposal in found.found if _loads(vocabulary_text([proposal], [], found.program))]
+    dropped = [proposal for proposal in found.found if proposal not in kept]
+    found.found, found.others = kept, [*dropped, *found.others]
+    return vocabulary_text(kept, found.others, found.program, found.unreached)
 
 
 def _loads(text: str) -> bool:
@@ -210,13 +156,17 @@ def _loads(text: str) -> bool:
     return True
 
 
-def _configuration(project: _Project, program: Sequence[str], oracle: Sequence[str]) -> str:
-    tests = list(dict.fromkeys(path.relative_to(project.root).parts[0] for path in project.tests))
+def _configuration(found: _Look) -> str:
     lines = [
-        f"program = {_listed(program)}  # where the robot program's calls stand",
-        *([f"oracle = {_listed(oracle)}  # readings taken for the tests' own checks"] if oracle else []),
-        f"tests = {_listed(tests or ['tests'])}",
-        f'vocabulary = ["{VOCABULARY}"]',
+        f"program = {_listed(found.program)}  # where the robot program's calls stand",
+        *(
+            [f"oracle = {_listed(found.oracle)}  # readings for the tests' own checks"]
+            if found.oracle
+            else []
+        ),
+        f"tests = {_listed(found.layout.arguments or ['tests'])}",
+        *([f"pytest_args = {_listed(found.seen.extra)}"] if found.seen.extra else []),
+        f"vocabulary = {_listed(found.vocabulary)}",
         "rounds = 1",
         "seed = 1",
     ]
@@ -227,18 +177,52 @@ def _listed(names: Sequence[str]) -> str:
     return "[" + ", ".join(f'"{name}"' for name in names) + "]"
 
 
-def _relative(root: Path, path: Path) -> str:
-    return path.resolve().relative_to(root).as_posix()
-
-
-def _next_steps(root: Path, names: Sequence[str], found: Sequence[Proposal], *, guessed: bool) -> list[str]:
-    how = " (guessed; name the files if that is wrong: mutabot init FILE…)" if guessed else ""
+def _told(found: _Look) -> list[str]:
+    how = " (guessed; name the files if that is wrong: mutabot init FILE…)" if found.layout.guessed else ""
+    counts = ", ".join(f"{count} {outcome}" for outcome, count in found.seen.outcomes.items())
+    lines = [f"program: {', '.join(found.program)}{how}"]
+    if found.seen.trouble:
+        lines.append(f"the tests could not be watched: {found.seen.trouble}")
+    if counts:
+        lines.append(f"tests: {counts}; {_counted(found)}")
+    lines += [f"  {problem}" for problem in found.seen.problems[:3] if not found.seen.trouble]
     hint = ""
-    if (root / "pyproject.toml").exists():
+    if (found.layout.root / "pyproject.toml").exists():
         hint = "; its lines may as well stand in pyproject.toml, under [tool.mutabot]"
-    return [
-        f"program: {', '.join(names)}{how}",
-        f"wrote {CONFIGURATION}{hint}",
-        f"wrote {VOCABULARY} with {len(found)} operations, all guessed from names",
-        "next: correct the lines marked `guess`, then `mutabot check`, `mutabot list`, `mutabot run`",
+    lines.append(f"wrote {CONFIGURATION}{hint}")
+    lines += [
+        f"vocabulary {one.name}: comes with mutabot, describes {one.seen} of the calls" for one in found.known
     ]
+    lines.append(_about_vocabulary(found))
+    return [*lines, _next(found)]
+
+
+def _counted(found: _Look) -> str:
+    mine, rest = _by_role([call for call in found.seen.calls if call.sites], found.program)
+    calls = sum(call.count for call in mine)
+    return f"the program calls {len(mine)} callables, {calls} times" + (
+        f", the tests {len(rest)} more" if rest else ""
+    )
+
+
+def _about_vocabulary(found: _Look) -> str:
+    commented = len(found.others) + len(found.unreached)
+    also = f"; {commented} more calls stand there as comments" if commented else ""
+    if found.found:
+        noun = "operation" if len(found.found) == 1 else "operations"
+        return f"wrote {VOCABULARY} with {len(found.found)} {noun}, guessed from names and values{also}"
+    if found.known:
+        return f"wrote {VOCABULARY}, which is not used yet{also}"
+    return f"wrote {VOCABULARY} without an operation: no call was seen{also}"
+
+
+def _next(found: _Look) -> str:
+    if found.found:
+        return "next: correct the lines marked `guess`, then `mutabot check`, `mutabot list`, `mutabot run`"
+    if found.known:
+        return "next: `mutabot check`, `mutabot list`, `mutabot run`"
+    names = " ".join(found.layout.arguments) or "tests"
+    return (
+        f"next: make `python -m pytest {names}` run tests that call the program, remove {CONFIGURATION} and "
+        f"{VOCABULARY}, and run `mutabot init` again; or describe the robot by hand (docs/vocabulary.md)"
+    )

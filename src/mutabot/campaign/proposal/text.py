@@ -4,46 +4,72 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+from .compared import Unreached
 from .guess import Guess
-from .operations import Proposal
-from .uses import Use
+from .observed import Part, SeenCall
+from .operations import Proposal, is_complete
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
+#: values shown as an example, and the longest text
+_EXAMPLES, _LONGEST = 4, 60
+_MOST_UNREACHED = 40
 
 
-def vocabulary_text(found: Sequence[Proposal], others: Sequence[Use], program: Sequence[str]) -> str:
+def vocabulary_text(
+    found: Sequence[Proposal],
+    others: Sequence[Proposal],
+    program: Sequence[str],
+    unreached: Sequence[Unreached] = (),
+) -> str:
     """The vocabulary file."""
     blocks = [
-        f"# Proposed by `mutabot init` from {', '.join(program)}. Everything here is guessed from names:\n"
-        "# correct what is wrong, and take out what is no operation. `mutabot check` tries it.",
+        f"# Proposed by `mutabot init` from {', '.join(program)}. What things mean is guessed from names\n"
+        "# and values: correct what is wrong, and take out what is no operation. `mutabot check` tries it.",
         *(operation_text(proposal) for proposal in found),
     ]
     if others:
-        names = "\n".join(f"#   {use.definition.target}" for use in others)
-        blocks.append(f"# Also used, but nothing shows what it means to the robot:\n{names}")
+        blocks.append(
+            "# Also called, but nothing shows what it means to the robot. For what is an operation, take\n"
+            "# the number signs away and say what its arguments or its result mean.\n\n"
+            + "\n\n".join(_commented(operation_text(proposal)) for proposal in others)
+        )
+    if unreached:
+        lines = [f"#   {one.file}:{one.line}  {one.callee}" for one in unreached[:_MOST_UNREACHED]]
+        blocks.append(
+            "# Calls that no test reaches; what is never called cannot be mutated:\n" + "\n".join(lines)
+        )
     return "\n\n".join(blocks) + "\n"
 
 
 def operation_text(proposal: Proposal) -> str:
-    """One ``[[operation]]``; commented out as a whole if it cannot be completed by guessing."""
-    node = proposal.definition.node
-    sure = "" if proposal.certain else "; guess: only its name says that this is what is called"
-    lines = [f"[[operation]]  # {proposal.definition.module.path.name}:{node.lineno}{sure}"]
+    """One ``[[operation]]``, with what is not known as comments."""
+    call = proposal.call
+    lines = [f"[[operation]]  # {_where(call)}"]
+    if call.facts["problem"]:
+        lines.append(f"# {call.facts['problem']}")
     lines.append(f"call = {_toml(proposal.target)}")
+    if proposal.is_plain:
+        lines.append("command = true  # guess: it is skipped and repeated; say what its values mean")
     lines += [f"{key} = {_toml(value)}  # guess" for key, value in _references(proposal)]
-    lines += [_quantity(f"arguments.{_key(path)}", guess) for path, guess in proposal.arguments.items()]
-    lines += [
-        _quantity(f"result.{_key(path)}" if path else "result", guess)
-        for path, guess in proposal.result.items()
-    ]
+    lines += _arguments(proposal)
+    lines += _results(proposal)
     if proposal.message is not None:
         lines += _pattern_lines(proposal)
-    if proposal.is_reading and not any(_is_complete(guess) for guess in proposal.result.values()):
-        lines = [line if line.startswith("#") else f"# {line}" for line in lines]
     return "\n".join(lines)
+
+
+def _commented(text: str) -> str:
+    return "\n".join(line if line.startswith("#") else f"# {line}" for line in text.splitlines())
+
+
+def _where(call: SeenCall) -> str:
+    if not call.sites:
+        return "not called by the program; tells where the robot is"
+    file, line, _ = call.sites[0]
+    return f"seen: {call.count} {'call' if call.count == 1 else 'calls'}, first at {file}:{line}"
 
 
 def _references(proposal: Proposal) -> list[tuple[str, Any]]:
@@ -54,16 +80,78 @@ def _references(proposal: Proposal) -> list[tuple[str, Any]]:
     return [(key, value) for key, value in pairs if value]
 
 
-def _quantity(key: str, guess: Guess) -> str:
-    if not _is_complete(guess):
+def _arguments(proposal: Proposal) -> Iterator[str]:
+    for name, parts in proposal.call.arguments.items():
+        if name == proposal.message:
+            continue
+        for part in parts:
+            mine = {path: guess for path, guess in proposal.arguments.items() if _belongs(path, part)}
+            yield from (
+                _quantity(f"arguments.{_key(path)}", guess, _examples(part, path))
+                for path, guess in mine.items()
+            )
+            if not mine:
+                yield f"# arguments.{_key(part.path)}  # seen: {_examples(part)}"
+    if proposal.call.positional:
+        firsts = {part.path.partition("[")[0]: _first(part) for part in reversed(proposal.call.positional)}
+        values = ", ".join(firsts[name] for name in sorted(firsts))
+        yield f'# signature = "(…)"  # nothing tells its arguments\' names; seen: ({values})'
+
+
+def _first(part: Part) -> str:
+    return _short(part.values[0]) if part.values else part.type
+
+
+def _results(proposal: Proposal) -> Iterator[str]:
+    if proposal.message is not None:
+        return
+    for part in proposal.call.result:
+        mine = {path: guess for path, guess in proposal.result.items() if _belongs(path, part)}
+        for path, guess in mine.items():
+            yield _quantity(_result_key(path), guess, _examples(part, path))
+        if not mine and (part.values or part.length):
+            yield f"# {_result_key(part.path)}  # seen: {_examples(part)}"
+
+
+def _result_key(path: str) -> str:
+    return f"result.{_key(path)}" if path else "result"
+
+
+def _belongs(path: str, part: Part) -> bool:
+    """Whether a guess is about this part, or about elements of it."""
+    return path == part.path or (part.length is not None and path.rpartition("[")[0] == part.path)
+
+
+def _examples(part: Part, path: str = "") -> str:
+    """Values that were seen, of the elements that the path names."""
+    step = re.search(r"\[(\d+)(?::(\d+))?\]$", path) if part.length is not None else None
+    values = part.values[:_EXAMPLES]
+    if step is not None and path != part.path:
+        first = int(step[1])
+        cut = [one[first : int(step[2])] if step[2] else one[first] for one in values if len(one) > first]
+        values = tuple(cut)
+    texts = [_short(value) for value in values[: 1 if part.length is not None else _EXAMPLES]]
+    more = ", …" if len(part.values) > len(texts) else ""
+    return (", ".join(texts) + more) if texts else part.type or "nothing"
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, list):
+        shown = ", ".join(_short(one) for one in value[:8])
+        return f"[{shown}{', …' if len(value) > 8 else ''}]"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    text = _toml(value)
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
+
+
+def _quantity(key: str, guess: Guess, seen: str) -> str:
+    shown = f"; seen: {seen}" if seen and seen != "nothing" else ""
+    if not is_complete(guess):
         table = _toml({**guess.table, "values": ["…", "…"]})
-        return f"# {key} = {table}  # guess: give all values it can have"
+        return f"# {key} = {table}  # guess: give all values it can have{shown}"
     checks = f"; check the {' and the '.join(guess.checks)}" if guess.checks else ""
-    return f"{key} = {_toml(guess.table)}  # guess{checks}"
-
-
-def _is_complete(guess: Guess) -> bool:
-    return guess.table.get("kind") != "label" or "values" in guess.table
+    return f"{key} = {_toml(guess.table)}  # guess{checks}{shown}"
 
 
 def _pattern_lines(proposal: Proposal) -> list[str]:

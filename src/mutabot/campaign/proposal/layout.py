@@ -1,0 +1,153 @@
+"""Where a project keeps its robot program and its tests, told from files and imports."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mutabot.errors import UsageError
+
+#: folders that hold no code of the project
+_SKIPPED = frozenset(
+    {"node_modules", "build", "dist", "site-packages", "venv", "env", "__pycache__", "docs", "doc"}
+)
+_TEST_FOLDERS = ("tests", "test", "testing", "features")
+_NO_PROGRAMS = frozenset({"setup.py", "noxfile.py", "fabfile.py", "conftest.py", "__init__.py"})
+_MOST_FILES = 1000
+#: words in a file's name that say "this is a robot program", where there is a choice
+_PROGRAM_NAMES = (
+    "mission", "program", "main", "task", "job", "app", "process", "pick", "place", "pallet", "sort",
+    "policy", "routine", "sequence", "demo", "controller",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What lies where in a project.
+
+    Attributes:
+        root: absolute path of the project.
+        program: files with the robot program.
+        tests: files on the tests' side: tests, their helpers, conftest.
+        arguments: pytest arguments that name the tests.
+        homes: folders that imports of the project's own modules start from.
+        guessed: whether the program was guessed.
+    """
+
+    root: Path
+    program: list[Path]
+    tests: list[Path]
+    arguments: list[str]
+    homes: list[Path]
+    guessed: bool
+
+    def relative(self, path: Path) -> str:
+        """A path as the configuration writes it."""
+        return path.relative_to(self.root).as_posix()
+
+
+def look(root: Path, given: Sequence[Path]) -> Layout:
+    """The layout of the project in ``root``; ``given`` are files or folders of the program, if known.
+
+    Raises UsageError if a given path is not there, or if there is no Python file at all.
+    """
+    files = _python_files(root)
+    chosen = _named(root, given)
+    tests = [path for path in files if _is_test_side(path.relative_to(root)) and path not in chosen]
+    code = [path for path in files if path not in tests and path.name not in _NO_PROGRAMS]
+    homes = _homes(root, files, tests)
+    program = chosen or _guess_program(code, homes) or [path for path in tests if path.name != "conftest.py"]
+    if not program:
+        raise UsageError(
+            f"{root}: there is no Python file here; name the files of the program: mutabot init FILE…"
+        )
+    others = [path for path in tests if path not in program]
+    arguments = _arguments(root, tests)
+    return Layout(root, program, others, arguments, homes, guessed=not chosen)
+
+
+def imported_modules(path: Path) -> set[str]:
+    """Names of the modules that a file imports, and of what it imports from them."""
+    names: set[str] = set()
+    for node in ast.walk(parsed(path)):
+        if isinstance(node, ast.Import):
+            names.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            source = node.module or ""
+            names.update([source, *(f"{source}.{alias.name}".strip(".") for alias in node.names)])
+    return names - {""}
+
+
+def parsed(path: Path) -> ast.Module:
+    """A file's syntax tree; an empty one if it is no Python."""
+    try:
+        return ast.parse(path.read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return ast.Module([], [])
+
+
+def _python_files(folder: Path) -> list[Path]:
+    return list(_walk(folder))[:_MOST_FILES]
+
+
+def _walk(folder: Path) -> Iterator[Path]:
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith(".") or path.name in _SKIPPED or (path / "pyvenv.cfg").exists():
+            continue
+        if path.is_dir() and not path.is_symlink():
+            yield from _walk(path)
+        elif path.suffix == ".py":
+            yield path
+
+
+def _is_test_side(path: Path) -> bool:
+    in_folder = any(part in _TEST_FOLDERS for part in path.parts[:-1])
+    stem = path.stem
+    return in_folder or stem.startswith("test_") or stem.endswith("_test") or stem == "conftest"
+
+
+def _named(root: Path, given: Sequence[Path]) -> list[Path]:
+    found: list[Path] = []
+    for path in given:
+        place = next((one for one in (path, root / path) if one.exists()), None)
+        if place is None:
+            raise UsageError(f"{path}: there is no such file or folder")
+        if not place.resolve().is_relative_to(root):
+            raise UsageError(f"{path} does not lie in {root}; -C names the project's folder")
+        found += _python_files(place.resolve()) if place.is_dir() else [place.resolve()]
+    return list(dict.fromkeys(found))
+
+
+def _homes(root: Path, files: Sequence[Path], tests: Sequence[Path]) -> list[Path]:
+    """Folders whose files are imported by their bare names: those that are no packages themselves."""
+    homes = [root, *([root / "src"] if (root / "src").is_dir() else [])]
+    homes += [path.parent for path in files if not (path.parent / "__init__.py").exists()]
+    outside = {path.parent for path in tests}
+    return [home for home in dict.fromkeys(homes) if home not in outside or home == root]
+
+
+def _guess_program(code: Sequence[Path], homes: Sequence[Path]) -> list[Path]:
+    """Files that use others and are used by none of the program's side; by their names where that helps."""
+    ends = {path: path.stem for path in code}
+    imports = {path: {part for name in imported_modules(path) for part in name.split(".")} for path in code}
+    used = {path for path in code for other in code if other != path and ends[path] in imports[other]}
+    using = [path for path in code if imports[path]]
+    free = [path for path in using if path not in used] or using or list(code)
+    telling = [path for path in free if any(word in path.stem.lower() for word in _PROGRAM_NAMES)]
+    busy = [path for path in free if imports[path] & set(ends.values())]
+    return telling or busy or free
+
+
+def _arguments(root: Path, tests: Sequence[Path]) -> list[str]:
+    """The outermost folder of tests for each file, or the file where it lies among others."""
+    found = []
+    for path in tests:
+        parts = path.relative_to(root).parts
+        folder = next((index for index, part in enumerate(parts[:-1]) if part in _TEST_FOLDERS), None)
+        if folder is not None:
+            found.append("/".join(parts[: folder + 1]))
+        elif path.stem != "conftest":
+            found.append("/".join(parts))
+    return list(dict.fromkeys(found))

@@ -1,0 +1,150 @@
+"""What was seen of values, in words that need no import: plain numbers, texts and sequences by path."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import typing
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+#: different values that are kept of each part
+MOST_VALUES = 8
+#: elements of a sequence that are kept, and parts of an object
+MOST_ELEMENTS, MOST_PARTS = 16, 24
+_DEPTH = 3
+
+
+@dataclass
+class Leaf:
+    """A part of an argument or result.
+
+    Attributes:
+        path: where it lies, as vocabularies write it.
+        name: the last name on the way; empty for an index or the value itself.
+        doc: what the class that holds it says about itself.
+        values: the first different values; sequences of numbers as lists.
+        length: number of elements of a sequence, the least that was seen; None for anything else.
+        type: name of its type.
+        count: in how many calls it was there.
+    """
+
+    path: str
+    name: str = ""
+    doc: str = ""
+    values: list[Any] = field(default_factory=list)
+    length: int | None = None
+    type: str = ""
+    count: int = 0
+
+
+class Leaves:
+    """The parts of one argument or result, over all calls."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, Leaf] = {}
+
+    def see(self, value: Any, root: str = "") -> None:
+        """One more value."""
+        for leaf in _parts(value, Leaf(root), _DEPTH):
+            known = self.found.setdefault(leaf.path, leaf)
+            known.count += 1
+            if leaf.length is not None and known.length is not None:
+                known.length = min(leaf.length, known.length)
+            for one in leaf.values:
+                is_new = all(one != other or type(one) is not type(other) for other in known.values)
+                if is_new and len(known.values) < MOST_VALUES:
+                    known.values.append(one)
+
+    def data(self) -> list[dict[str, Any]]:
+        """For JSON."""
+        return [dataclasses.asdict(leaf) for leaf in self.found.values()]
+
+
+def of_type(hint: Any, depth: int = 2) -> list[Leaf]:
+    """The parts that a type promises."""
+    return list(_promised(hint, Leaf(""), depth))
+
+
+def _parts(value: Any, leaf: Leaf, depth: int) -> Iterator[Leaf]:
+    value = _plain(value)
+    leaf.type = type(value).__name__
+    if value is None:
+        return
+    if isinstance(value, bool | int | float | str):
+        leaf.values = [value[:80] if isinstance(value, str) else value]
+        yield leaf
+    elif isinstance(value, enum.Enum) or depth == 0:
+        yield leaf
+    elif isinstance(value, list | tuple) and not hasattr(value, "_fields"):
+        yield from _elements(value, leaf, depth)
+    else:
+        named = list(_named(value))[:MOST_PARTS]
+        doc = type(value).__doc__ or ""
+        for step, name, part in named:
+            inner = Leaf(f"{leaf.path}{step}", name, doc[:300])
+            yield from _parts(part, inner, depth - 1)
+        if not named:
+            yield leaf
+
+
+def _elements(value: Any, leaf: Leaf, depth: int) -> Iterator[Leaf]:
+    items = [_plain(one) for one in value[:MOST_ELEMENTS]]
+    if items and all(isinstance(one, int | float) and not isinstance(one, bool) for one in items):
+        leaf.length, leaf.values = len(value), [items]
+        yield leaf
+        return
+    for index, item in enumerate(items[:8]):
+        yield from _parts(item, Leaf(f"{leaf.path}[{index}]", "", leaf.doc), depth - 1)
+
+
+def _plain(value: Any) -> Any:
+    """Arrays and scalars of numeric libraries as Python has them, if they are small enough."""
+    if hasattr(value, "tolist") and getattr(value, "size", 0) <= 4096:
+        return value.tolist()
+    return value
+
+
+def _named(value: Any) -> Iterator[tuple[str, str, Any]]:
+    """Step, name and value of the parts of an object that have names."""
+    if isinstance(value, Mapping):
+        for key, part in list(value.items())[:MOST_PARTS]:
+            if isinstance(key, str) and '"' not in key and "]" not in key:
+                yield f'["{key}"]', key, part
+        return
+    if isinstance(value, type) or callable(value):
+        return
+    names: Any = getattr(value, "_fields", None)
+    if names is None:
+        names = vars(value) if hasattr(value, "__dict__") else getattr(type(value), "__slots__", ())
+    for name in [names] if isinstance(names, str) else list(names):
+        if not name.startswith("_") and hasattr(value, name):
+            yield f".{name}", name, getattr(value, name)
+
+
+def _promised(hint: Any, leaf: Leaf, depth: int) -> Iterator[Leaf]:
+    arguments = [one for one in typing.get_args(hint) if one is not type(None)]
+    if typing.get_origin(hint) is tuple:
+        if arguments and all(one in (int, float) for one in arguments):
+            leaf.length = len(arguments)
+            yield leaf
+        return
+    if arguments and not isinstance(hint, type):
+        hint = arguments[0]  # Optional, Annotated
+    if not isinstance(hint, type) or hint in (int, float, bool, str, object):
+        yield leaf
+        return
+    if depth and (dataclasses.is_dataclass(hint) or hasattr(hint, "_fields")):
+        for name, inner in _hints(hint).items():
+            part = Leaf(f"{leaf.path}.{name}", name, (hint.__doc__ or "")[:300])
+            yield from _promised(inner, part, depth - 1)
+    else:
+        yield leaf
+
+
+def _hints(of: Any) -> dict[str, Any]:
+    try:
+        return typing.get_type_hints(of)
+    except Exception:  # a name in an annotation that does not exist while the program runs
+        return {}
