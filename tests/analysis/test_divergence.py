@@ -82,3 +82,10 @@ def test_the_quantity_of_a_mutant_comes_from_the_vocabulary() -> None:
     assert quantity_of(SKIP, VOCABULARY) is None
     assert quantity_of(mutant(9, "reverse", BACK, "dq", ""), VOCABULARY) is None
     assert quantity_of(NEGATE, None) is None
+
+
+def test_a_change_in_the_last_digits_is_printed_with_these() -> None:
+    outcome = Outcome("m", 0, Verdict.SURVIVED, example=(-0.32741041, -0.32741042), gaps=("look",))
+    assert explain(NEGATE, [outcome]) == (
+        "had -0.32741042 instead of -0.32741041; not compared with the original: look"
+    )

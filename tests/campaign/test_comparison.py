@@ -98,3 +98,11 @@ def test_several_tests_of_a_mutant_are_as_far_as_the_farthest() -> None:
     assert farthest([near, bare, far]) == Comparison(False, 7.0, ("x", "y", "1 call fewer"))
     assert farthest([near, near]) == near
     assert farthest([]) == Comparison(True, None, ())
+
+
+def test_values_that_differ_late_are_printed_with_as_many_digits_as_it_takes() -> None:
+    line = compare(seen(x=-0.32741), seen(x=-0.32744), [Probe("scene:box", tolerance=1e-6)]).divergence[0]
+    assert line == "box.x: -0.32744 instead of -0.32741 (off by 3e-05)"
+    before, after = ([1.0, 2.00001], [1.0, 2.00002])
+    (call,) = compare(seen(Event("a", {"x": before})), seen(Event("a", {"x": after}))).divergence
+    assert call == "call 1, a: wrote {x: (1, 2.00002)} instead of {x: (1, 2.00001)}"

@@ -47,3 +47,20 @@ def test_a_value_in_another_unit_is_converted_to_the_quantity_s_own() -> None:
 )
 def test_a_value_is_printed_with_its_unit(unit: str | None, value: Any, text: str) -> None:
     assert quantity(unit=unit).text(value) == text
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "texts"),
+    [
+        (-0.32741, 0.32741, ("-0.32741 m", "0.32741 m")),
+        (-0.3274104, -0.3274101, ("-0.3274104 m", "-0.3274101 m")),
+        (0.1 + 0.2, 0.3, ("0.30000000000000004 m", "0.29999999999999999 m")),
+        (0.5, 0.5, ("0.5 m", "0.5 m")),
+        (1234567, 1234568, ("1234567 m", "1234568 m")),
+    ],
+)
+def test_two_values_are_printed_with_as_many_digits_as_tell_them_apart(
+    one: float, other: float, texts: tuple[str, str]
+) -> None:
+    quantity = Quantity("x", Path.parse("x", rooted=True), Kind.POSITION, unit="m")
+    assert quantity.texts(one, other) == texts

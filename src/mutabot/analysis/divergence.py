@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from mutabot.campaign.comparison import value_text
 from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
-from mutabot.model.quantity import READ
+from mutabot.model.quantity import READ, told_apart
 
 
 def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | None:
@@ -44,7 +44,8 @@ def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = No
     """What the mutant changed when it first acted: ``read -0.0014 m instead of 0.0014 m``."""
     if mutant.quantity is None or outcome.example is None or len(outcome.example) != 2:
         return None
-    before, after = (_valued(value, quantity) for value in outcome.example)
+    text = quantity.text if quantity is not None else value_text
+    before, after = told_apart(*outcome.example, text, 6 if quantity is not None else 4)
     if before == after:
         return None
     return f"{_verb(quantity)} {after} instead of {before}"
@@ -60,10 +61,6 @@ def is_indistinguishable(outcomes: Sequence[Outcome]) -> bool:
     """Whether the mutant survived somewhere and never looked other than the original."""
     survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
     return bool(survivors) and all(one.indistinguishable for one in survivors)
-
-
-def _valued(value: object, quantity: Quantity | None) -> str:
-    return quantity.text(value) if quantity is not None else value_text(value)
 
 
 def _verb(quantity: Quantity | None) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mutabot.model import Probe
+from mutabot.model.quantity import told_apart
 
 #: greatest difference of two equal numbers where the vocabulary names no probe
 DEFAULT_TOLERANCE = 1e-6
@@ -182,20 +183,20 @@ def _short(key: str) -> str:
 
 
 def _change(before: Any, after: Any) -> str:
-    text = f"{value_text(after)} instead of {value_text(before)}"
+    text = " instead of ".join(told_apart(after, before, value_text, 4))
     if _is_number(before) and _is_number(after):
         return f"{text} (off by {abs(float(after) - float(before)):.3g})"
     return text
 
 
-def value_text(value: Any) -> str:
-    """A value as divergence lines print it: numbers with four digits."""
+def value_text(value: Any, digits: int = 4) -> str:
+    """A value as divergence lines print it."""
     if value is None:
         return "nothing"
     if _is_number(value):
-        return f"{value:.4g}"
+        return f"{value:.{digits}g}"
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{key}: {value_text(item)}" for key, item in value.items()) + "}"
+        return "{" + ", ".join(f"{key}: {value_text(item, digits)}" for key, item in value.items()) + "}"
     if isinstance(value, list | tuple):
-        return "(" + ", ".join(value_text(item) for item in value) + ")"
+        return "(" + ", ".join(value_text(item, digits) for item in value) + ")"
     return str(value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -9,6 +10,8 @@ from typing import Any
 from .path import Path
 from .units import Dimension, convert
 
+#: digits that tell any two numbers apart
+_MOST_DIGITS = 17
 #: A value a quantity can have, in the quantity's own unit.
 Value = Any
 
@@ -112,12 +115,26 @@ class Quantity:
         """``value`` in ``unit``, expressed in this quantity's own unit."""
         return convert(value, unit, self.unit) if self.unit is not None else value
 
-    def text(self, value: Value) -> str:
+    def text(self, value: Value, digits: int = 6) -> str:
         """A value as reports print it, with its unit."""
         if isinstance(value, bool) or not isinstance(value, int | float):
             return str(value)
-        number = f"{value:.6g}"
+        number = f"{value:.{digits}g}"
         return f"{number} {self.unit}" if self.unit not in (None, "fraction") else number
+
+    def texts(self, one: Value, other: Value) -> tuple[str, str]:
+        """Two values as reports print them side by side."""
+        return told_apart(one, other, self.text, 6)
+
+
+def told_apart(one: Value, other: Value, text: Callable[[Value, int], str], digits: int) -> tuple[str, str]:
+    """Two values as texts, with as many significant digits as tell them apart, but at least ``digits``."""
+    usual = text(one, digits), text(other, digits)
+    for more in range(digits, _MOST_DIGITS + 1):
+        texts = text(one, more), text(other, more)
+        if texts[0] != texts[1]:
+            return texts
+    return usual
 
 
 def is_reading_of(reading: Quantity, written: Quantity) -> bool:

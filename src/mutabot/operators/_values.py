@@ -42,7 +42,7 @@ class WrittenValueOperator(Operator):
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         quantity = quantity_of(subject)
-        return f"{label(quantity)} {quantity.text(before)} → {quantity.text(after)}"
+        return f"{label(quantity)} {' → '.join(quantity.texts(before, after))}"
 
 
 class ReadValueOperator(Operator):
@@ -76,7 +76,7 @@ class ReadValueOperator(Operator):
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         quantity = quantity_of(subject)
-        return f"reads {label(quantity)} {quantity.text(after)} instead of {quantity.text(before)}"
+        return f"reads {label(quantity)} {' instead of '.join(quantity.texts(after, before))}"
 
 
 def quantity_of(subject: Subject) -> Quantity:

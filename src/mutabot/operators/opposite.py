@@ -79,7 +79,7 @@ class Opposite(Operator):
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         if subject.quantity is not None:
             quantity = subject.quantity
-            return f"{quantity.name} {quantity.text(before)} → {quantity.text(after)}"
+            return f"{quantity.name} {' → '.join(quantity.texts(before, after))}"
         if subject.pattern is not None and subject.pattern.opposite is not None:
             return f"{Notation.compile(subject.pattern.opposite).short} instead"
         return f"{subject.operation.opposite} instead"
