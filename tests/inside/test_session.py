@@ -116,7 +116,7 @@ def test_a_mutant_that_changes_nothing_has_hits_but_did_not_act(make_stage: Make
 def test_a_refusal_of_the_mutated_call_is_noted(make_stage: Make) -> None:
     stage = make_stage(ROBOT, HANDLES_REFUSAL.format(0.9), VOCABULARY)
     _, activation = stage.mutated("reverse", "x")
-    assert str(activation.evidence.refusal) == "-0.9"
+    assert activation.evidence.refusal == "-0.9"
 
 
 def test_a_refusal_of_the_original_call_is_no_refusal_of_the_mutant(make_stage: Make) -> None:

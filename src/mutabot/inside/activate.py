@@ -16,6 +16,10 @@ from mutabot.operators.driving import Carried, Passage, passed, run
 
 from .door import Door
 from .intercept import NotFoundError, resolve
+from .leaves import leaves
+
+#: refusals of one test that are kept
+_REFUSALS = 16
 
 
 @dataclass(slots=True)
@@ -26,7 +30,7 @@ class Evidence:
         hits: calls at its site.
         acted: hits at which it changed something.
         example: value before and after, at the first hit at which it acted.
-        refusal: the exception by which the robot refused a mutated call, or None.
+        refusals: the exceptions by which the robot refused mutated calls, the latest last; not all of many.
         invalid: whether a mutated call rejected its arguments' types.
         failure: what went wrong in the tool or the operator itself, or None.
         is_partial: whether any of several mutants that are one changed something.
@@ -38,12 +42,17 @@ class Evidence:
     hits: int = 0
     acted: int = 0
     example: tuple[Any, ...] | None = None
-    refusal: BaseException | None = None
+    refusals: tuple[BaseException, ...] = ()
     invalid: bool = False
     failure: str | None = None
     is_partial: bool = False
     is_of_text: bool = False
     is_unknown: bool = False
+
+    @property
+    def refusal(self) -> str | None:
+        """How the robot refused a mutated call, in its own words; None if it did not."""
+        return str(leaves(self.refusals[-1])[0]) if self.refusals else None
 
 
 def together(found: Sequence[Evidence]) -> Evidence:
@@ -54,7 +63,7 @@ def together(found: Sequence[Evidence]) -> Evidence:
         hits=min((one.hits for one in found), default=0),
         acted=min((one.acted for one in found), default=0),
         example=next((one.example for one in found if one.example is not None), None),
-        refusal=next((one.refusal for one in found if one.refusal is not None), None),
+        refusals=tuple(refusal for one in found for refusal in one.refusals),
         invalid=any(one.invalid for one in found),
         failure=next((one.failure for one in found if one.failure is not None), None),
         is_partial=any(one.acted or one.is_partial for one in found),
@@ -190,10 +199,21 @@ class _Performer:
         if not self.passage.changed_command:
             return
         evidence = self.activation.evidence
-        if is_named(error, self.activation.refusals):
-            evidence.refusal = error
+        if is_refusal(error, self.activation.refusals):
+            evidence.refusals = with_refusal(evidence.refusals, error)
         elif isinstance(error, TypeError) and _raised_at_the_call(error):
             evidence.invalid = True
+
+
+def is_refusal(error: BaseException, names: Iterable[str]) -> bool:
+    """Whether an operation raised a refusal, or a group of nothing else."""
+    names = frozenset(names)
+    return all(is_named(leaf, names) for leaf in leaves(error))
+
+
+def with_refusal(refusals: tuple[BaseException, ...], error: BaseException) -> tuple[BaseException, ...]:
+    """The refusals of a test with a new one; a program that tries on and on leaves no endless list."""
+    return (*refusals, error)[-_REFUSALS:]
 
 
 def is_named(error: BaseException, names: Iterable[str]) -> bool:

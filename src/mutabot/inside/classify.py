@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from types import FrameType
 
@@ -14,11 +13,16 @@ from mutabot.errors import MutabotError
 from mutabot.model import By, Role, Vocabulary
 
 from .activate import Evidence, is_named
+from .doctests import mismatch, place_of_mismatch
+from .leaves import everything, is_due_to, leaves
 from .limits import BudgetExceeded
 from .locate import Locator
 
 #: where an object lies in memory differs from run to run and says nothing
 _ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
+#: exceptions that are checks or time-outs wherever they were raised; their modules may not be loaded
+_CHECKS = ("doctest:DocTestFailure",)
+_TIMEOUTS = ("hypothesis.errors:DeadlineExceeded",)
 _INSIDE = os.path.dirname(os.path.realpath(__file__))
 
 
@@ -31,13 +35,18 @@ class Ending:
 
     by: By
     phase: str
-    exception: str
+    exception: str | None
     message: str
     place: str | None
     timeout: str | None = None
     failure: str | None = None
     refused: str | None = None
     is_syntax: bool = False
+
+    @property
+    def is_raised(self) -> bool:
+        """Whether an exception ended the test that is no refusal."""
+        return self.exception is not None and self.refused is None
 
     @property
     def is_mere_check(self) -> bool:
@@ -55,35 +64,57 @@ def classify(
 ) -> Ending:
     """The ending that this exception means.
 
+    Of exceptions that hold others, such as exception groups, what they hold decides: a refusal if all are, a
+    check if all are that are no refusals; a time-out or a failure if one is.
+
     Args:
         error: what pytest caught.
         phase: ``setup``, ``call`` or ``teardown``.
         test_file: file of the test; its folder holds the test's own helpers.
     """
-    kind = type(error)
+    found = leaves(error)
+    culprits = frozenset(id(leaf) for refusal in evidence.refusals for leaf in (refusal, *leaves(refusal)))
+    is_refused = is_due_to(error, culprits)
+    counting = [leaf for leaf in found if is_refused or not is_due_to(leaf, culprits)]
+    no_checks = [leaf for leaf in counting if not _is_check(leaf, test_file, locator, vocabulary)]
+    overdue = next((leaf for leaf in found if _is_timeout(leaf)), None)
+    shown = overdue or (no_checks or counting)[0]
+    kind = type(shown)
     return Ending(
-        by=By.CHECK if _is_check(error, test_file, locator, vocabulary) else By.EXCEPTION,
+        by=By.EXCEPTION if no_checks else By.CHECK,
         phase=phase,
         exception=f"{kind.__module__}:{kind.__qualname__}",
-        message=_text(error),
-        place=_place(error, locator),
-        timeout=str(error) if isinstance(error, BudgetExceeded) else None,
+        message=_text(shown, len(found)),
+        place=_place(shown, locator),
+        timeout=_lines(shown)[0] if overdue is not None else None,
         failure=_failure(error, vocabulary),
-        refused=_refusal(error, evidence),
-        is_syntax=isinstance(error, SyntaxError),
+        refused=evidence.refusal if is_refused else None,
+        is_syntax=all(isinstance(leaf, SyntaxError) for leaf in found),
     )
 
 
-def _text(error: BaseException) -> str:
-    text = _ADDRESS.sub("0x…", str(error))
+def unexpected_pass(reason: str) -> Ending:
+    """The ending of a test that was to fail and did not; ``reason`` is pytest's text."""
+    return Ending(By.CHECK, "call", None, reason, None)
+
+
+def _text(error: BaseException, count: int) -> str:
+    """What an exception says, shortly; ``count``: how many there are in its group."""
+    lines = _lines(error)[:12]
+    if count > 1:
+        lines.append(f"(one of {count} exceptions in a group)")
+    return "\n".join(lines)[:2000]
+
+
+def _lines(error: BaseException) -> list[str]:
+    text = mismatch(error) or str(error)
     if isinstance(error, pytest.FixtureLookupError):
         text = error.msg or f"fixture {error.argname!r} not found"
-    lines = text.strip().splitlines() or [type(error).__name__]
-    return "\n".join(lines[:12])[:2000]
+    return _ADDRESS.sub("0x…", text).strip().splitlines() or [type(error).__name__]
 
 
 def _failure(error: BaseException, vocabulary: Vocabulary) -> str | None:
-    for link in _chain(error):
+    for link in everything(error):
         if isinstance(link, MemoryError):
             return "the memory limit was reached"
         if isinstance(link, MutabotError) and not type(link).__module__.startswith("mutabot.cells"):
@@ -93,23 +124,17 @@ def _failure(error: BaseException, vocabulary: Vocabulary) -> str | None:
     return None
 
 
-def _refusal(error: BaseException, evidence: Evidence) -> str | None:
-    if evidence.refusal is not None and any(link is evidence.refusal for link in _chain(error)):
-        return str(evidence.refusal)
-    return None
-
-
-def _chain(error: BaseException) -> Iterator[BaseException]:
-    seen: set[int] = set()
-    link: BaseException | None = error
-    while link is not None and id(link) not in seen:
-        seen.add(id(link))
-        yield link
-        link = link.__cause__ or (None if link.__suppress_context__ else link.__context__)
+def _is_timeout(error: BaseException) -> bool:
+    """Whether a limit ended the test: ours, or one of the suite's own."""
+    if isinstance(error, BudgetExceeded) or is_named(error, _TIMEOUTS):
+        return True
+    return isinstance(error, pytest.fail.Exception) and any(
+        frame.f_globals.get("__name__") == "pytest_timeout" for frame, _ in _from_the_raise(error)
+    )
 
 
 def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary: Vocabulary) -> bool:
-    if is_named(error, vocabulary.checks) or isinstance(error, pytest.fail.Exception):
+    if is_named(error, (*_CHECKS, *vocabulary.checks)) or isinstance(error, pytest.fail.Exception):
         return True
     if not isinstance(error, AssertionError):
         return False
@@ -140,8 +165,8 @@ def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
 
 def _place(error: BaseException, locator: Locator) -> str | None:
     """The innermost line that is the user's own: the file lies under the root and is not installed."""
-    for frame, line in _from_the_raise(error):
-        filename = frame.f_code.co_filename
+    lines = [(frame.f_code.co_filename, line) for frame, line in _from_the_raise(error)]
+    for filename, line in [*lines, *place_of_mismatch(error)]:
         relative = locator.relative(filename)
         if not relative.startswith("..") and "site-packages" not in relative and not filename.startswith("<"):
             return f"{relative}:{line}"

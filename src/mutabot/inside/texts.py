@@ -7,7 +7,7 @@ from typing import Any
 
 from mutabot.model import Call, Choice, Job, NotInstrumented, PlacesReached, TextsSeen
 
-from .activate import Evidence, is_named
+from .activate import Evidence, is_refusal, with_refusal
 from .import_hook import ImportHook
 from .pipe import Held, Pipe
 
@@ -35,7 +35,7 @@ class Texts:
         self._begun = False
         self._early: _Counts = {}
         self._early_example: tuple[Any, ...] | None = None
-        self._refusal: BaseException | None = None
+        self._refusals: tuple[BaseException, ...] = ()
         self._unknown = False
         hook.alternatives.on_act = self._acted
 
@@ -68,7 +68,7 @@ class Texts:
         """
         if not self._begun:
             self._note_early()
-        self._test, self._refusal, self._unknown = test, None, False
+        self._test, self._refusals, self._unknown = test, (), False
         if self.hook.recording is not None:
             self.hook.recording.start()
             return
@@ -104,8 +104,8 @@ class Texts:
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
-        if self.is_mutant and self.has_acted and is_named(error, refusals):
-            self._refusal = error
+        if self.is_mutant and self.has_acted and is_refusal(error, refusals):
+            self._refusals = with_refusal(self._refusals, error)
             # the vocabulary says what commands there are; this is none of them
             self._unknown = call.operation.message is not None and call.pattern is None
 
@@ -119,7 +119,7 @@ class Texts:
             acted=min((acted for _, acted in counts), default=0),
             is_partial=any(acted for _, acted in counts),
             example=next(iter(examples.values()), self._early_example),
-            refusal=self._refusal,
+            refusals=self._refusals,
             is_of_text=True,
             is_unknown=self._unknown,
         )
