@@ -52,7 +52,8 @@ class Baseline:
     """What is known about the original.
 
     Attributes:
-        tests: per round, the tests that passed in all repetitions, in the order of the suite.
+        tests: per round, the tests that ended alike in all repetitions and let the suite pass, in its order.
+            A test that was skipped or failed as expected belongs to them: a mutant can make it fail.
         ends: the report of each (round, test), from the first repetition.
         hits: recorded calls by place, in the order in which places were first reached.
         reaching: (round, place) to the tests that reach it, fastest first.
@@ -118,6 +119,10 @@ class Baseline:
                 tests.remove(test)
                 self.flaky_reaching.setdefault((where, place), []).append(test)
 
+    def ran(self, round: int) -> list[str]:
+        """The tests of a round that were not skipped."""
+        return [test for test in self.tests[round] if self.ends[round, test].outcome != "skipped"]
+
     def by_cost(self, round: int) -> list[str]:
         """All tests of a round, quickest first: the order of every selection."""
         return sorted(self.tests[round], key=lambda test: _cost(self.ends[round, test]))
@@ -171,7 +176,7 @@ def take_baseline(
         first = {round: results[round, 0] for round in range(request.rounds)}
         baseline.program = ProgramTexts.of(texts, first)
         _add_text_places(baseline)
-    if not any(baseline.tests):
+    if not any(baseline.ran(round) for round in range(request.rounds)):
         raise NothingToDoError(_no_tests(baseline))
     refuse_unreadable(request.vocabulary, list(baseline.ends.values()))
     note_readability(request.vocabulary, list(baseline.ends.values()), progress)
@@ -218,7 +223,7 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
         raise BaselineError(f"the tests cannot be run on the original: {text}{said_in(result.log)}")
     if not result.end.collected:
         raise NothingToDoError(f"pytest finds no tests with {' '.join(arguments)}{said_in(result.log)}")
-    broken = [end for end in result.ends if end.failure is not None]
+    broken = [end for end in result.ends if end.failure is not None and end.outcome == "failed"]
     if broken:
         raise BaselineError(
             f"{broken[0].test}: {broken[0].failure}; the original must run before mutants can",
@@ -264,14 +269,15 @@ def _add_round(
     good: list[str] = []
     for test, end in runs[0].items():
         others = [run.get(test) for run in runs[1:]]
-        outcomes = {other.outcome if other is not None else "missing" for other in [end, *others]}
+        outcomes = {other.lasting if other is not None else "missing" for other in [end, *others]}
         if outcomes == {"failed"}:
             failed.append(end)
         elif len(outcomes) > 1:
             baseline.unstable[round, test] = f"{' and '.join(sorted(outcomes))} in equal runs"
-        elif outcomes == {"skipped"}:
+        elif end.failure is not None:  # it says that the simulator will fail in it, so it judges nothing
             baseline.skipped += 1
         else:
+            baseline.skipped += end.outcome == "skipped"
             good.append(test)
             baseline.ends[round, test] = replace(end, wall=max([end.wall, *(o.wall for o in others if o)]))
             baseline.observations[round, test] = observed[0][test]
@@ -351,4 +357,4 @@ def _observations(result: Result, sources: Sources) -> dict[str, Observation]:
 def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     """What is compared of a test."""
     events = [Event(places[index].key, written, read) for index, written, read, _ in end.trace]
-    return Observation(events, end.probes, end.truncated, end.unread)
+    return Observation(events, end.probes, end.truncated, end.unread, end.outcome)

@@ -46,7 +46,7 @@ class Remainder:
         pairs: mutants and rounds.
         early: mutants that act while the program is imported, before a trunk could branch.
         reasons: test to why it was not safe to fork in it.
-        suspects: (round, test) that passed in the baseline, but not in a trunk.
+        suspects: (round, test) that ended otherwise in a trunk than in the baseline.
         notes: what else went wrong, in words.
     """
 
@@ -211,7 +211,7 @@ class _Trunk:
     def _branch_ended(self, line: BranchEnd) -> Iterator[Outcome]:
         branches = self._open[line.mutant]
         branches.take(line)
-        if line.end.outcome == "passed":
+        if line.end.outcome != "failed":
             places = {seen.index: place_of(seen, self._sources) for seen in line.sites}
             branches.observations[line.end.test] = observation(line.end, places)
         yield from self._settle(line.mutant)
@@ -244,7 +244,7 @@ class _Trunk:
     def _test_ended(self, end: TestEnd, remainder: Remainder) -> Iterator[Outcome]:
         """The trunk has run a test: the second opinion on the original."""
         undiverged = self._undiverged.pop(end.test, {})
-        if end.outcome == "passed":
+        if end.lasting == self._baseline.ends[self._round, end.test].lasting:
             self._passed.add(end.test)
             found = observation(end, self._trunk_places)
             self._compare_with_baseline(end.test, found)

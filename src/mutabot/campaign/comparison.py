@@ -40,12 +40,14 @@ class Observation:
         probes: values by ``target.part``.
         unread: why a probe could not be read, by target.
         truncated: whether the list of calls was cut off.
+        outcome: how the test ended for the suite.
     """
 
     events: Sequence[Event] = ()
     probes: Mapping[str, Any] = field(default_factory=dict)
     truncated: bool = False
     unread: Mapping[str, str] = field(default_factory=dict)
+    outcome: str = "passed"
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +58,7 @@ class Comparison:
         indistinguishable: whether all that was compared is equal within the tolerance.
         distance: greatest difference of a probe, in multiples of its tolerance (``OTHER_WORLD`` for one
             that is not of numbers); None without probes, or if none that differs more is all that is known.
-        divergence: one line per difference, worst probe first, then the first call that differs.
+        divergence: one line per difference: the outcome, the worst probe first, the first call that differs.
         gaps: what could not be compared, one line each.
     """
 
@@ -85,7 +87,7 @@ def compare(original: Observation, mutant: Observation, probes: Sequence[Probe] 
     trace_line = _first_difference(original, mutant, tolerance)
     distances = [distance for distance, _ in probe_lines]
     different = [line for distance, line in probe_lines if distance > 1.0]
-    lines = [*different, *([trace_line] if trace_line else [])]
+    lines = [*_outcome_lines(original, mutant), *different, *([trace_line] if trace_line else [])]
     distance = max(distances, default=None)
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
@@ -107,6 +109,12 @@ def farthest(comparisons: Sequence[Comparison]) -> Comparison:
     if gaps and (distance or 0.0) <= 1.0:
         distance = None
     return Comparison(together, distance, tuple(lines), gaps)
+
+
+def _outcome_lines(original: Observation, mutant: Observation) -> list[str]:
+    if original.outcome == mutant.outcome:
+        return []
+    return [f"the test ended {mutant.outcome} instead of {original.outcome}"]
 
 
 def _probe_differences(

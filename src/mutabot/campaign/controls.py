@@ -174,12 +174,14 @@ def _fatals(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
     """One fatal control per test file: its quickest test, at a site where a mutant is planned.
 
     What raises while the program is imported says little about what is reached in a test: that comes last.
+    Only a test that passes on the original must fail by it; one that may fail, or skips itself, need not.
     """
     planned, early = _places(mutants), baseline.program.early
     chosen: dict[tuple[bool, str], Control] = {}
     costs: dict[tuple[bool, str], tuple[bool, int, float]] = {}
     for (round, place), tests in baseline.reaching.items():
-        for test in tests if place in planned else ():
+        passing = [test for test in tests if baseline.ends[round, test].outcome == "passed"]
+        for test in passing if place in planned else ():
             key = (place.is_text, test.partition("::")[0])
             cost = (place in early, round, baseline.ends[round, test].wall)
             if key not in costs or cost < costs[key]:

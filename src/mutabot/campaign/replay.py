@@ -99,7 +99,7 @@ def run_of(result: Result, sources: Sources) -> Run:
         round=job.round,
         tests=job.tests or (),
         ends=result.ends,
-        observations={end.test: observation(end, places) for end in result.ends if end.outcome == "passed"},
+        observations={end.test: observation(end, places) for end in result.ends if end.outcome != "failed"},
         death=_death(result),
         problem=_problem(result),
         wall=result.wall,

@@ -269,7 +269,7 @@ def _report(
     controls: int,
     remainder: Remainder,
 ) -> CheckReport:
-    tests = sorted({test for tests in baseline.tests for test in tests})
+    tests = sorted({test for round in range(request.rounds) for test in baseline.ran(round)})
     never = _never_called(request.vocabulary, baseline)
     lines = [
         f"tests     {len(tests)} pass in {request.rounds} rounds"

@@ -34,7 +34,7 @@ def clear_up(
     ]
     for result in workers.run(tasks):
         round = result.task.job.round
-        passed = {end.test for end in result.ends if end.outcome == "passed"}
+        passed = {end.test for end in result.ends if end.lasting == baseline.ends[round, end.test].lasting}
         for test in by_round[round]:
             if test in passed:
                 progress.note(

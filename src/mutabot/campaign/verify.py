@@ -91,7 +91,8 @@ class Flaky:
     def of(cls, baseline: Baseline) -> Flaky:
         """What is known now: with the branch engine, the trunks give the second opinion."""
         lines = [f"{test} in round {round + 1}: {why}" for (round, test), why in baseline.unstable.items()]
-        return cls(tuple(lines), sum(map(len, baseline.tests)) + len(lines))
+        known = sum(len(baseline.ran(round)) for round in range(len(baseline.tests)))
+        return cls(tuple(lines), known + len(lines))
 
     @property
     def share(self) -> float:

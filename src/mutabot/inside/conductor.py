@@ -20,12 +20,14 @@ from mutabot.operators.registry import BUILT_IN, CONTROLS, preload
 
 from . import seeds
 from .activate import Evidence
-from .branch import ALIVE, DECIDED, FAILED, Trunk
-from .classify import Ending, classify
+from .branch import ALIVE, DECIDED, Trunk
+from .branch import FAILED as BRANCH_FAILED
+from .classify import Ending, classify, unexpected_pass
 from .lifeline import die_with_parent, nobody_listens
 from .limits import limit_memory
 from .locate import Locator
 from .no_oracle import NoOracle
+from .outcomes import FAILED, PASSED, is_expected_failure, outcome_so_far
 from .pipe import Held, Pipe
 from .probes import Reading
 from .session import Session
@@ -48,7 +50,8 @@ class Conductor:
         self._pipe = pipe
         self._server = server
         self._ending: Ending | None = None
-        self._outcome = "passed"
+        self._expected: Ending | None = None
+        self._outcome = PASSED
         self._reading = Reading()
         self._collected: tuple[str, ...] = ()
         self._errors: list[str] = []
@@ -63,7 +66,7 @@ class Conductor:
         """Read the job, set the limits of the process and put the interception in place."""
         die_with_parent()
         if nobody_listens(descriptor):  # the controller died before the kernel was asked
-            os._exit(FAILED)
+            os._exit(BRANCH_FAILED)
         home = os.path.dirname(job_file)
         job = read_job(job_file)
         if job.memory is not None:
@@ -221,7 +224,7 @@ class Conductor:
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
         """One test, its fixtures included."""
-        self._ending, self._outcome, self._reading = None, "passed", Reading()
+        self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
         self._pipe.send(TestStart(item.nodeid))
         seeds.seed_all(self.seed_of(item.nodeid))
         self._item = item
@@ -252,16 +255,24 @@ class Conductor:
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
         """Note the first thing that ended the test."""
         report = yield
-        if report.skipped and self._outcome == "passed":
-            self._outcome = "skipped"
-        if report.failed and self._outcome != "failed":
-            ending = self._classified(item, call)
-            if not self.job.no_oracle or (ending is not None and not ending.is_mere_check):
-                self._outcome, self._ending = "failed", ending
+        if report.failed:
+            self._note_failure(self._classified(item, call) or unexpected_pass(str(report.longrepr)))
+        elif self._outcome != FAILED:
+            self._outcome = outcome_so_far(report, self._outcome)
+            if is_expected_failure(report):
+                self._expected = self._classified(item, call)
         return report
 
+    def _note_failure(self, ending: Ending) -> None:
+        """The first failure counts; of several subtests, the first that is more than a refusal."""
+        if self.job.no_oracle and ending.is_mere_check:
+            return
+        first = self._ending
+        if first is None or (first.refused is not None and first.phase == ending.phase and ending.is_raised):
+            self._outcome, self._ending = FAILED, ending
+
     def _classified(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Ending | None:
-        """What ended the test; None if nothing was raised, as where a test passes that was to fail."""
+        """What ended a phase of the test; None if nothing was raised."""
         if call.excinfo is None:
             return None
         return classify(
@@ -304,7 +315,7 @@ class Conductor:
         mutant = self.session.branch
         if mutant is None:
             return
-        code = FAILED
+        code = BRANCH_FAILED
         try:
             if error is None:
                 code = self._report_branch(mutant)
@@ -314,8 +325,8 @@ class Conductor:
     def _report_branch(self, mutant: str) -> int:
         """Say how the test of this branch ended; returns the exit code that tells the trunk."""
         end = self._test_end(self.session.test)
-        sites = self.session.recorder.sites_of_trace() if end.outcome == "passed" else ()
-        if end.outcome != "passed":
+        sites = self.session.recorder.sites_of_trace() if end.outcome != FAILED else ()
+        if end.outcome == FAILED:
             end = replace(end, trace=())  # only survivors are compared with the original
         self._pipe.send(BranchEnd(mutant, end, sites, self._shared))
         return DECIDED if end.is_decided else ALIVE
@@ -325,8 +336,9 @@ class Conductor:
         wall, cpu = time.perf_counter() - self._started[0], time.process_time() - self._started[1]
         meter = session.meter
         assert meter is not None
-        ended_by_refusal = ending is not None and ending.refused is not None
-        refusal = str(evidence.refusal) if evidence.refusal is not None else None
+        cause = ending or self._expected  # what a test said that it would do ends it as well
+        ended_by_refusal = cause is not None and cause.refused is not None
+        refusal = evidence.refusal
         if evidence.is_of_text and not ended_by_refusal:
             refusal = None
         return TestEnd(
@@ -337,11 +349,11 @@ class Conductor:
             exception=ending.exception if ending else None,
             message=ending.message if ending else None,
             place=ending.place if ending else None,
-            timeout=meter.exceeded,
-            failure=evidence.failure or (ending.failure if ending else None),
-            invalid=evidence.invalid or _is_no_program(evidence, ending),
+            timeout=meter.exceeded or (ending.timeout if ending else None),
+            failure=evidence.failure or (cause.failure if cause else None),
+            invalid=evidence.invalid or _is_no_program(evidence, cause),
             refused=refusal,
-            caught=refusal is not None and self._outcome == "failed" and not ended_by_refusal,
+            caught=refusal is not None and self._outcome == FAILED and not ended_by_refusal,
             hits=evidence.hits,
             acted=evidence.acted,
             partly=evidence.is_partial and not evidence.acted,

@@ -246,7 +246,8 @@ class TestEnd:
 
     Attributes:
         test: node id.
-        outcome: ``passed``, ``failed`` or ``skipped``.
+        outcome: as pytest counts it: ``passed``, ``failed``, ``skipped``, ``xfailed`` or ``xpassed``. Only
+            ``failed`` makes the suite fail.
         by: what noticed, for a failure.
         phase: ``setup``, ``call`` or ``teardown``: where it failed; ``collect`` if it never began.
         exception: type of the exception as ``module:Name``.
@@ -299,6 +300,11 @@ class TestEnd:
     truncated: bool = False
     probes: Mapping[str, Any] = field(default_factory=dict)
     unread: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def lasting(self) -> str:
+        """The outcome, as far as equal runs must agree on it: what may fail may also pass."""
+        return "xfailed" if self.outcome == "xpassed" else self.outcome
 
     @property
     def notices(self) -> bool:
