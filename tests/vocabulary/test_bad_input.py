@@ -108,6 +108,10 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
         GOOD_OPERATION + "arguments.self = { kind = 'duration', unit = 's' }",
         ["robot.toml:3", "not an argument"],
     ),
+    "overrides_of_a_function": (
+        "[[operation]]\ncall = 'robot:move'\noverrides = true",
+        ["robot.toml:3", "no method of a class"],
+    ),
     "signature_without_brackets": (
         GOOD_OPERATION + "signature = 'x, y'",
         ["robot.toml:3", "signature", "bracket", "(body, joints"],

@@ -53,6 +53,7 @@ class Door:
 
     Attributes:
         commands: how often the robot was made to do this, if it does anything.
+        calls: how often it was called.
     """
 
     def __init__(
@@ -67,16 +68,18 @@ class Door:
         self._signature: inspect.Signature | None = None
         self._last_replies: dict[str | None, Any] = {}
         self.commands = 0
+        self.calls = 0
 
     def reset(self) -> None:
         """Forget earlier answers and commands: a new test begins."""
         self._last_replies.clear()
-        self.commands = 0
+        self.commands = self.calls = 0
 
     def call(
         self, wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
     ) -> Call:
         """The call as operators see it."""
+        self.calls += 1
         invocation = Invocation(wrapped, instance, args, kwargs, self._bind(wrapped, args, kwargs))
         pattern, values = self._written(invocation)
 

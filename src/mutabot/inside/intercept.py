@@ -17,6 +17,8 @@ from typing import Any
 
 import wrapt
 
+from .overrides import overriding, watch_subclasses
+
 Handler = Callable[[Callable[..., Any], Any, tuple[Any, ...], dict[str, Any]], Any]
 Undo = Callable[[], None]
 
@@ -46,19 +48,32 @@ class Interception:
         pending: targets whose module has not been imported yet.
         found: wrapped original by target.
         on_error: told about targets that turn out wrong when their module is imported.
+        owners: the class and the attribute's name of each target that is in a class.
+        uncovered: overriding methods that cannot be intercepted, with the reason, by target.
     """
 
     on_error: Callable[[str, Exception], None]
     pending: set[str] = field(default_factory=set)
     found: dict[str, Any] = field(default_factory=dict)
+    owners: dict[str, tuple[type, str]] = field(default_factory=dict)
+    uncovered: dict[str, list[str]] = field(default_factory=dict)
+    _targets: set[str] = field(default_factory=set)
+    _covering: dict[str, Callable[[type], Handler]] = field(default_factory=dict)
     _undo: list[Undo] = field(default_factory=list)
     _wrappers: list[tuple[Any, Any]] = field(default_factory=list)
     _removed: bool = False
 
-    def wrap(self, target: str, handler: Handler) -> None:
-        """Wrap ``module:qualified.name`` now, or as soon as its module is imported."""
+    def wrap(self, target: str, handler: Handler, overrides: Callable[[type], Handler] | None = None) -> None:
+        """Wrap ``module:qualified.name`` now, or as soon as its module is imported.
+
+        With ``overrides``, which makes their handlers, also the methods that override it, of classes that
+        are there and of those that are still to be made.
+        """
         module_name, _, qualname = target.partition(":")
         self.pending.add(target)
+        self._targets.add(target)
+        if overrides is not None:
+            self._covering[target] = overrides
         late = module_name in sys.modules
 
         def imported(module: ModuleType) -> None:
@@ -67,10 +82,59 @@ class Interception:
             self.pending.discard(target)
             try:
                 self._install(target, module, qualname, handler, late=late)
+                if overrides is not None:
+                    self._cover(target, overrides)
             except (NotFoundError, NotCallableError) as error:
                 self.on_error(target, error)
 
         wrapt.register_post_import_hook(imported, module_name)
+
+    def look_for_subclasses(self) -> None:
+        """Cover the classes whose making went unnoticed."""
+        for target, overrides in self._covering.items():
+            if target in self.owners:
+                self.wrap_overriding(target, overrides)
+
+    def wrap_overriding(self, target: str, overrides: Callable[[type], Handler]) -> None:
+        """Wrap every method there is that overrides this target, which is in place, but those wrapped."""
+        owner, name = self.owners[target]
+        for kind in overriding(owner, name):
+            self._wrap_own(target, kind, name, overrides)
+
+    def _cover(self, target: str, overrides: Callable[[type], Handler]) -> None:
+        if target not in self.owners:
+            raise NotCallableError(f"{target} is no method, so nothing overrides it")
+        owner, name = self.owners[target]
+        self.wrap_overriding(target, overrides)
+        self._undo.append(watch_subclasses(owner, lambda kind: self._wrap_own(target, kind, name, overrides)))
+
+    def _wrap_own(self, target: str, kind: type, name: str, overrides: Callable[[type], Handler]) -> None:
+        original = vars(kind).get(name)
+        is_wrapped = any(original is wrapper for _, wrapper in self._wrappers)
+        if original is None or is_wrapped or not self._is_nearest(target, kind):
+            return
+        try:
+            wrapper = _wrapper(kind, name, original, overrides(kind))
+            setattr(kind, name, wrapper)
+        except (NotCallableError, AttributeError, TypeError) as error:
+            why = f"{kind.__module__}:{kind.__qualname__}.{name} cannot be intercepted: {error}"
+            if why not in self.uncovered.setdefault(target, []):
+                self.uncovered[target].append(why)
+            return
+        self._undo.append(functools.partial(setattr, kind, name, original))
+        self._wrappers.append((original, wrapper))
+
+    def _is_nearest(self, target: str, kind: type) -> bool:
+        """Whether no other target covers the class that is nearer to it, nor names its method itself."""
+        owner, name = self.owners[target]
+        installed = {id(place): other for other, (place, same) in self.owners.items() if same == name}
+        for place in kind.__mro__:
+            if place is owner:
+                break
+            other = installed.get(id(place), f"{place.__module__}:{place.__qualname__}.{name}")
+            if other in self._covering or (place is kind and other in self._targets):
+                return False
+        return True
 
     def remove(self) -> None:
         """Take all wrappers away, last one first. Hooks of modules not yet imported become idle."""
@@ -97,6 +161,8 @@ class Interception:
             else functools.partial(delattr, owner, name)
         )
         self.found[target] = original
+        if isinstance(owner, type):
+            self.owners[target] = (owner, name)
         self._wrappers.append((original, wrapper))
         if late:
             self._undo.extend(_rebind(original, wrapper))

@@ -37,6 +37,7 @@ from .inspection import why_not_asked
 from .instances import Instances
 from .intercept import Handler, Interception, NotFoundError, resolve
 from .limits import Meter
+from .overrides import Watch
 from .parameters import look_at
 from .pipe import Held, Pipe
 from .probes import Reading, take
@@ -83,9 +84,11 @@ class Session:
     _askers: dict[str, type | None] = field(default_factory=dict)
     _unfit: dict[tuple[str, str], Callable[[], None]] = field(default_factory=dict)
     _fit: dict[str, set[str]] = field(default_factory=dict)
+    _watch: Watch = field(init=False)
 
     def __post_init__(self) -> None:
         self.recorder = Recorder(self._site_seen)
+        self._watch = Watch(self.locate, self._calls_of, _under_way.get)
         self.interception = Interception(self._target_is_wrong)
 
     def install(self) -> None:
@@ -93,10 +96,9 @@ class Session:
         self.texts = Texts.of(self.job, self.pipe, partial(self._acted, ""))
         vocabulary = self.job.vocabulary
         for operation in vocabulary.operations:
-            reading = vocabulary.operation(operation.current) if operation.current is not None else None
-            door = Door(operation, reading, partial(self._path_is_wrong, operation))
-            self._doors.append(door)
-            self.interception.wrap(operation.target, self._handler(door))
+            door = self._door(operation)
+            overrides = partial(self._handler_of_override, operation) if operation.overrides else None
+            self.interception.wrap(operation.target, self._handler(door), overrides)
         self.instances.watch(probe.owner for probe in vocabulary.probes)
         if vocabulary.clock is not None:
             clock = vocabulary.clock
@@ -104,6 +106,15 @@ class Session:
             self.interception.wrap(clock.tick, reader.handler())
         if self.job.mutant is not None:
             self.activate(self.job.mutant)
+
+    def _door(self, operation: Operation) -> Door:
+        reading = self.job.vocabulary.operation(operation.current or "")
+        self._doors.append(Door(operation, reading, partial(self._path_is_wrong, operation)))
+        return self._doors[-1]
+
+    def _handler_of_override(self, operation: Operation, kind: type) -> Handler:
+        """An overriding method may have a signature of its own, so it has a door of its own."""
+        return self._handler(self._door(operation))
 
     def activate(self, mutant: Mutant) -> None:
         """Take on a mutant; those of the program text are alternatives there."""
@@ -141,6 +152,7 @@ class Session:
         """A test begins, before its fixtures."""
         self.test = test
         self._parts.clear()
+        self._look_for_subclasses()
         self.meter = Meter(self.job.budgets.get(test, Budget()))
         self.recorder.start()
         self.instances.start()
@@ -155,6 +167,20 @@ class Session:
             self._become(self.trunk.branch_at_start())
         if self.branch is None:  # else it has just become its mutant
             self._start_activations()
+
+    def _look_for_subclasses(self) -> None:
+        """Classes may have been made since the last test."""
+        self.interception.look_for_subclasses()
+        if not self.job.inspect:
+            return
+        owners = self.interception.owners
+        for target in sorted(owners, key=lambda target: len(owners[target][0].__mro__), reverse=True):
+            operation = self.job.vocabulary.operation(target)
+            if operation is not None and not operation.overrides:
+                self.interception.wrap_overriding(target, partial(self._watch.handler, target))
+
+    def _calls_of(self, target: str) -> int:
+        return sum(door.calls for door in self._doors if door.operation.target == target)
 
     def _start_activations(self) -> None:
         for activation in self.activations:
@@ -185,6 +211,16 @@ class Session:
             self.texts.finish()
         if self.job.inspect:
             self.inspect_targets()
+            self._tell_overrides()
+
+    def _tell_overrides(self) -> None:
+        """Say which calls went past an operation because another method overrides it."""
+        for operation in self.job.vocabulary.operations:
+            if sentences := self._watch.sentences(operation.target):
+                self._remark(operation.source, "call", sentences)
+            uncovered = self.interception.uncovered.get(operation.target) if operation.overrides else None
+            if uncovered:
+                self._remark(operation.source, "overrides", "; ".join(uncovered))
 
     def look_ahead(self) -> None:
         """The tests are about to begin: say what can be said about the targets that are there already."""

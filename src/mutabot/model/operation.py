@@ -48,6 +48,7 @@ class Operation:
         patterns: the text commands, if ``message`` is given.
         source: where the vocabulary says so (``robot.toml:12 · robot:Arm.move_by``).
         signature: what its arguments are, for a callable that does not tell; see ``model.signature``.
+        overrides: whether the methods of subclasses that override it belong to it.
     """
 
     target: str
@@ -61,6 +62,7 @@ class Operation:
     patterns: tuple[Pattern, ...] = ()
     source: str = ""
     signature: str | None = None
+    overrides: bool = False
 
     @property
     def module(self) -> str:

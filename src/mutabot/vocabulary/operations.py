@@ -29,6 +29,8 @@ def read_operation(check: Check, raw: Any, place: Place) -> Operation | None:
     patterns = read_patterns(check, table.patterns, (*place, "patterns"), source)
     _check_message(check, table, arguments, place)
     _check_signature(check, table, arguments, place)
+    if table.overrides and "." not in table.call.partition(":")[2]:
+        check.error((*place, "overrides"), f"{table.call} is no method of a class, so nothing overrides it")
     operation = Operation(
         target=table.call,
         arguments=arguments,
@@ -41,6 +43,7 @@ def read_operation(check: Check, raw: Any, place: Place) -> Operation | None:
         patterns=patterns,
         source=source,
         signature=table.signature,
+        overrides=table.overrides,
     )
     if not (table.arguments or table.result or table.message or operation.command):
         check.error(place, "says nothing: no arguments, no result, no patterns, and command = false")

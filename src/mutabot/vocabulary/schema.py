@@ -60,6 +60,7 @@ class OperationTable(Table):
     refusals: list[str] = Field(default_factory=list)
     message: str | None = None
     signature: str | None = None
+    overrides: bool = False
     patterns: list[Any] = Field(default_factory=list)
 
 
