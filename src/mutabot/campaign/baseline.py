@@ -6,7 +6,7 @@ relied on. What differs between the two runs of a round is flaky, and is set asi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -17,6 +17,7 @@ from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 
 from .comparison import Event, Observation, compare
+from .failing import refuse_failing, why_set_aside
 from .places import Place
 from .program_text import ProgramTexts, read_texts
 from .readability import note_readability, refuse_unreadable
@@ -59,7 +60,7 @@ class Baseline:
         reaching: (round, place) to the tests that reach it, fastest first.
         observations: (round, test) to what is compared with a mutant's.
         unstable: tests set aside as flaky, with the reason, by (round, test).
-        flaky_reaching: (round, place) to the tests that reached it but were set aside later on.
+        flaky_reaching: (round, place) to the tests that reach it but are set aside in this round.
         dependent: selections of tests that pass only together with others; filled in by the controls.
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
         skipped: number of tests that skipped themselves.
@@ -123,6 +124,22 @@ class Baseline:
         """The tests of a round that were not skipped."""
         return [test for test in self.tests[round] if self.ends[round, test].outcome != "skipped"]
 
+    def missing_judges(self, round: int, mutant: Mutant) -> list[str]:
+        """Tests that would judge a mutant, were they not set aside in this round.
+
+        A test that fails may stop short of a place that it reaches in other rounds.
+        """
+        aside = [test for where, test in self.unstable if where == round]
+        return [test for test in aside if all(self._reaches(test, single) for single in mutant.singles)]
+
+    def _reaches(self, test: str, single: Mutant) -> bool:
+        place = Place.of(single)
+        return any(
+            test in found.get((other, place), ())
+            for other in range(len(self.tests))
+            for found in (self.reaching, self.flaky_reaching)
+        )
+
     def by_cost(self, round: int) -> list[str]:
         """All tests of a round, quickest first: the order of every selection."""
         return sorted(self.tests[round], key=lambda test: _cost(self.ends[round, test]))
@@ -161,17 +178,24 @@ def take_baseline(
     progress.stage("baseline", request.rounds * repetitions)
     results: dict[tuple[int, int], Result] = {}
     remarks: list[Remark] = []
-    events = workers.events(_tasks(request, repetitions, texts, may_share))
-    for result in _told_as_they_come(events, progress, remarks):
-        run: _Run = result.task.key
-        results[run.round, run.repetition] = result
-        _refuse(result, request.arguments)
-        progress.advance(f"baseline, round {run.round + 1}, run {run.repetition + 1}: {_counts(result)}")
+
+    def run_suite(tasks: Iterable[Task]) -> None:
+        for result in _told_as_they_come(workers.events(tasks), progress, remarks):
+            run: _Run = result.task.key
+            results[run.round, run.repetition] = result
+            _refuse(result, request.arguments)
+            progress.advance(f"baseline, round {run.round + 1}, run {run.repetition + 1}: {_counts(result)}")
+
+    run_suite(_tasks(request, repetitions, texts, may_share))
+    if repetitions == 1:  # was it chance, or the round's seed?
+        run_suite(_once_more(request, results, may_share))
     baseline = Baseline(remarks=tuple(dict.fromkeys(remarks)))
     sources = Sources(request.root)
+    failing: dict[tuple[int, str], TestEnd] = {}
     for round in range(request.rounds):
-        runs = [results[round, repetition] for repetition in range(repetitions)]
-        _add_round(baseline, request, sources, round, runs)
+        runs = [results[key] for key in sorted(results) if key[0] == round]
+        failing |= _add_round(baseline, request, sources, round, runs)
+    refuse_failing(request, failing)
     if texts:
         first = {round: results[round, 0] for round in range(request.rounds)}
         baseline.program = ProgramTexts.of(texts, first)
@@ -206,6 +230,21 @@ def _tasks(
             text = recording if repetition == 0 else None
             job = request.job(round, record=True, inspect=inspect, instrumentation=text)
             yield Task(_Run(round, repetition), job, startup=300.0, may_share=may_share)
+
+
+def _once_more(
+    request: Request, results: Mapping[tuple[int, int], Result], may_share: bool
+) -> Iterator[Task]:
+    """A second run of the rounds in which tests fail, unless these fail in all rounds anyway."""
+    failed = {
+        round: {end.test for end in result.ends if end.outcome == "failed"}
+        for (round, _), result in results.items()
+    }
+    if len(failed) > 1 and set.intersection(*failed.values()):
+        return
+    for round, tests in sorted(failed.items()):
+        if tests:
+            yield Task(_Run(round, 1), request.job(round, record=True), startup=300.0, may_share=may_share)
 
 
 def _refuse(result: Result, arguments: Sequence[str]) -> None:
@@ -262,16 +301,18 @@ def _counts(result: Result) -> str:
 
 def _add_round(
     baseline: Baseline, request: Request, sources: Sources, round: int, repetitions: list[Result]
-) -> None:
+) -> dict[tuple[int, str], TestEnd]:
+    """Take in the runs of a round; returns the tests that fail in all of them."""
     runs = [{end.test: end for end in result.ends} for result in repetitions]
     observed = [_observations(result, sources) for result in repetitions]
-    failed = []
+    failed: dict[tuple[int, str], TestEnd] = {}
     good: list[str] = []
     for test, end in runs[0].items():
         others = [run.get(test) for run in runs[1:]]
         outcomes = {other.lasting if other is not None else "missing" for other in [end, *others]}
         if outcomes == {"failed"}:
-            failed.append(end)
+            failed[round, test] = end
+            baseline.unstable[round, test] = why_set_aside(request, round, end)
         elif len(outcomes) > 1:
             baseline.unstable[round, test] = f"{' and '.join(sorted(outcomes))} in equal runs"
         elif end.failure is not None:  # it says that the simulator will fail in it, so it judges nothing
@@ -286,19 +327,11 @@ def _add_round(
                 compare(observed[0][test], run[test], probes).indistinguishable for run in observed[1:]
             ):
                 baseline.restless.add((round, test))
-    if failed:
-        raise BaselineError(_failures(round, failed), tests=[end.test for end in failed])
     baseline.tests.append(good)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])
     _add_hits(baseline, sources, round, repetitions[0], good)
-
-
-def _failures(round: int, failed: list[TestEnd]) -> str:
-    shown = "\n".join(f"  {end.test}: {(end.message or 'no message').splitlines()[0]}" for end in failed[:10])
-    more = f"\n  … and {len(failed) - 10} more" if len(failed) > 10 else ""
-    noun = "test fails" if len(failed) == 1 else "tests fail"
-    return f"{len(failed)} {noun} on the unmutated program in round {round + 1}:\n{shown}{more}"
+    return failed
 
 
 def _no_tests(baseline: Baseline) -> str:
@@ -313,6 +346,7 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
     reaching: dict[Place, list[str]] = {}
     for end in result.ends:
         if end.test not in good:
+            _add_set_aside(baseline, round, end.test, {places[index] for index, *_ in end.trace})
             continue
         for index, written, read, returned in end.trace:
             place = places[index]
@@ -324,14 +358,24 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
         baseline.reaching[round, place] = sorted(tests, key=lambda test: _cost(baseline.ends[round, test]))
 
 
+def _add_set_aside(baseline: Baseline, round: int, test: str, places: Iterable[Place]) -> None:
+    """Where a test that is set aside would have judged mutants."""
+    for place in places if (round, test) in baseline.unstable else ():
+        baseline.flaky_reaching.setdefault((round, place), []).append(test)
+
+
 def _add_text_places(baseline: Baseline) -> None:
     """Which tests reach which place; what is evaluated before the tests, or at import, is there for all."""
     for (round, place), reached in baseline.program.reached.items():
+        aside = [test for where, test in baseline.unstable if where == round]
         if place in baseline.program.early:
             baseline.reaching[round, place] = baseline.by_cost(round)
         else:
             tests = set(reached)
+            aside = [test for test in aside if test in tests]
             baseline.reaching[round, place] = [test for test in baseline.by_cost(round) if test in tests]
+        for test in aside:
+            _add_set_aside(baseline, round, test, [place])
 
 
 def _cost(end: TestEnd) -> tuple[float, int]:

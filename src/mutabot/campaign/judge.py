@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from mutabot.model import By, Kill, Mutant, Outcome, TestEnd, Verdict
@@ -70,6 +70,9 @@ class Run:
 def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
     """The outcome of a run."""
     verdict, end, message = _ruling(run)
+    aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
+    if aside:
+        verdict, message = Verdict.UNSTABLE, _let_through_without(aside)
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
     by = end.by if end is not None else By.EXCEPTION
     died_at_work = end is None and run.death is not None and (run.death.acted or run.death.in_mutated_call)
@@ -97,6 +100,12 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
         commands=end.commands if end is not None else None,
     )
     return _compared(outcome, run, request, baseline) if verdict is Verdict.SURVIVED else outcome
+
+
+def _let_through_without(aside: Sequence[str]) -> str:
+    more = f" and {len(aside) - 1} more" if len(aside) > 1 else ""
+    others = f"{aside[0]}{more}, set aside in this round, might not"
+    return f"the tests that can be relied on let it through; {others}"
 
 
 def _ruling(run: Run) -> Ruling:

@@ -8,7 +8,6 @@ from mutabot.model import Mutant, Outcome, Verdict
 
 from .baseline import Baseline, death, observation, places_of
 from .judge import Death, Run, judge
-from .places import Place
 from .request import Request
 from .sites import Sources
 from .workers import Result, Task, Workers
@@ -80,10 +79,9 @@ def wall_limit(request: Request, baseline: Baseline, round: int, test: str) -> f
 
 def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
     """The outcome of a mutant that no test can judge in this round."""
-    places = [Place.of(single) for single in mutant.singles]
-    flaky = [test for place in places for test in baseline.flaky_reaching.get((round, place), ())]
-    if flaky:
-        text = f"all tests that reach the site are flaky, such as {flaky[0]}"
+    aside = baseline.missing_judges(round, mutant)
+    if aside:
+        text = f"all tests that reach the site are set aside in this round, such as {aside[0]}"
         return Outcome(mutant.id, round, Verdict.UNSTABLE, message=text)
     text = "no test reaches the site in this round"
     return Outcome(mutant.id, round, Verdict.NOT_COVERED, message=text)

@@ -211,10 +211,9 @@ def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
 
 
 def _write_beginning(journal: Journal, request: Request, results: Sequence[Result], plan: Plan) -> None:
-    for index, result in enumerate(results):
-        repetition, round = divmod(index, request.rounds)
+    for result in results:
         for end in result.ends:
-            journal.add_test(round, repetition, end)
+            journal.add_test(result.task.key.round, result.task.key.repetition, end)
     files = {mutant.site.span.file for mutant in plan.mutants}
     sources = {file: (request.root / file).read_text(encoding="utf-8", errors="replace") for file in files}
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
@@ -224,7 +223,7 @@ def _write_beginning(journal: Journal, request: Request, results: Sequence[Resul
 
 def _note_unstable(baseline: Baseline, progress: Progress) -> None:
     for (round, test), reason in baseline.unstable.items():
-        progress.note(f"set aside as flaky in round {round + 1}: {test} ({reason})")
+        progress.note(f"set aside in round {round + 1}: {test} ({reason})")
 
 
 def _reason(error: BaseException) -> str:

@@ -17,7 +17,6 @@ from mutabot.model import Mutant, Outcome, Verdict, to_data
 
 from .baseline import Baseline, take_baseline
 from .controls import run_controls
-from .engine import engine_of
 from .journal import Journal
 from .pairs import pair
 from .places import Place
@@ -77,11 +76,11 @@ class Verification:
 
 @dataclass(frozen=True, slots=True)
 class Flaky:
-    """Tests that are not the same in equal runs of the original.
+    """Tests that cannot be relied on: they differ between equal runs of the original, or fail in one round.
 
     Attributes:
         tests: one line each: test, round and reason.
-        known: number of (test, round) that could have been flaky.
+        known: number of (test, round) that could have been.
     """
 
     tests: tuple[str, ...] = ()
@@ -103,7 +102,7 @@ class Flaky:
         """Why this is too much."""
         shown = "".join(f"\n  {line}" for line in self.tests[:10])
         more = f"\n  … and {len(self.tests) - 10} more" if len(self.tests) > 10 else ""
-        counts = f"{len(self.tests)} of {self.known} tests are flaky ({self.share:.0%})"
+        counts = f"{len(self.tests)} of {self.known} tests cannot be relied on ({self.share:.0%})"
         return f"{counts}; the limit is {limit:.0%} (unstable_limit):{shown}{more}"
 
 
@@ -184,9 +183,6 @@ def look_again(
     """Verify and confirm what was asked for, and write down what came of it, flaky tests included."""
     flaky = Flaky.of(baseline)
     journal.set_meta(FLAKY, to_data(flaky))
-    if engine_of(request) == "branch":  # only now have the trunks given the second opinion
-        for line in flaky.tests:
-            progress.note(f"set aside as flaky: {line}")
     if not (request.verify or request.confirm):
         return
     by_id = {mutant.id: mutant for mutant in mutants}

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE
+from mutabot.model.seed import ROUND_VARIABLE, SEED_VARIABLE
 
 if TYPE_CHECKING:
     from .conductor import Conductor
-
-#: gives the seed of tests that run without a campaign
-SEED_VARIABLE = "MUTABOT_SEED"
+    from .plain_round import PlainRound
 
 _conductor: Conductor | None = None
+_plain_round: PlainRound | None = None
 
 
 def pytest_addoption(pluginmanager: pytest.PytestPluginManager) -> None:
@@ -34,13 +34,17 @@ def pytest_addoption(pluginmanager: pytest.PytestPluginManager) -> None:
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_load_initial_conftests() -> Generator[None, Any, Any]:
     """Before any of the user's code is imported: wake up if there is a job."""
-    global _conductor  # noqa: PLW0603  # pytest knows this module, not an object of ours
+    global _conductor, _plain_round  # noqa: PLW0603  # pytest knows this module, not an object of ours
     if JOB_VARIABLE in os.environ and _conductor is None:
         # tests that start pytest themselves must not find the job again
         job, pipe = os.environ.pop(JOB_VARIABLE), os.environ.pop(PIPE_VARIABLE)
         from .conductor import Conductor  # noqa: PLC0415  # a sleeping plugin costs nothing
 
         _conductor = Conductor.from_files(job, int(pipe))
+    elif _conductor is None and os.environ.get(ROUND_VARIABLE):
+        from .plain_round import PlainRound  # noqa: PLC0415  # see above
+
+        _plain_round = PlainRound.from_environment()
     try:
         return (yield)
     except BaseException as error:
@@ -53,25 +57,30 @@ def pytest_configure(config: pytest.Config) -> None:
     """Hand pytest's hooks to the conductor."""
     if _conductor is not None:
         config.pluginmanager.register(_conductor, "mutabot-conductor")
+    if _plain_round is not None:
+        config.pluginmanager.register(_plain_round, "mutabot-round")
 
 
 @pytest.fixture
 def mutabot_seed(request: pytest.FixtureRequest) -> int:
     """The seed of this test in this round: a whole number of 32 bits.
 
-    Outside a campaign it comes from the environment variable MUTABOT_SEED, default 0.
+    Outside a campaign it is the environment variable MUTABOT_SEED, default 0, or the test's own in the
+    round that MUTABOT_ROUND names.
     """
-    if _conductor is not None:
-        return _conductor.seed_of(request.node.nodeid)
+    seeded = _conductor or _plain_round
+    if seeded is not None:
+        return seeded.seed_of(request.node.nodeid)
     return int(os.environ.get(SEED_VARIABLE, "0"))
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, Any]:
     """Fixtures shared by several tests draw from a seed of their own."""
-    if _conductor is None or fixturedef.scope == "function":
+    seeded = _conductor or _plain_round
+    if seeded is None or fixturedef.scope == "function":
         return (yield)
     from .seeds import seeded_apart  # noqa: PLC0415
 
-    with seeded_apart(_conductor.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
+    with seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
         return (yield)

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 import random
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from mutabot.model.seed import derive
 
-def derive(*parts: object) -> int:
-    """A whole number of 32 bits that depends on all parts and on nothing else."""
-    text = "\x1f".join(str(part) for part in parts)
-    return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=4).digest(), "big")
+__all__ = ["derive", "seed_all", "seeded_apart"]
 
 
 def seed_all(seed: int) -> None:

@@ -276,7 +276,7 @@ def left_out_lines(left_out: Sequence[LeftOut], *, everything: bool = False) -> 
 def _trust(results: Results) -> Iterator[RenderableType]:
     """Flaky tests, and what a second look at outcomes found."""
     if results.flaky.tests:
-        yield heading(f"{plural(len(results.flaky.tests), 'flaky test')} set aside")
+        yield heading(f"{plural(len(results.flaky.tests), 'test')} set aside, which cannot be relied on")
         for line in results.flaky.tests:
             yield Text(plain(line), overflow="fold")
     checked = results.verification
