@@ -17,7 +17,7 @@ from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 
 from .comparison import Event, Observation, compare
-from .failing import refuse_failing, why_set_aside
+from .failing import refuse_failing, rounds_to_repeat, why_set_aside
 from .places import Place
 from .program_text import ProgramTexts, read_texts
 from .readability import note_readability, refuse_unreadable
@@ -188,7 +188,11 @@ def take_baseline(
 
     run_suite(_tasks(request, repetitions, texts, may_share))
     if repetitions == 1:  # was it chance, or the round's seed?
-        run_suite(_once_more(request, results, may_share))
+        again = rounds_to_repeat({run[0]: result.ends for run, result in results.items()})
+        run_suite(
+            Task(_Run(round, 1), request.job(round, record=True), startup=300.0, may_share=may_share)
+            for round in again
+        )
     baseline = Baseline(remarks=tuple(dict.fromkeys(remarks)))
     sources = Sources(request.root)
     failing: dict[tuple[int, str], TestEnd] = {}
@@ -230,21 +234,6 @@ def _tasks(
             text = recording if repetition == 0 else None
             job = request.job(round, record=True, inspect=inspect, instrumentation=text)
             yield Task(_Run(round, repetition), job, startup=300.0, may_share=may_share)
-
-
-def _once_more(
-    request: Request, results: Mapping[tuple[int, int], Result], may_share: bool
-) -> Iterator[Task]:
-    """A second run of the rounds in which tests fail, unless these fail in all rounds anyway."""
-    failed = {
-        round: {end.test for end in result.ends if end.outcome == "failed"}
-        for (round, _), result in results.items()
-    }
-    if len(failed) > 1 and set.intersection(*failed.values()):
-        return
-    for round, tests in sorted(failed.items()):
-        if tests:
-            yield Task(_Run(round, 1), request.job(round, record=True), startup=300.0, may_share=may_share)
 
 
 def _refuse(result: Result, arguments: Sequence[str]) -> None:

@@ -6,7 +6,7 @@ Each is named with its seed and with the command that makes plain pytest draw th
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from mutabot.errors import BaselineError
 from mutabot.model import TestEnd
@@ -16,6 +16,17 @@ from .request import Request
 
 #: the tests that fail in all runs of a round, by (round, test)
 Failing = Mapping[tuple[int, str], TestEnd]
+
+
+def rounds_to_repeat(ends: Mapping[int, Iterable[TestEnd]]) -> list[int]:
+    """The rounds that a second run says more about: tests fail in them, and none fails in all rounds.
+
+    With a single round, that is the one if tests fail in it.
+    """
+    failed = {round: {end.test for end in these if end.outcome == "failed"} for round, these in ends.items()}
+    if len(failed) > 1 and set.intersection(*failed.values()):
+        return []
+    return [round for round, tests in sorted(failed.items()) if tests]
 
 
 def repeat_command(request: Request, round: int, test: str) -> str:
