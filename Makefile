@@ -5,7 +5,7 @@ VENV   := .venv
 RUN    := $(VENV)/bin/python
 READY  := $(VENV)/.ready
 
-.PHONY: demo test check format docs comparison bench stress clean
+.PHONY: demo test check format docs comparison bench stress shipped foreign clean
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
@@ -63,9 +63,22 @@ stress: $(READY)
 	$(RUN) benchmarks/ten_thousand.py
 	$(RUN) benchmarks/campaigns_in_a_row.py --count 200
 
+## compare the shipped vocabularies with the packages they describe, which get a virtual environment of their own
+shipped: $(VENV)-shipped/.ready
+	$(VENV)-shipped/bin/python tools/check_shipped.py --strict
+
+## slow: the recipes of docs/recipes as projects of their own: init, check, run, and mutants made by hand
+foreign: $(VENV)-shipped/.ready
+	$(VENV)-shipped/bin/python benchmarks/foreign_programs.py
+
+$(VENV)-shipped/.ready: tools/shipped.txt pyproject.toml
+	$(PYTHON) -m venv $(VENV)-shipped
+	$(VENV)-shipped/bin/python -m pip install --quiet --disable-pip-version-check -e . -r tools/shipped.txt
+	@touch $@
+
 $(READY): requirements.lock pyproject.toml tools/setup.sh
 	PYTHON=$(PYTHON) VENV=$(VENV) sh tools/setup.sh
 	@touch $@
 
 clean:
-	rm -rf $(VENV) examples/*/.mutabot .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(VENV)-shipped examples/*/.mutabot .mypy_cache .ruff_cache .pytest_cache

@@ -15,6 +15,7 @@ from typing import Any
 from mutabot import __version__
 from mutabot.errors import JournalError, NothingToDoError
 from mutabot.model import LeftOut, Mutant, Vocabulary, to_data
+from mutabot.vocabulary.load import shipped
 
 from .baseline import Baseline, take_baseline
 from .branching import Remainder
@@ -286,7 +287,7 @@ def _report(
         f"restless  {test} in round {round + 1}: equal runs differ in values"
         for round, test in sorted(baseline.restless)
     ]
-    lines += [f"unused    {target}: no test reaches it from the program or the oracle" for target in never]
+    lines += _unused(request.vocabulary, never)
     clock = request.vocabulary.clock
     if clock is not None and all(end.simulated is None for end in baseline.ends.values()):
         lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
@@ -310,6 +311,21 @@ def _report(
 
 def _why_left_out(baseline: Baseline) -> str:
     return "cannot matter" if baseline.program.left_out else "would change nothing"
+
+
+def _unused(vocabulary: Vocabulary, never: Sequence[str]) -> Iterator[str]:
+    """Operations that no test reaches; of a shipped vocabulary nobody uses all, so one line is enough."""
+    of = {operation.target: operation.source.partition(":")[0] for operation in vocabulary.operations}
+    ours = set(shipped())
+    yield from (
+        f"unused    {target}: no test reaches it from the program or the oracle"
+        for target in never
+        if of[target] not in ours
+    )
+    for name in sorted({of[target] for target in never} & ours):
+        there = sum(other == name for other in of.values())
+        unused = sum(of[target] == name for target in never)
+        yield f"unused    {unused} of {there} operations of the vocabulary {name!r}, which no test reaches"
 
 
 def _never_called(vocabulary: Vocabulary, baseline: Baseline) -> list[str]:

@@ -22,14 +22,16 @@ _SHIPPED = Path(__file__).parent / "shipped"
 def load(names: Sequence[str], root: Path) -> Vocabulary:
     """The vocabulary in these files, put together.
 
-    Each name is a file relative to ``root``, or the name of a vocabulary that mutabot ships.
+    Each name is a file relative to ``root``, or the name of a vocabulary that mutabot ships. What a file
+    says of a callable, the clock or a probe goes before what a shipped vocabulary says of it.
 
     Raises ConfigurationError, VocabularyError or UnknownNameError: the first mistake, with a message that
     tells about all of them.
     """
     merged = _Merged()
-    for name in dict.fromkeys(names):
-        merged.add(_find(name, root))
+    documents = [_find(name, root) for name in dict.fromkeys(names)]
+    for document, is_shipped in sorted(documents, key=lambda found: found[1]):
+        merged.add(document, is_shipped)
     check_operations(merged.read)
     raise_errors(merged.errors)
     return Vocabulary(
@@ -58,8 +60,9 @@ class _Merged:
     failures: list[str] = field(default_factory=list)
     clock: Clock | None = None
     probes: dict[str, Probe] = field(default_factory=dict)
+    own: set[str] = field(default_factory=set)
 
-    def add(self, document: Document) -> None:
+    def add(self, document: Document, is_shipped: bool) -> None:
         check = Check(document, self.errors)
         table = check.table(VocabularyTable, document.data, (), salvage=True)
         if table is None:
@@ -67,18 +70,26 @@ class _Merged:
         if not document.data:
             check.error((), "is empty; a vocabulary names operations: [[operation]]")
         for index, raw in enumerate(table.operation):
-            self._add_operation(check, read_operation(check, raw, ("operation", index)), index)
+            operation = read_operation(check, raw, ("operation", index))
+            if operation is not None and self._counts(operation.target, is_shipped):
+                self._add_operation(check, operation, index)
         for name in ("refusals", "checks", "failures"):
             check_targets(check, getattr(table, name), (name,))
             getattr(self, name).extend(getattr(table, name))
-        if table.clock is not None:
+        if table.clock is not None and self._counts("clock", is_shipped):
             self._add_clock(check, read_clock(check, table.clock, ("clock",)))
         for index, raw in enumerate(table.probe):
-            self._add_probe(check, read_probe(check, raw, ("probe", index)), index)
+            probe = read_probe(check, raw, ("probe", index))
+            if probe is not None and self._counts(f"probe {probe.target}", is_shipped):
+                self._add_probe(check, probe, index)
 
-    def _add_operation(self, check: Check, operation: Operation | None, index: int) -> None:
-        if operation is None:
-            return
+    def _counts(self, what: str, is_shipped: bool) -> bool:
+        """Whether a description is to be taken: the user's own, read first, go before shipped ones."""
+        if not is_shipped:
+            self.own.add(what)
+        return not is_shipped or what not in self.own
+
+    def _add_operation(self, check: Check, operation: Operation, index: int) -> None:
         place: Place = ("operation", index)
         known = self.read.get(operation.target)
         if known is None:
@@ -95,9 +106,7 @@ class _Merged:
             check.error(("clock",), f"there is another clock in {_file_of(self.clock.source)}")
         self.clock = self.clock or clock
 
-    def _add_probe(self, check: Check, probe: Probe | None, index: int) -> None:
-        if probe is None:
-            return
+    def _add_probe(self, check: Check, probe: Probe, index: int) -> None:
         known = self.probes.setdefault(probe.target, probe)
         if known.tolerance != probe.tolerance:
             check.error(
@@ -105,11 +114,12 @@ class _Merged:
             )
 
 
-def _find(name: str, root: Path) -> Document:
+def _find(name: str, root: Path) -> tuple[Document, bool]:
+    """The document of this name, and whether mutabot ships it."""
     if (root / name).is_file():
-        return Document.read(root / name, name)
+        return Document.read(root / name, name), False
     if name in shipped():
-        return Document.read(_SHIPPED / f"{name}.toml", name)
+        return Document.read(_SHIPPED / f"{name}.toml", name), True
     raise UnknownNameError("vocabulary", name, _known_names(root))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from mutabot.model import Operation
 from mutabot.vocabulary import load
@@ -21,16 +20,18 @@ class Known:
     Attributes:
         name: as the configuration names it.
         operations: its operations by target.
+        tick: what its clock counts, or None.
         seen: how many of the callables that were seen it describes.
     """
 
     name: str
     operations: Mapping[str, Operation]
+    tick: str | None
     seen: int
 
     def describes(self, call: SeenCall) -> bool:
-        """Whether it has this callable."""
-        return call.target in self.operations
+        """Whether it has this callable, as an operation or as its clock."""
+        return call.target in self.operations or call.target == self.tick
 
     def reads(self, call: SeenCall) -> bool:
         """Whether it has this callable as a reading."""
@@ -43,9 +44,11 @@ def known_vocabularies(layout: Layout, calls: Sequence[SeenCall]) -> list[Known]
     found = []
     imported = {name.partition(".")[0] for path in layout.program for name in imported_modules(path)}
     for name in shipped():
-        operations = {one.target: one for one in load([name], Path(layout.root)).operations}
+        vocabulary = load([name], layout.root)
+        operations = {one.target: one for one in vocabulary.operations}
         seen = sum(call.target in operations for call in calls)
         packages = {target.partition(":")[0].partition(".")[0] for target in operations}
         if seen or (not calls and packages & imported):
-            found.append(Known(name, operations, seen))
+            tick = vocabulary.clock.tick if vocabulary.clock is not None else None
+            found.append(Known(name, operations, tick, seen))
     return found

@@ -207,7 +207,8 @@ def _counted(found: _Look) -> str:
 
 def _about_vocabulary(found: _Look) -> str:
     commented = len(found.others) + len(found.unreached)
-    also = f"; {commented} more calls stand there as comments" if commented else ""
+    more = "1 more call stands" if commented == 1 else f"{commented} more calls stand"
+    also = f"; {more} there as comments" if commented else ""
     if found.found:
         noun = "operation" if len(found.found) == 1 else "operations"
         return f"wrote {VOCABULARY} with {len(found.found)} {noun}, guessed from names and values{also}"
