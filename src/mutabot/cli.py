@@ -178,6 +178,7 @@ def run(
         min_score=None if limit is None else limit / 100,
         max_timeouts=request.configuration.timeout_limit,
         max_unstable=request.configuration.unstable_limit,
+        max_errors=request.configuration.error_limit,
     )
     for line in decision.lines:
         typer.echo(line, err=True)

@@ -60,6 +60,26 @@ def test_time_outs_beyond_the_limit_have_their_own_exit_code(tmp_path: Path) -> 
     assert decide(found, max_timeouts=0.4).exit_code == 5
 
 
+def test_errors_beyond_the_limit_fail_before_all_else(tmp_path: Path) -> None:
+    outcomes = (
+        Outcome(SKIP.id, 0, Verdict.ERROR, message="NaN"),
+        Outcome(SKIP.id, 1, Verdict.UNSTABLE),
+        Outcome(REVERSE.id, 0, Verdict.KILLED, By.CHECK),
+        Outcome(REVERSE.id, 1, Verdict.KILLED, By.CHECK),
+    )
+    found = results(tmp_path, outcomes)
+    decision = decide(found, min_score=1.0, max_errors=0.2, max_unstable=0.0)
+    assert decision.exit_code == 4
+    assert decision.lines[0] == "1 of 4 outcomes are errors (25%); the limit is 20% (error_limit): mutants 2"
+    assert "unstable" in decision.lines[1]
+    assert decide(found, max_errors=0.25).exit_code == 0
+
+
+def test_nothing_but_errors_is_told_as_errors(tmp_path: Path) -> None:
+    found = results(tmp_path, (Outcome(SKIP.id, 0, Verdict.ERROR),))
+    assert decide(found, max_errors=0.0).exit_code == 4
+
+
 def test_a_campaign_that_still_runs_or_was_killed_says_which(tmp_path: Path) -> None:
     path = write_journal(tmp_path / "journal.sqlite", outcomes=OUTCOMES[:3], finish=None)
     with Journal.open(path) as journal:

@@ -29,7 +29,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "tests").mkdir()
     (tmp_path / "tests" / "sensors.py").write_text(samples.SENSORS)
     (tmp_path / "mutabot.toml").write_text(
-        'program = ["mission.py"]\nvocabulary = ["robot.toml"]\nseed = 7\n'
+        'program = ["mission.py"]\nvocabulary = ["robot.toml"]\nseed = 7\nerror_limit = 0.1\n'
     )
     (tmp_path / "robot.toml").write_text('[[operation]]\ncall = "robot:Arm.home"\n')
     monkeypatch.chdir(tmp_path)
@@ -233,6 +233,22 @@ def test_time_outs_beyond_the_limit_are_5(fake: Campaign) -> None:
     with (fake.project / "mutabot.toml").open("a") as file:
         file.write("timeout_limit = 0.5\n")
     assert main(["run"]) == 5
+
+
+def test_errors_are_4_and_told_first_unless_the_limit_allows_them(
+    fake: Campaign, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run"]) == 0  # one of the ten outcomes is an error, as the project allows
+    text = (fake.project / "mutabot.toml").read_text()
+    (fake.project / "mutabot.toml").write_text(text.replace("error_limit = 0.1", ""))
+    capsys.readouterr()
+    assert main(["run"]) == 4
+    out, err = capsys.readouterr()
+    assert err.splitlines()[-1].startswith("1 of 10 outcomes are errors (10%); the limit is 0% (error_limit)")
+    assert main(["results"]) == 0
+    for text in (out, capsys.readouterr().out):
+        first = text.index("1 of 10 outcomes ended in error")
+        assert first < min(text.index(word) for word in ("Mutants by rounds", "Scores", "survivors"))
 
 
 def test_unstable_outcomes_beyond_the_limit_are_4(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:

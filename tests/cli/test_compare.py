@@ -39,6 +39,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "tests").mkdir()
     (tmp_path / "mutabot.toml").write_text(
         'program = ["mission.py"]\nvocabulary = ["robot.toml"]\nseed = 7\nselection = "chosen.txt"\n'
+        "error_limit = 1\n"
     )
     (tmp_path / "robot.toml").write_text('[[operation]]\ncall = "robot:Arm.home"\n')
     monkeypatch.chdir(tmp_path)

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 PACKAGE = Path(__file__).parent / "package"
-USAGE, NOTHING_VALID = 2, 3
+USAGE, ERRORS = 2, 4
 
 #: approaches a wall until a laser says 10 cm; the test allows 2 cm either way
 PROJECT = {
@@ -220,6 +220,6 @@ def test_an_operator_that_fails_while_at_work_is_an_error_and_never_a_kill(
 ) -> None:
     site = broken_plug_in(tmp_path / "site", "late", BREAKS_LATE)
     done = mutabot(site, project, "run", "--json", "--only", "late")
-    end = mutants(done, code=NOTHING_VALID)["late"]["rounds"][0]
+    end = mutants(done, code=ERRORS)["late"]["rounds"][0]
     assert end["verdict"] == "error"
     assert end["message"] == "operator late: ValueError: broken while at work"

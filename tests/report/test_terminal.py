@@ -135,6 +135,18 @@ def test_a_second_look_is_told(tmp_path: Path, width: int) -> None:
     assert max(cell_len(line) for line in text.splitlines()) <= width
 
 
+@WIDTHS
+def test_errors_come_first_one_line_per_message(tmp_path: Path, width: int) -> None:
+    outcomes = [Outcome(mutant.id, 0, Verdict.ERROR, message="NaN\nmore") for mutant in samples.MUTANTS]
+    outcomes.append(Outcome(samples.SKIP.id, 1, Verdict.ERROR, message="no memory"))
+    path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=tuple(outcomes))
+    with Journal.open(path) as journal:
+        text = report(read_results(journal), width)
+    words = " ".join(text.partition("Mutants by rounds")[0].split())
+    assert "6 of 6 outcomes ended in error" in words
+    assert words.endswith("5 × NaN (mutants 1, 2, 3, 4, 5) 1 × no memory (mutant 2)")
+
+
 def test_survivors_come_with_a_reason_the_farthest_first(results: Results) -> None:
     text = report(results)
     section = text[text.index("survivors") :]

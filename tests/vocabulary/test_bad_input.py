@@ -334,6 +334,7 @@ CONFIGURATIONS: dict[str, tuple[str, list[str]]] = {
     "memory_without_unit": (GOOD + "memory = 4", [":4", "memory", "'4 GB'"]),
     "memory_in_words": (GOOD + 'memory = "much"', [":4", "'much'", "'4 GB'"]),
     "memory_with_braces": (GOOD + 'memory = "{4} GB"', [":4", "'{4} GB'"]),
+    "error_limit_in_percent": (GOOD + "error_limit = 25", [":4", "error_limit", "at most 1"]),
     "limit_in_percent": (GOOD + "unstable_limit = 10", [":4", "at most 1"]),
     "score_over_100": (GOOD + "min_score = 101", [":4", "at most 100"]),
     "no_such_selection": (GOOD + 'selection = "paper.txt"', [":4", "'paper.txt'"]),

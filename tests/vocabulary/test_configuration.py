@@ -48,6 +48,7 @@ def test_what_is_not_said_has_a_default(project: Path) -> None:
         memory=4_000_000_000,
         unstable_limit=0.1,
         timeout_limit=1.0,
+        error_limit=0.0,
         min_score=None,
         pytest_args=(),
         root=project.resolve(),
@@ -62,7 +63,8 @@ def test_everything_may_be_said_in_pyproject(project: Path) -> None:
         + GOOD
         + 'oracle = ["tests/sensors.py"]\ntests = ["tests/sensors.py::test_a", "-k", "not slow"]\n'
         + 'rounds = 5\nseed = 7\njobs = 2\nselection = "ids.txt"\ntimeout_factor = 3\ntimeout_seconds = 2.5\n'
-        + 'memory = "1.5 GB"\nunstable_limit = 0\ntimeout_limit = 0.5\nmin_score = 80\npytest_args = ["-q"]\n'
+        + 'memory = "1.5 GB"\nunstable_limit = 0\ntimeout_limit = 0.5\nerror_limit = 0.25\nmin_score = 80\n'
+        + 'pytest_args = ["-q"]\n'
     )
     configuration = load_configuration(project)
     assert configuration.file == "pyproject.toml"
@@ -70,6 +72,7 @@ def test_everything_may_be_said_in_pyproject(project: Path) -> None:
     assert configuration.tests == ("tests/sensors.py::test_a", "-k", "not slow")
     assert (configuration.rounds, configuration.seed, configuration.jobs) == (5, 7, 2)
     assert (configuration.memory, configuration.min_score) == (1_500_000_000, 80)
+    assert (configuration.timeout_limit, configuration.error_limit) == (0.5, 0.25)
 
 
 @pytest.mark.parametrize(

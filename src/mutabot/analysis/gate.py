@@ -30,17 +30,23 @@ def decide(
     min_score: float | None = None,
     max_timeouts: float | None = None,
     max_unstable: float | None = None,
+    max_errors: float | None = None,
 ) -> Decision:
     """Hold the results against the limits.
 
     ``min_score`` (0 … 1) holds for every printed mean score, that is for each family and role on its own:
     a good score of the oracle never hides a poor one of the program. ``max_timeouts`` (0 … 1) is the
     greatest share of time-outs among the valid outcomes. ``max_unstable`` is the greatest share of flaky
-    tests among the tests, and of unstable outcomes among all. A disagreement that ``--verify`` found always
+    tests among the tests, and of unstable outcomes among all; ``max_errors`` the greatest share of errors
+    among all outcomes: mutants of which nothing is known. A disagreement that ``--verify`` found always
     fails.
     """
     total = results.all.total
-    unstable = (*_disagreements(results), *_too_unstable(results, max_unstable))
+    unstable = (
+        *_too_many(results, Verdict.ERROR, "errors", max_errors, "error_limit"),
+        *_disagreements(results),
+        *_too_unstable(results, max_unstable),
+    )
     if unstable:
         return Decision(UNSTABLE, unstable)
     if not total.valid:
@@ -68,14 +74,21 @@ def _too_unstable(results: Results, limit: float | None) -> tuple[str, ...]:
     if limit is None:
         return ()
     lines = [results.flaky.text(limit)] if results.flaky.share > limit else []
+    return (*lines, *_too_many(results, Verdict.UNSTABLE, "unstable", limit, "unstable_limit"))
+
+
+def _too_many(
+    results: Results, verdict: Verdict, words: str, limit: float | None, key: str
+) -> tuple[str, ...]:
+    """A line if more outcomes than the limit allows ended so."""
     counts = results.all.total.counts
-    unstable, run = counts.get(Verdict.UNSTABLE, 0), sum(counts.values())
-    if run and unstable / run > limit:
-        numbers = [str(result.mutant.number) for result, _ in results.with_verdict(Verdict.UNSTABLE)]
-        shown = ", ".join(numbers[:20]) + (" …" if len(numbers) > 20 else "")
-        text = f"{unstable} of {run} outcomes are unstable ({unstable / run:.0%})"
-        lines.append(f"{text}; the limit is {limit:.0%} (unstable_limit): mutants {shown}")
-    return tuple(lines)
+    count, run = counts.get(verdict, 0), sum(counts.values())
+    if limit is None or not run or count / run <= limit:
+        return ()
+    numbers = [str(result.mutant.number) for result, _ in results.with_verdict(verdict)]
+    shown = ", ".join(numbers[:20]) + (" …" if len(numbers) > 20 else "")
+    text = f"{count} of {run} outcomes are {words} ({count / run:.0%})"
+    return (f"{text}; the limit is {limit:.0%} ({key}): mutants {shown}",)
 
 
 def _nothing_valid(results: Results) -> str:

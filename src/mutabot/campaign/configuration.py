@@ -65,6 +65,7 @@ class Settings(BaseModel):
     memory: Annotated[int, BeforeValidator(parse_memory)] = 4_000_000_000
     unstable_limit: _Share = 0.1
     timeout_limit: _Share = 1.0
+    error_limit: _Share = 0.0
     min_score: Annotated[float, Field(ge=0, le=100)] | None = None
     pytest_args: _Texts = ()
     families: _Families = ("robot",)
@@ -87,7 +88,7 @@ class Configuration(Settings):
         timeout_factor: how many times the baseline's operations and simulated time a mutant may use.
         timeout_seconds: wall-clock time in seconds that every test gets at least.
         memory: address space of a worker, in bytes.
-        unstable_limit, timeout_limit: fraction of mutants above which a run fails.
+        unstable_limit, timeout_limit, error_limit: share of outcomes above which a run fails.
         min_score: score in percent below which a run fails; None for no limit.
         pytest_args: further pytest arguments.
         families: families of the mutants to plant: ``robot``, ``classical``, ``text``.

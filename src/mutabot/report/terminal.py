@@ -28,6 +28,7 @@ from .console import (
     plural,
     short_place,
 )
+from .errors import error_lines
 from .marks import counted, legend, mark_of
 
 #: verdicts outside the score that a user should look at, in this order
@@ -53,6 +54,7 @@ def print_results(console: Console, results: Results, *, everything: bool = Fals
 def _parts(results: Results, width: int, everything: bool) -> Iterator[RenderableType]:
     yield Text(_title(results), style="bold")
     yield Text(_circumstances(results), style="dim")
+    yield from error_lines(results)
     if results.mutants:
         yield heading("Mutants by rounds")
         yield mutant_table(results, width)
