@@ -50,8 +50,16 @@ TAIL = """\
 ## Your own operators
 
 An operator is a class with a name, a summary, examples and three methods. The contract is
-`src/mutabot/operators/operator.py`, the shortest example `src/mutabot/operators/skip.py`. Name the class
-under the entry point `mutabot.operators` of any installed package, and every campaign uses it:
+`src/mutabot/operators/operator.py`, the shortest example `src/mutabot/operators/skip.py`. What it needs it
+declares on the class:
+
+| attribute | what it gets or promises |
+|---|---|
+| `asks_where = True` | `call.current` tells where the robot is; used only where the vocabulary says |
+| `asks_idle = True` | `call.idle` is what to answer while the robot does nothing; used only where known |
+| `does_nothing = True` | no call reaches the robot: one that would is an error, never a verdict |
+
+Name the class under the entry point `mutabot.operators` of any installed package, and every campaign uses it:
 
 ```toml
 [project.entry-points."mutabot.operators"]
@@ -93,11 +101,21 @@ def _section(each: Operator) -> Iterator[str]:
     for example in acting:
         yield _row(_before(example), _after(example), *([example.note] if noted else []))
     yield ""
+    yield from _promises(each)
     staying = [example for example in each.examples if example.away]
     if staying:
         yield "It stays away where it would change nothing, or nothing the robot takes:\n"
         yield from (f"- {_before(example)}: {example.away}" for example in staying)
         yield ""
+
+
+def _promises(each: Operator) -> Iterator[str]:
+    if each.asks_idle:
+        yield (
+            "The program gets what the command answered in the unmutated run of the same test; where\n"
+            "answers changed from call to call, the robot's last one, since the world stands still: see\n"
+            "[answers to doing nothing](vocabulary.md#answers-to-doing-nothing).\n"
+        )
 
 
 def _before(example: Example) -> str:

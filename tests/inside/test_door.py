@@ -177,7 +177,7 @@ USE = (
         ("repeat", None, (True, ["close", "close"])),
         ("skip", True, (True, [])),
         ("skip", None, (None, [])),
-        ("skip", {"opaque": "robot:Result"}, (True, ["close"])),
+        ("skip", {"answers": [{"tuple": [1, 2]}]}, ((1, 2), [])),
     ],
 )
 def test_commands_are_left_out_repeated_and_turned_round(

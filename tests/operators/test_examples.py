@@ -57,9 +57,17 @@ def test_every_operator_shows_where_it_acts(name: str) -> None:
     assert operator(name).summary
 
 
-@pytest.mark.parametrize("name", [n for n in names() if n not in ("skip", "repeat")])
+@pytest.mark.parametrize("name", names())
 def test_operators_on_values_show_where_they_stay_away(name: str) -> None:
-    assert any(example.away for example in operator(name).examples)
+    examples = operator(name).examples
+    is_on_values = any(example.subject.quantity is not None for example in examples)
+    assert any(example.away for example in examples) == is_on_values
+
+
+@pytest.mark.parametrize(("name", "index"), CASES)
+def test_operators_keep_what_they_promise_about_doing_nothing(name: str, index: int) -> None:
+    example = example_of(name, index)
+    assert operator(name).does_nothing == (not example.away and not example.performed)
 
 
 @pytest.mark.parametrize(("name", "index"), [case for case in CASES if case[0] not in CONTROLS])

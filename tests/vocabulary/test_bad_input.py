@@ -50,6 +50,13 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
     ),
     "call_as_number": ("[[operation]]\ncall = 3", ["robot.toml:2", "call", "expected text", "number 3"]),
     "operation_as_number": ("operation = [3]", ["robot.toml:1", "expected a table", "number 3"]),
+    "idle_as_date": (
+        GOOD_OPERATION + "idle = 2024-01-01",
+        ["robot.toml:3", "idle", "must be a text", "date"],
+    ),
+    "idle_deep_inside": (GOOD_OPERATION + "idle = { a = [07:30:00] }", ["idle.a", "time 07:30:00"]),
+    "idle_without_colon": (GOOD_OPERATION + 'idle = { call = "home" }', ["idle.call", "no colon"]),
+    "idle_call_as_number": (GOOD_OPERATION + "idle = { call = 3 }", ["idle.call", "text", "number 3"]),
     "says_nothing": (GOOD_OPERATION + "command = false", ["robot.toml:1", "says nothing"]),
     "same_call_twice": (
         GOOD_OPERATION + GOOD_OPERATION + 'refusals = ["a:B"]',

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from mutabot import vocabulary as package
 from mutabot.model import Clock, Kind, Mode, Operation, Probe, Vocabulary
+from mutabot.model.answer import restore
 from mutabot.vocabulary import load
 from mutabot.vocabulary.load import shipped
 
@@ -245,6 +247,28 @@ def test_a_rotation_of_a_joint_may_be_told_by_the_joint_angle(tmp_path: Path) ->
     result."[0:7]" = { kind = "angle", axis = "j1..j7", unit = "rad" }
     """
     assert len(loaded(tmp_path, text).operations) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("idle = 3", 3),
+        ("idle = ''", ""),
+        ("idle = [true, [2.5]]", [True, [2.5]]),
+        ("idle = { a = 1, b.c = [2] }", {"a": 1, "b": {"c": [2]}}),
+        ("idle = { call = 'math:sqrt', b = 1 }", {"call": "math:sqrt", "b": 1}),
+        ("idle = { call = 'builtins:dict' }", {}),
+    ],
+)
+def test_an_answer_to_doing_nothing_is_what_toml_says(text: str, expected: Any, tmp_path: Path) -> None:
+    assert restore(only(tmp_path, text).idle, {}) == expected
+
+
+def test_each_text_command_may_have_an_answer_of_its_own(tmp_path: Path) -> None:
+    found = only(
+        tmp_path, "message = 'text'\nidle = 'no'\npatterns = [{ text = 'a', idle = 'yes' }, { text = 'b' }]"
+    )
+    assert [found.idle, *(pattern.idle for pattern in found.patterns)] == ["no", "yes", None]
 
 
 def test_opposites_name_each_other(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from mutabot.model.job import Line
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 
+from .answers import Answers
 from .comparison import Event, Observation, compare
 from .failing import refuse_failing, rounds_to_repeat, why_set_aside
 from .places import Place
@@ -41,11 +42,10 @@ class _Run:
 
 @dataclass(frozen=True, slots=True)
 class Hit:
-    """One recorded call: the values it wrote and read, and what a command returned."""
+    """One recorded call: the values it wrote and read."""
 
     written: Mapping[str, Any]
     read: Mapping[str, Any]
-    returned: Any
 
 
 @dataclass(slots=True)
@@ -57,6 +57,7 @@ class Baseline:
             A test that was skipped or failed as expected belongs to them: a mutant can make it fail.
         ends: the report of each (round, test), from the first repetition.
         hits: recorded calls by place, in the order in which places were first reached.
+        answers: what these calls returned.
         reaching: (round, place) to the tests that reach it, fastest first.
         observations: (round, test) to what is compared with a mutant's.
         unstable: tests set aside as flaky, with the reason, by (round, test).
@@ -72,6 +73,7 @@ class Baseline:
     tests: list[list[str]] = field(default_factory=list)
     ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
     hits: dict[Place, list[Hit]] = field(default_factory=dict)
+    answers: dict[Place, Answers] = field(default_factory=dict)
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
@@ -337,9 +339,10 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
         if end.test not in good:
             _add_set_aside(baseline, round, end.test, {places[index] for index, *_ in end.trace})
             continue
-        for index, written, read, returned in end.trace:
+        for index, written, read, answer in end.trace:
             place = places[index]
-            baseline.hits.setdefault(place, []).append(Hit(written, read, returned))
+            baseline.hits.setdefault(place, []).append(Hit(written, read))
+            baseline.answers.setdefault(place, Answers()).add(round, end.test, answer)
             tests = reaching.setdefault(place, [])
             if end.test not in tests:
                 tests.append(end.test)

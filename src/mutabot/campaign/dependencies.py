@@ -24,6 +24,7 @@ from typing import Any
 
 import mutabot
 from mutabot.model import Mutant, Vocabulary, to_data
+from mutabot.model.idle import Idle
 
 from .baseline import Baseline
 from .request import Request
@@ -186,17 +187,17 @@ class Dependencies:
         The second is that of tests that had turned out to pass only together with all others.
         """
         selections = (self._baseline.judges(round, mutant), tuple(self._baseline.tests[round]))
-        own = _digest([self._own(single) for single in mutant.singles])
+        own = _digest([self._own(single, round) for single in mutant.singles])
         return tuple(
             f"{self._common} {self._of_place(round, tests, self._operations_of(mutant))} {own}"
             for tests in dict.fromkeys(selections)
         )
 
-    def _own(self, mutant: Mutant) -> list[Any]:
+    def _own(self, mutant: Mutant, round: int) -> list[Any]:
         """What a mutant does, beyond what its id says; of one in the program text, what it reads there."""
         planted = self._baseline.program.planted.get(mutant.id)
         if planted is None:
-            return [mutant.idle, mutant.pattern]
+            return [Idle.of(mutant.idle).in_round(round), mutant.pattern]
         return [to_data(planted.place.alternatives[planted.choice.index])]
 
     def new_parts(self) -> Mapping[str, Parts]:

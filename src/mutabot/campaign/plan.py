@@ -13,6 +13,7 @@ from mutabot.model.quantity import is_reading_of
 from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.driving import Passage, rehearse
 
+from .answers import NoAnswerError, idle_of
 from .baseline import Baseline, Hit
 from .places import Place
 from .sampling import Drawing
@@ -60,8 +61,15 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary) -> Plan:
             if rule.asks_where and not _is_told(subject, vocabulary):
                 reason = f"{operation.current or 'no reading'} does not tell where it is"
             mutant = replace(mutant, description=_description(rule, subject, place, seen))
+            if rule.asks_idle and reason is None:
+                try:
+                    mutant = replace(
+                        mutant, idle=idle_of(operation, subject.pattern, baseline.answers[place])
+                    )
+                except NoAnswerError as error:
+                    reason = str(error)
             if reason is None:
-                mutants.append(replace(mutant, idle=_idle(hits) if rule.name == "skip" else None))
+                mutants.append(mutant)
             else:
                 left_out.append(LeftOut(mutant.id, mutant.description, reason))
     return Plan(mutants, left_out)
@@ -140,13 +148,26 @@ def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
 def _rehearsal(rule: Operator, subject: Subject, hit: Hit) -> Passage:
     call = Call(subject.operation, subject.pattern, hit.written, idle=Reply())
     try:
-        return rehearse(rule.middleware(subject, Random(1)), call, hit.read, operator=rule.name)
+        passage = rehearse(rule.middleware(subject, Random(1)), call, hit.read, operator=rule.name)
     except (LookupError, OperatorError):
         raise
     except Exception as error:  # as above: a plug-in's own fault
         raise OperatorError(
             f"operator {rule.name!r} fails on {subject.operation.target}: {error!r}", operator=rule.name
         ) from error
+    _check_promises(rule, subject, passage)
+    return passage
+
+
+def _check_promises(rule: Operator, subject: Subject, passage: Passage) -> None:
+    broken = None
+    if rule.does_nothing and passage.performed:
+        broken = "declares does_nothing, but makes the call"
+    elif not rule.asks_idle and not passage.performed and passage.received is passage.call.idle:
+        broken = "answers with call.idle, but does not declare asks_idle = True"
+    if broken is not None:
+        text = f"operator {rule.name!r} {broken} (on {subject.operation.target})"
+        raise OperatorError(text, operator=rule.name)
 
 
 def _value(subject: Subject, hit: Hit) -> Any:
@@ -177,7 +198,3 @@ def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen) ->
     if subject.pattern is not None:
         what = f"{what}({subject.pattern.name!r})"
     return f"{what}: {rule.describe(subject, seen.before, seen.after)}"
-
-
-def _idle(hits: list[Hit]) -> Any:
-    return hits[0].returned if hits else None

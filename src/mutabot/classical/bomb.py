@@ -46,4 +46,4 @@ class Bomb(ClassicalOperator):
             node.value, cst.SimpleString | cst.ConcatenatedString | cst.Ellipsis
         ):
             return
-        yield Draft("", (f"{HELPER}.bomb()",), shown=("Bomb()",))
+        yield Draft("", (f"{HELPER}.bomb()",), shown=("Bomb()",), raises=True)

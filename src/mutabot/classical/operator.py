@@ -26,12 +26,14 @@ class Draft:
         parts: text, and nodes of the original that are kept.
         needs: kind of value that the place must have; empty for any (see ``Alternative.needs``).
         shown: parts as the program text would show them, where that differs.
+        raises: whether it raises whatever happens, so that nothing of the original can follow.
     """
 
     variant: str
     parts: tuple[str | cst.CSTNode, ...]
     needs: str = ""
     shown: tuple[str | cst.CSTNode, ...] | None = None
+    raises: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,12 +82,15 @@ class ClassicalOperator(ABC):
         family: ``classical`` or ``text``.
         summary: one sentence for the documentation.
         examples: worked examples; they are tests and documentation at once.
+        asks_variables: whether it is asked once more after the baseline, with the variables that were in
+            scope at a place (``with_variables``).
     """
 
     name: ClassVar[str]
     family: ClassVar[str] = "classical"
     summary: ClassVar[str]
     examples: ClassVar[tuple[Example, ...]] = ()
+    asks_variables: ClassVar[bool] = False
 
     @abstractmethod
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:

@@ -120,7 +120,7 @@ class _Finder(cst.CSTVisitor):
         self.seeds: list[_Seed] = []
         self._rules = rules
         self._index = index
-        self._variables = any(rule.name == "SVR" for rule in rules)
+        self._variables = any(rule.asks_variables for rule in rules)
         self._elifs: set[cst.CSTNode] = set()
 
     def on_visit(self, node: cst.CSTNode) -> bool:
@@ -168,7 +168,9 @@ class _Finder(cst.CSTVisitor):
         seed.kept += [extent for extent in extents if extent not in seed.kept]
         made = template(draft.parts, lambda node: seed.kept.index(self.extents.of(node)))
         text = shown(draft.shown or draft.parts, lambda node: self.extents.segment(self.extents.of(node)))
-        seed.alternatives.append(Alternative(rule.name, draft.variant, made, text, draft.needs, rule.family))
+        seed.alternatives.append(
+            Alternative(rule.name, draft.variant, made, text, draft.needs, rule.family, draft.raises)
+        )
 
 
 def _with_occurrence(place: TextPlace, occurrence: int) -> TextPlace:

@@ -20,6 +20,7 @@ class VariableReplacement(ClassicalOperator):
     """Replaces a variable by each other one of the same type that is in scope."""
 
     name = "SVR"
+    asks_variables = True
     summary = "A variable becomes another one in scope that had a value of the same type."
     examples: ClassVar[tuple[Example, ...]] = (
         Example("move(x)\n", ("move(y)\n", "move(z)\n"), variables={"x": ("y", "z")}),
@@ -37,7 +38,7 @@ class VariableReplacement(ClassicalOperator):
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
         return ()
 
-    @staticmethod
-    def with_variables(names: Iterable[str]) -> Iterable[Alternative]:
+    @classmethod
+    def with_variables(cls, names: Iterable[str]) -> Iterable[Alternative]:
         """Alternatives of a variable for which these names could stand."""
-        return [Alternative("SVR", name, name, name) for name in names]
+        return [Alternative(cls.name, name, name, name) for name in names]

@@ -9,12 +9,15 @@ from dataclasses import dataclass, field, replace
 from random import Random
 from typing import Any
 
+from mutabot.errors import OperatorError
 from mutabot.model import Call, Middleware, Mutant, Operation, Reply, Span
-from mutabot.operators import Subject, operator
+from mutabot.model.answer import restore
+from mutabot.model.idle import Idle
+from mutabot.operators import Operator, Subject, operator
 from mutabot.operators.control import FatalFault
 from mutabot.operators.driving import Carried, Passage, passed, run
 
-from .door import Door
+from .door import Door, here
 from .intercept import NotFoundError, resolve
 from .leaves import leaves
 
@@ -83,6 +86,7 @@ class Activation:
         on_act: told when it changes something for the first time in a test.
         on_call: told when a mutated call begins (True) and when it has returned or raised (False).
         evidence: what it did in the running test.
+        rule: its operator.
     """
 
     mutant: Mutant
@@ -91,12 +95,18 @@ class Activation:
     on_act: Callable[[], None]
     on_call: Callable[[bool], None]
     evidence: Evidence = field(default_factory=Evidence)
+    rule: Operator = field(init=False)
     _middleware: Middleware | None = None
+    _idle: Idle | None = None
+    _test: tuple[int, str] = (0, "")
 
-    def start(self, seed: int) -> None:
+    def start(self, seed: int, round: int = 0, test: str = "") -> None:
         """A new test begins; the mutant's randomness follows from ``seed`` alone."""
         self.evidence = Evidence()
-        self._middleware = operator(self.mutant.operator).middleware(self._subject(), Random(seed))
+        self.rule = operator(self.mutant.operator)
+        self._middleware = self.rule.middleware(self._subject(), Random(seed))
+        self._idle = Idle.of(self.mutant.idle) if self.rule.asks_idle else None
+        self._test = (round, test)
 
     def is_here(self, span: Span, target: str) -> bool:
         """Whether calls of this operation at this place are the mutant's, bar the text command."""
@@ -114,19 +124,20 @@ class Activation:
         """Make an async call as the mutant: (what the program receives, the robot's last answer)."""
         assert self._middleware is not None
         self.evidence.hits += 1
-        call = self._with_idle(call)
         passage = Passage(call)
         performer = _Performer(self, door, passage, awaits)
         try:
+            if self._idle is not None:
+                passage.call = replace(call, idle=self._answer(self._idle, door, call))
             reply = await passed(passage, self._middleware, performer.proceed)
             self._note(passage)
             last = passage.answered[-1] if passage.answered else None
-            return door.result(call, reply, last), last
+            return door.result(passage.call, reply, last), last
         except BaseException as error:
             self._note(passage)
             if isinstance(error, FatalFault):
                 self.evidence.acted += 1
-            elif performer.raised is None:
+            elif performer.raised is None and self.evidence.failure is None:
                 # neither the robot nor the program: the operator or the vocabulary is at fault
                 self.evidence.failure = f"operator {self.mutant.operator}: {type(error).__name__}: {error}"
             raise
@@ -138,14 +149,17 @@ class Activation:
         named = next((quantity for quantity in quantities if quantity.name == self.mutant.quantity), None)
         return replace(subject, quantity=named)
 
-    def _with_idle(self, call: Call) -> Call:
-        """The call with what the command answered in the baseline, if that is a plain value.
+    def _answer(self, idle: Idle, door: Door, call: Call) -> Reply:
+        """What the command answers while the robot does nothing: what it answered here in the baseline.
 
-        Otherwise what it answered last in this test is the best that can be given; the first time there is
-        nothing to give, and the command is carried out.
+        Where that changed from call to call it tells something about the world, which stands still now: so
+        the robot's last answer in this test goes first, if it has given one.
         """
-        recorded = self.mutant.idle
-        return call if isinstance(recorded, dict) else replace(call, idle=Reply({}, recorded))
+        if idle.is_varying(*self._test):
+            last = door.last_answer(call)
+            if last is not None:
+                return last
+        return Reply({}, restore(idle.first(*self._test), here(call)))
 
     def _note(self, passage: Passage) -> None:
         if not passage.acted:
@@ -177,6 +191,11 @@ class _Performer:
     raised: BaseException | None = None
 
     async def proceed(self, call: Call) -> Reply:
+        if self.activation.rule.does_nothing:
+            name = self.activation.mutant.operator
+            text = f"operator {name} is to do nothing, but would have made the call"
+            self.activation.evidence.failure = text
+            raise OperatorError(text, operator=name)
         mutated = self.passage.changed_command
         if mutated:
             self.activation.on_call(True)

@@ -6,7 +6,6 @@ arguments, performs the call, and does the same with the result. The user's own 
 
 from __future__ import annotations
 
-import copy
 import inspect
 import sys
 from collections.abc import Callable, Mapping
@@ -15,10 +14,12 @@ from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.model import Call, Operation, Pattern, Quantity, Reply
+from mutabot.model.answer import NotKeptError, keep, restore
 from mutabot.model.notation import Notation
 from mutabot.model.quantity import Value, is_reading_of
 from mutabot.operators.driving import same
 
+from .answers import snapshot
 from .arguments import Arguments, signature_for
 from .intercept import resolve
 
@@ -86,9 +87,7 @@ class Door:
         async def current(quantity: Quantity) -> float:
             return await self._where(quantity, invocation)
 
-        return Call(
-            self.operation, pattern, values, current=current, idle=self._idle(pattern), payload=invocation
-        )
+        return Call(self.operation, pattern, values, current=current, payload=invocation)
 
     def perform(self, call: Call, original: Call) -> Any:
         """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
@@ -120,7 +119,8 @@ class Door:
                 continue
             if value is not None:
                 values[quantity.name] = value
-        self._last_replies[_text_of(call.pattern)] = result
+        if self.operation.command:
+            self._last_replies[_text_of(call.pattern)] = snapshot(result)
         return Reply(values, result)
 
     def result(self, call: Call, reply: Reply, original: Reply | None) -> Any:
@@ -244,15 +244,27 @@ class Door:
                 return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
         raise LookupError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
 
-    def _idle(self, pattern: Pattern | None) -> Reply | None:
-        """What this command would answer if the robot did nothing: what it answered last."""
-        if _text_of(pattern) not in self._last_replies:
+    def last_answer(self, call: Call) -> Reply | None:
+        """What the robot answered last to this command in the running test; None if it has not yet.
+
+        A copy, so that the program cannot change it; the object itself where that cannot be copied safely.
+        """
+        if _text_of(call.pattern) not in self._last_replies:
             return None
-        last = self._last_replies[_text_of(pattern)]
+        last = self._last_replies[_text_of(call.pattern)]
+        known = here(call)
         try:
-            return Reply({}, copy.copy(last))
-        except Exception:  # a result that cannot be copied: better the object itself than a broken program
+            return Reply({}, restore(keep(last, known), known))
+        except NotKeptError:
             return Reply({}, last)
+
+
+def here(call: Call) -> dict[str, Any]:
+    """What a call knows before it is made, by name: the instance as ``self``, and the arguments."""
+    invocation: Invocation = call.payload
+    known = {} if invocation.instance is None else {"self": invocation.instance}
+    given = invocation.arguments.values if invocation.arguments is not None else {}
+    return {**given, **known}
 
 
 def _text_of(pattern: Pattern | None) -> str | None:

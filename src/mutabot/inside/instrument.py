@@ -142,15 +142,15 @@ class _Instrumenter(ast.NodeTransformer):
     def _statement(self, node: ast.stmt, place: TextPlace) -> list[ast.stmt]:
         if self._record:
             return self._statement_seen(node, place)
-        others = [(one.operator, _statement_of(one, place, node)) for one in place.alternatives]
+        others = [_statement_of(one, place, node) for one in place.alternatives]
         self.generic_visit(node)
         if not others:
             return [node]
-        raising = all(operator == "BSR" for operator, _ in others)
+        raising = all(one.raises for one in place.alternatives)
         tells = ast.Call(ast.Attribute(_switch(0), "tell", ast.Load()), [ast.Constant(place.number)], [])
-        chain: list[ast.stmt] = [others[-1][1]]
+        chain: list[ast.stmt] = [others[-1]]
         for index in reversed(range(len(others) - 1)):
-            chain = [_at(ast.If(_is_index(place, index), [others[index][1]], chain), node)]
+            chain = [_at(ast.If(_is_index(place, index), [others[index]], chain), node)]
         if raising:
             return [_at(ast.If(_is_chosen(place), chain, []), node), node]
         return [_at(ast.If(_is_chosen(place), [_at(ast.Expr(tells), node), *chain], [node]), node)]

@@ -8,6 +8,8 @@ from typing import Any
 
 from mutabot.model import Role, SiteSeen, Span
 
+from .answers import Answers, Returned
+
 #: hits per test that are reported with their values; a test is compared and planned from these
 TRACE_LIMIT = 5000
 
@@ -18,12 +20,14 @@ class Recorder:
 
     Attributes:
         on_site: told about each site when it is first reached.
-        trace: hits of the running test: site index, written values, read values, returned plain value.
+        answers: notes what commands answered, in the baseline; None in all other sessions.
+        trace: hits of the running test: site index, written values, read values, note of the answer.
         truncated: whether hits were left out of the trace.
         sites: all sites reached so far, in the order of their indexes.
     """
 
     on_site: Callable[[SiteSeen], None]
+    answers: Answers | None = None
     trace: list[tuple[Any, ...]] = field(default_factory=list)
     truncated: bool = False
     sites: list[SiteSeen] = field(default_factory=list)
@@ -33,6 +37,8 @@ class Recorder:
         """A new test begins."""
         self.trace = []
         self.truncated = False
+        if self.answers is not None:
+            self.answers.start()
 
     def hit(
         self,
@@ -42,9 +48,9 @@ class Recorder:
         pattern: str | None,
         written: Mapping[str, Any],
         read: Mapping[str, Any],
-        returned: Any,
+        returned: Returned | None,
     ) -> None:
-        """One call at a site has been made."""
+        """One call at a site has been made; ``returned`` is None if it raised."""
         if len(self.trace) >= TRACE_LIMIT:
             self.truncated = True
             return
@@ -54,7 +60,8 @@ class Recorder:
             index = self._indexes[key] = len(self._indexes)
             self.sites.append(SiteSeen(index, span, operation, pattern, role is Role.ORACLE))
             self.on_site(self.sites[-1])
-        self.trace.append((index, _frozen(written), _frozen(read), plain_result(returned)))
+        answer = self.answers.note(index, returned) if self.answers is not None else None
+        self.trace.append((index, _frozen(written), _frozen(read), answer))
 
     def sites_of_trace(self) -> tuple[SiteSeen, ...]:
         """The sites that the running test's trace refers to."""
@@ -71,10 +78,3 @@ def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
         else value
         for name, value in values.items()
     }
-
-
-def plain_result(result: Any) -> Any:
-    """A command's result if it is a plain value, else what type it has."""
-    if result is None or isinstance(result, bool | int | float | str):
-        return result
-    return {"opaque": f"{type(result).__module__}:{type(result).__qualname__}"}

@@ -30,9 +30,10 @@ from mutabot.model import (
 )
 
 from .activate import Activation, Evidence, together
+from .answers import Answers, Returned
 from .branch import Trunk
 from .clock import ClockReader
-from .door import Door
+from .door import Door, here
 from .inspection import why_not_asked
 from .instances import Instances
 from .intercept import Handler, Interception, NotFoundError, resolve
@@ -154,6 +155,8 @@ class Session:
         self._parts.clear()
         self._look_for_subclasses()
         self.meter = Meter(self.job.budgets.get(test, Budget()))
+        is_baseline = self.job.record and self.job.mutant is None and self.job.branching is None
+        self.recorder.answers = Answers.of(self.job.vocabulary) if is_baseline else None
         self.recorder.start()
         self.instances.start()
         for door in self._doors:
@@ -184,7 +187,8 @@ class Session:
 
     def _start_activations(self) -> None:
         for activation in self.activations:
-            activation.start(derive(self.job.seed, self.job.round, self.test, activation.mutant.id))
+            seed = derive(self.job.seed, self.job.round, self.test, activation.mutant.id)
+            activation.start(seed, self.job.round, self.test)
 
     def end_test(self) -> None:
         """The test and its fixtures are over."""
@@ -246,12 +250,22 @@ class Session:
             self._check_current(operation)
         for tell in self._unfit.values():
             tell()
+        self._check_idle()
         self._check_exceptions()
         for probe in self.job.vocabulary.probes:
             # what its objects have is not known to a class
             owner = self._look_up(probe.source, "call", probe.owner or probe.target)
             if owner is not None and probe.owner and not isinstance(owner, type):
                 self._look_up(probe.source, "call", probe.target)
+
+    def _check_idle(self) -> None:
+        """Functions that make the answer of a command that is left out."""
+        for operation in self.job.vocabulary.operations:
+            for idle in (operation.idle, *(pattern.idle for pattern in operation.patterns)):
+                call = idle.get("call") if isinstance(idle, dict) else None
+                found = self._look_up(operation.source, "idle", call) if call is not None else None
+                if found is not None and not callable(found):
+                    self._tell(operation.source, "idle", f"{call} is {type(found).__name__}, not a function")
 
     def _check_exceptions(self) -> None:
         """A misspelt refusal would turn refusals into kills; so each name must be an exception."""
@@ -413,7 +427,8 @@ class Session:
         span, role = located
         pattern = call.pattern.text if call.pattern is not None else None
         read = reply.values if reply is not None else {}
-        returned = reply.payload if reply is not None and call.operation.command else None
+        is_wanted = self.recorder.answers is not None and reply is not None
+        returned = Returned(reply.payload, here(call)) if reply is not None and is_wanted else None
         self.recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned)
         if self.job.inspect:
             self._fit.setdefault(call.operation.target, set()).update(read)

@@ -40,6 +40,7 @@ class Alternative:
         text: how the place would read in the program text.
         needs: kind of value that it takes: ``number``, ``integer``, ``truth``, ``bits``; empty for any.
         family: ``classical`` or ``text``.
+        raises: whether a statement raises whatever happens, so that the original never follows it.
 
     Example: ``Alternative("AOR", "sub", "__kept_0__ - __kept_1__", "x - y", needs="number")``.
     """
@@ -50,6 +51,7 @@ class Alternative:
     text: str
     needs: str = ""
     family: str = "classical"
+    raises: bool = False
 
 
 @dataclass(frozen=True, slots=True)

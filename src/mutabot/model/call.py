@@ -44,7 +44,8 @@ class Call:
         reversed: whether the opposite of the operation or pattern is to be done.
         current: tells where a written quantity is now, in that quantity's unit; raises LookupError when
             the vocabulary names no such reading.
-        idle: what the operation would answer if the robot did nothing; None if nobody can know.
+        idle: what the operation answers while the robot does nothing; None unless the operator has declared
+            that it asks (``asks_idle``).
         payload: what the door needs to perform the call; operators never look inside.
     """
 

@@ -266,7 +266,9 @@ class TestEnd:
         commands: operations that made the robot do something, from any site.
         wall, cpu: seconds of the test, fixtures included.
         simulated: simulated seconds, or None if there is no clock.
-        trace: per hit: site index, values written, values read, and what a command returned.
+        trace: per hit: site index, values written, values read, and in the baseline a note of what the call
+            returned: a plain value, ``{"kept": data}`` or ``{"opaque": what}`` at a site's first hit,
+            ``{"same"}`` or ``{"other"}`` than that later on, ``{"raised"}`` if it did not return.
         truncated: whether the trace was cut off.
         probes: values of each probe by ``target.part``; those of the second object of a class by
             ``target#2.part``.

@@ -23,8 +23,8 @@ class Mutant:
         quantity: name of the quantity it changes; None if it concerns the call as a whole.
         variant: which of several mutants of the same operator here; empty if there is only one.
         description: one line that an engineer recognises.
-        idle: what the operation answered here in the baseline, if that is a plain value: what the program
-            gets when the command is left out. ``{"opaque": type}`` if it is no plain value.
+        idle: for operators that ask, what the operation answers while the robot does nothing: a plain value,
+            or the data of ``idle.Idle``.
         parts: the mutants that this one is at once; empty for a mutant of the first order.
     """
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from .notation import Notation
 from .quantity import Quantity
@@ -17,6 +18,8 @@ class Pattern:
         arguments: the meaning of the fields.
         result: the meaning of what the call returns for this command.
         opposite: notation of the opposite command, or None if it has none.
+        idle: what the call returns while the robot does nothing, as data (see ``answer``); None if the
+            vocabulary does not say.
         source: where the vocabulary says so (``robot.toml:12 · link:send · lift/{height}``).
     """
 
@@ -25,6 +28,7 @@ class Pattern:
     result: tuple[Quantity, ...] = ()
     opposite: str | None = None
     source: str = ""
+    idle: Any = None
 
     @property
     def name(self) -> str:
@@ -46,6 +50,8 @@ class Operation:
         refusals: exceptions (``module:Name``) by which the robot refuses a command.
         message: argument that holds a text command; None for operations that are not text.
         patterns: the text commands, if ``message`` is given.
+        idle: what it returns while the robot does nothing, as data (see ``answer``); None if the vocabulary
+            does not say.
         source: where the vocabulary says so (``robot.toml:12 · robot:Arm.move_by``).
         signature: what its arguments are, for a callable that does not tell; see ``model.signature``.
         overrides: whether the methods of subclasses that override it belong to it.
@@ -63,6 +69,7 @@ class Operation:
     source: str = ""
     signature: str | None = None
     overrides: bool = False
+    idle: Any = None
 
     @property
     def module(self) -> str:

@@ -43,6 +43,7 @@ class Fatal(Operator):
     """Raises instead of proceeding."""
 
     name = "fatal"
+    does_nothing = True
     family = "control"
     summary = "Control: the operation raises, so it must die."
     examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), performed=()),)

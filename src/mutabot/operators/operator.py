@@ -86,8 +86,12 @@ class Operator(ABC):
         family: ``robot``, ``classical``, ``text`` or ``physical``; ``control`` is mutabot's own.
         summary: one sentence for the documentation.
         examples: worked examples; they are tests and documentation at once.
-        asks_where: whether it asks where a written quantity is now; it is then used only where the
-            vocabulary names a reading that tells.
+        asks_where: whether it asks where a written quantity is now (``call.current``); it is then used only
+            where the vocabulary names a reading that tells.
+        asks_idle: whether it asks what the command answers while the robot does nothing (``call.idle``); it
+            is then used only where that is known, from the baseline or from the vocabulary.
+        does_nothing: whether it promises that no call reaches the robot. A call that would is a fault of the
+            operator, and the mutant gets no verdict.
     """
 
     name: ClassVar[str]
@@ -95,6 +99,8 @@ class Operator(ABC):
     summary: ClassVar[str]
     examples: ClassVar[tuple[Example, ...]] = ()
     asks_where: ClassVar[bool] = False
+    asks_idle: ClassVar[bool] = False
+    does_nothing: ClassVar[bool] = False
 
     @abstractmethod
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:

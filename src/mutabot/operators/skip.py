@@ -20,6 +20,8 @@ class Skip(Operator):
     """Does not proceed."""
 
     name = "skip"
+    asks_idle = True
+    does_nothing = True
     summary = "A command is not carried out; the program goes on as if it had been."
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(_GRIP), {"position": 1}, performed=(), note="do command x: do nothing"),
@@ -32,8 +34,9 @@ class Skip(Operator):
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         async def mutated(call: Call, proceed: Proceed) -> Reply:
-            # Without an answer to give, leaving the command out would break the program, not the robot.
-            return call.idle if call.idle is not None else await proceed(call)
+            if call.idle is None:
+                raise LookupError(f"nobody knows what {call.operation.name} answers to doing nothing")
+            return call.idle
 
         return mutated
 

@@ -9,6 +9,7 @@ from mutabot.model.signature import parse_signature
 from mutabot.model.units import UNITS, Dimension, dimension_of
 
 from .explain import Check
+from .idle import read_idle
 from .lines import Place
 from .patterns import read_patterns
 from .quantities import read_arguments, read_result
@@ -44,6 +45,7 @@ def read_operation(check: Check, raw: Any, place: Place) -> Operation | None:
         source=source,
         signature=table.signature,
         overrides=table.overrides,
+        idle=read_idle(check, table.idle, (*place, "idle")),
     )
     if not (table.arguments or table.result or table.message or operation.command):
         check.error(place, "says nothing: no arguments, no result, no patterns, and command = false")

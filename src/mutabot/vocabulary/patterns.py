@@ -8,6 +8,7 @@ from mutabot.model import Path, Pattern, Quantity
 from mutabot.model.notation import Field, Notation
 
 from .explain import Check
+from .idle import read_idle
 from .lines import Place
 from .quantities import read_quantity, read_result
 from .schema import PatternTable, QuantityTable
@@ -48,6 +49,7 @@ def _read_pattern(check: Check, raw: Any, place: Place, source: str) -> Pattern 
         result=read_result(check, table.result, (*place, "result")),
         opposite=table.opposite,
         source=f"{_with_line(check, source, place)} · {notation.short}",
+        idle=read_idle(check, table.idle, (*place, "idle")),
     )
 
 

@@ -36,6 +36,7 @@ class PatternTable(Table):
 
     text: str
     opposite: str | None = None
+    idle: Any = None
     arguments: dict[str, Any] = Field(default_factory=dict)
     result: dict[str, Any] | None = None
     kind: Any = None
@@ -57,6 +58,7 @@ class OperationTable(Table):
     command: bool | None = None
     current: str | None = None
     opposite: str | None = None
+    idle: Any = None
     refusals: list[str] = Field(default_factory=list)
     message: str | None = None
     signature: str | None = None

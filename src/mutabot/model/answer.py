@@ -1,0 +1,255 @@
+"""Answers by value: what a command returned, as JSON-like data, and back as a fresh object each time.
+
+Only what is sure to be the same after a copy is kept: plain values, containers of them, arrays, enumerations,
+and objects whose whole state is made of these. An object that the call knew already (the instance, an
+argument) is kept as a reference to it. A part of the robot API is never copied: its copy would be a robot
+that nobody commands.
+"""
+
+from __future__ import annotations
+
+import base64
+import importlib
+import sys
+from collections import OrderedDict, deque
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import is_dataclass
+from enum import Enum
+from types import SimpleNamespace
+from typing import Any
+
+#: characters that an answer may take as data; it goes to every process that runs its mutant
+LIMIT = 50_000
+#: containers in containers; more is a structure that holds itself
+DEPTH = 20
+
+_PLAIN = frozenset({type(None), bool, int, float, str})
+_SEQUENCES: dict[type[Any], str] = {
+    list: "list", tuple: "tuple", set: "set", frozenset: "frozenset", deque: "deque",
+}  # fmt: skip
+_MAPPINGS: dict[type[Any], str] = {dict: "dict", OrderedDict: "OrderedDict"}
+_MADE_BY: dict[str, type[Any]] = {name: kind for kind, name in {**_SEQUENCES, **_MAPPINGS}.items()}
+_IMMUTABLE = (tuple, frozenset)
+#: who has one of these copies itself in a way of its own, or notices being thrown away
+_OWN_WAYS = (
+    "__new__", "__reduce__", "__reduce_ex__", "__getstate__", "__setstate__", "__getnewargs__",
+    "__getnewargs_ex__", "__copy__", "__deepcopy__", "__del__",
+)  # fmt: skip
+
+
+class NotKeptError(ValueError):
+    """An answer that cannot be kept by value; the text says what it is."""
+
+
+def is_plain(value: Any) -> bool:
+    """Whether a value is kept as it is."""
+    return type(value) in _PLAIN
+
+
+def keep(value: Any, here: Mapping[str, Any], handles: Collection[str] = ()) -> Any:
+    """An answer as JSON-like data.
+
+    Args:
+        value: what the command returned.
+        here: what the call knew, by name: the instance as ``self``, and the arguments.
+        handles: classes (``module:Name``) that are part of the robot API.
+
+    Raises NotKeptError if it cannot be copied safely.
+    """
+    return _Keeper(here, frozenset(handles)).keep(value, 0)
+
+
+def restore(data: Any, here: Mapping[str, Any]) -> Any:
+    """A fresh object for data that ``keep`` has made; ``{"call": name}`` is asked of the user's function.
+
+    Raises LookupError if a class or function is no longer there, or an argument is not given.
+    """
+    if not isinstance(data, dict):
+        return data
+    ((form, content),) = data.items()
+    if form in _REFERENCES:
+        return _REFERENCES[form](content, here)
+    if form in _LEAVES:
+        return _LEAVES[form](content)
+    match form:
+        case "namespace":
+            return SimpleNamespace(**{key: restore(item, here) for key, item in content.items()})
+        case "namedtuple":
+            return tuple.__new__(_named(content[0]), [restore(item, here) for item in content[1]])
+        case "object":
+            name, attributes, slots = content
+            return _object(name, attributes, slots, here)
+        case "dict" | "OrderedDict":
+            return _MADE_BY[form]((restore(key, here), restore(item, here)) for key, item in content)
+        case _:
+            return _MADE_BY[form](restore(item, here) for item in content)
+
+
+class _Keeper:
+    def __init__(self, here: Mapping[str, Any], handles: frozenset[str]) -> None:
+        self._here = here
+        self._handles = handles
+        self._left = LIMIT
+
+    def keep(self, value: Any, depth: int) -> Any:
+        self._spend(len(value) if isinstance(value, str) else 8)
+        if type(value) in _PLAIN:
+            return value
+        if depth > DEPTH:
+            raise NotKeptError("something that holds itself")
+        if not isinstance(value, _IMMUTABLE):
+            known = next((name for name, one in self._here.items() if one is value), None)
+            if known is not None:
+                return {"here": known}
+        return self._container(value, depth + 1)
+
+    def _container(self, value: Any, depth: int) -> Any:
+        kind = type(value)
+        if kind in _SEQUENCES:
+            return {_SEQUENCES[kind]: [self.keep(item, depth) for item in value]}
+        if kind in _MAPPINGS:
+            pairs = [[self.keep(key, depth), self.keep(item, depth)] for key, item in value.items()]
+            return {_MAPPINGS[kind]: pairs}
+        if kind is SimpleNamespace:
+            return {"namespace": self._attributes(vars(value), depth)}
+        if kind in (bytes, bytearray):
+            self._spend(len(value) * 4 // 3)
+            return {kind.__name__: base64.b64encode(value).decode()}
+        if _is_of_numpy(value):
+            return self._numpy(value)
+        if isinstance(value, Enum):
+            return {"member": [_name_of(kind), value.name]}
+        if isinstance(value, tuple) and hasattr(kind, "_fields"):
+            return {"namedtuple": [_name_of(kind), [self.keep(item, depth) for item in tuple(value)]]}
+        return self._object(value, depth)
+
+    def _numpy(self, value: Any) -> Any:
+        if value.dtype.kind not in "biufcSUmM":
+            raise NotKeptError(f"an array of {value.dtype}")
+        self._spend(value.nbytes * 4 // 3)
+        form = "array" if type(value).__name__ == "ndarray" else "scalar"
+        return {form: [value.dtype.str, list(value.shape), base64.b64encode(value.tobytes()).decode()]}
+
+    def _object(self, value: Any, depth: int) -> Any:
+        kind = type(value)
+        name = _name_of(kind)
+        constant = _constant(value)
+        if constant is not None:
+            return {"name": constant}
+        if any(_target(base) in self._handles for base in kind.__mro__) or not _is_all_state(value):
+            raise NotKeptError(name)
+        slots = {slot: getattr(value, slot) for slot in _slots(kind) if hasattr(value, slot)}
+        attributes = getattr(value, "__dict__", {})
+        return {"object": [name, self._attributes(attributes, depth), self._attributes(slots, depth)]}
+
+    def _attributes(self, attributes: Mapping[str, Any], depth: int) -> dict[str, Any]:
+        return {name: self.keep(item, depth) for name, item in attributes.items()}
+
+    def _spend(self, size: int) -> None:
+        self._left -= size
+        if self._left < 0:
+            raise NotKeptError(f"more than {LIMIT} characters")
+
+
+def _is_of_numpy(value: Any) -> bool:
+    """Whether it is an array or a scalar of numpy, which may not be there at all."""
+    numpy = sys.modules.get("numpy")
+    return numpy is not None and (type(value) is numpy.ndarray or isinstance(value, numpy.generic))
+
+
+def _array(kind: str, shape: list[int], content: str) -> Any:
+    numpy = importlib.import_module("numpy")
+    return numpy.frombuffer(base64.b64decode(content), dtype=kind).reshape(shape).copy()
+
+
+def _is_all_state(value: Any) -> bool:
+    """Whether attributes are all there is to an object, and making another one has no effect."""
+    kind = type(value)
+    for name in _OWN_WAYS:
+        own = getattr(kind, name, None)
+        if own is not getattr(object, name, None) and not _is_made_by_dataclass(kind, own):
+            return False
+    try:
+        object.__reduce_ex__(value, 4)  # says whether C code hides something
+    except TypeError:
+        return False
+    return True
+
+
+def _is_made_by_dataclass(kind: type[Any], method: Any) -> bool:
+    """Frozen dataclasses with slots get methods that do what is done here."""
+    return is_dataclass(kind) and getattr(method, "__module__", None) == "dataclasses"
+
+
+def _slots(kind: type[Any]) -> list[str]:
+    found = []
+    for base in kind.__mro__:
+        slots = vars(base).get("__slots__", ())
+        for slot in [slots] if isinstance(slots, str) else slots:
+            hidden = slot.startswith("__") and not slot.endswith("__")
+            found.append(f"_{base.__name__.lstrip('_')}{slot}" if hidden else slot)
+    return [slot for slot in found if slot not in ("__dict__", "__weakref__")]
+
+
+def _object(name: str, attributes: dict[str, Any], slots: dict[str, Any], here: Mapping[str, Any]) -> Any:
+    made = object.__new__(_named(name))
+    for slot, item in slots.items():
+        object.__setattr__(made, slot, restore(item, here))
+    if attributes:
+        made.__dict__.update({key: restore(item, here) for key, item in attributes.items()})
+    return made
+
+
+def _constant(value: Any) -> str | None:
+    """The name of a constant of its module or class, which programs compare with ``is``; else None."""
+    kind = type(value)
+    module = sys.modules.get(kind.__module__)
+    for owner, prefix in ((module, f"{kind.__module__}:"), (kind, f"{_target(kind)}.")):
+        for name, one in list(vars(owner).items()) if owner is not None else ():
+            if one is value:
+                return f"{prefix}{name}"
+    return None
+
+
+def _target(kind: type[Any]) -> str:
+    return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def _name_of(kind: type[Any]) -> str:
+    """The class as ``module:Name``. Raises NotKeptError if it cannot be found by it."""
+    name = _target(kind)
+    try:
+        found = _named(name)
+    except LookupError:
+        found = None
+    if found is not kind:
+        raise NotKeptError(name)
+    return name
+
+
+def _named(name: str) -> Any:
+    """What ``module:qualified.name`` means. Raises LookupError."""
+    module, _, qualname = name.partition(":")
+    try:
+        found: Any = sys.modules.get(module) or importlib.import_module(module)
+        for part in qualname.split("."):
+            found = getattr(found, part)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise LookupError(f"{name} is not there: {error}") from error
+    return found
+
+
+#: objects that were there before
+_REFERENCES: dict[str, Callable[[Any, Mapping[str, Any]], Any]] = {
+    "here": lambda name, here: here[name],
+    "name": lambda name, here: _named(name),
+    "call": lambda name, here: _named(name)(),
+    "member": lambda content, here: _named(content[0])[content[1]],
+}
+#: values without parts
+_LEAVES: dict[str, Callable[[Any], Any]] = {
+    "bytes": base64.b64decode,
+    "bytearray": lambda content: bytearray(base64.b64decode(content)),
+    "array": lambda content: _array(*content),
+    "scalar": lambda content: _array(*content)[()],
+}
