@@ -39,9 +39,8 @@ class Answers:
 
     @classmethod
     def of(cls, vocabulary: Vocabulary) -> Answers:
-        """For this robot API: its classes are those that have the operations as methods."""
-        owners = (operation.target.rpartition(".")[0] for operation in vocabulary.operations)
-        return cls(frozenset(owner for owner in owners if ":" in owner))
+        """For this robot API."""
+        return cls(handles_of(vocabulary))
 
     def start(self) -> None:
         """A new test begins."""
@@ -73,6 +72,12 @@ class Answers:
             return {"opaque": str(error)}
         except Exception as error:  # objects of the user's may do anything when they are looked at
             return {"opaque": f"{type(returned.value).__qualname__}, which raises {error!r}"}
+
+
+def handles_of(vocabulary: Vocabulary) -> frozenset[str]:
+    """The classes that have operations as methods."""
+    owners = (operation.target.rpartition(".")[0] for operation in vocabulary.operations)
+    return frozenset(owner for owner in owners if ":" in owner)
 
 
 def snapshot(value: Any) -> Any:

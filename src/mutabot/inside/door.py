@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,6 +55,7 @@ class Door:
     Attributes:
         commands: how often the robot was made to do this, if it does anything.
         calls: how often it was called.
+        handles: classes that are part of the robot API: their objects are never copied.
     """
 
     def __init__(
@@ -70,6 +71,7 @@ class Door:
         self._last_replies: dict[str | None, Any] = {}
         self.commands = 0
         self.calls = 0
+        self.handles: Collection[str] = ()
 
     def reset(self) -> None:
         """Forget earlier answers and commands: a new test begins."""
@@ -254,7 +256,7 @@ class Door:
         last = self._last_replies[_text_of(call.pattern)]
         known = here(call)
         try:
-            return Reply({}, restore(keep(last, known), known))
+            return Reply({}, restore(keep(last, known, self.handles), known))
         except NotKeptError:
             return Reply({}, last)
 

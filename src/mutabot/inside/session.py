@@ -30,7 +30,7 @@ from mutabot.model import (
 )
 
 from .activate import Activation, Evidence, together
-from .answers import Answers, Returned
+from .answers import Answers, Returned, handles_of
 from .branch import Trunk
 from .clock import ClockReader
 from .door import Door, here
@@ -111,6 +111,7 @@ class Session:
     def _door(self, operation: Operation) -> Door:
         reading = self.job.vocabulary.operation(operation.current or "")
         self._doors.append(Door(operation, reading, partial(self._path_is_wrong, operation)))
+        self._doors[-1].handles = handles_of(self.job.vocabulary)
         return self._doors[-1]
 
     def _handler_of_override(self, operation: Operation, kind: type) -> Handler:
