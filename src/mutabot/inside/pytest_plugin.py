@@ -1,4 +1,4 @@
-"""The pytest plugin: sleeps unless a job is given, and always offers the fixture ``mutabot_seed``."""
+"""The pytest plugin: sleeps unless a job is given, and always offers seeds to tests and fixtures."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ import pytest
 
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE
 from mutabot.model.seed import ROUND_VARIABLE, SEED_VARIABLE
+
+from .any_scope import offer_at_every_scope
 
 if TYPE_CHECKING:
     from .conductor import Conductor
@@ -55,6 +57,7 @@ def pytest_load_initial_conftests() -> Generator[None, Any, Any]:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Hand pytest's hooks to the conductor."""
+    offer_at_every_scope(__name__)
     if _conductor is not None:
         config.pluginmanager.register(_conductor, "mutabot-conductor")
     if _plain_round is not None:
@@ -65,9 +68,37 @@ def pytest_configure(config: pytest.Config) -> None:
 def mutabot_seed(request: pytest.FixtureRequest) -> int:
     """The seed of this test in this round: a whole number of 32 bits.
 
+    A fixture that several tests share may ask for it as well, and gets the seed of the class, module, package
+    or session that it lives as long as.
+
     Outside a campaign it is the environment variable MUTABOT_SEED, default 0, or the test's own in the
     round that MUTABOT_ROUND names.
     """
+    return _seed(request)
+
+
+@pytest.fixture(scope="session")
+def mutabot_round_seed(request: pytest.FixtureRequest) -> int:
+    """The seed of this round, the same for all its tests: a whole number of 32 bits."""
+    return _seed(request)
+
+
+@pytest.fixture(scope="package")
+def _mutabot_package_seed(request: pytest.FixtureRequest) -> int:
+    return _seed(request)
+
+
+@pytest.fixture(scope="module")
+def _mutabot_module_seed(request: pytest.FixtureRequest) -> int:
+    return _seed(request)
+
+
+@pytest.fixture(scope="class")
+def _mutabot_class_seed(request: pytest.FixtureRequest) -> int:
+    return _seed(request)
+
+
+def _seed(request: pytest.FixtureRequest) -> int:
     seeded = _conductor or _plain_round
     if seeded is not None:
         return seeded.seed_of(request.node.nodeid)
