@@ -250,7 +250,7 @@ def replay(
 
     path = _journal_path(context.obj)
     with Journal.open(path) as journal:
-        found = read_results(journal)
+        found = read_results(journal, earlier=True)
         chosen = find_mutant(found, mutant).mutant
         if round is not None and round > found.rounds:
             raise UsageError(f"there is no round {round}; the campaign has {found.rounds}")
@@ -272,7 +272,7 @@ def replay(
 @app.command(rich_help_panel=_LOOK)
 def results(context: typer.Context, all: All = False, json: Json = False) -> None:
     """Show the results of the last campaign, also of one that was interrupted or still runs."""
-    _show_results(_journal_path(context.obj), json=json, everything=all)
+    _show_results(_journal_path(context.obj), json=json, everything=all, earlier=True)
 
 
 @app.command(rich_help_panel=_LOOK)
@@ -289,8 +289,10 @@ def show(
     from mutabot.report.detail import print_mutant
 
     with Journal.open(_journal_path(context.obj)) as journal:
-        result = find_mutant(read_results(journal), mutant)
-        source = journal.source(result.mutant.site.span.file)
+        found = read_results(journal, earlier=True)
+        result = find_mutant(found, mutant)
+        is_there = not result.outdated or result.mutant.family in found.meta.get("families", ())
+        source = journal.source(result.mutant.site.span.file) if is_there else None
     if json:
         _print_json(result_data(result))
     else:
@@ -406,7 +408,7 @@ def _journal_path(project: Path, name: str | None = None) -> Path:
     return next((path for path in paths if path.is_file()), paths[0])
 
 
-def _show_results(path: Path, *, json: bool, everything: bool = False) -> Any:
+def _show_results(path: Path, *, json: bool, everything: bool = False, earlier: bool = False) -> Any:
     from mutabot.analysis.results import read_results
     from mutabot.campaign.journal import Journal
     from mutabot.report.as_json import results_data
@@ -414,7 +416,7 @@ def _show_results(path: Path, *, json: bool, everything: bool = False) -> Any:
     from mutabot.report.terminal import print_results
 
     with Journal.open(path) as journal:
-        found = read_results(journal)
+        found = read_results(journal, earlier=earlier)
     if json:
         _print_json(results_data(found))
     else:

@@ -18,13 +18,13 @@ import pytest
 
 import mutabot
 from campaign.project import Quiet, request_for, write_project
-from mutabot.analysis.results import read_results
+from mutabot.analysis.results import Results, read_results
 from mutabot.campaign import run as campaign
 from mutabot.campaign.dependencies import Snapshot, changes
 from mutabot.campaign.journal import Journal
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
-from mutabot.errors import BaselineError, JournalError, NothingToDoError
+from mutabot.errors import BaselineError, JournalError, NothingToDoError, SelectionError
 from mutabot.model import Mutant, Outcome, Verdict
 
 MISSION = """
@@ -95,6 +95,11 @@ class Project:
             results = read_results(journal)
         return results.state, results.done
 
+    def all_results(self) -> Results:
+        """What reports show."""
+        with Journal.open(self.journal) as journal:
+            return read_results(journal, earlier=True)
+
 
 @pytest.fixture
 def project(tmp_path: Path) -> Project:
@@ -104,11 +109,11 @@ def project(tmp_path: Path) -> Project:
 @pytest.fixture
 def quick(project: Project, monkeypatch: pytest.MonkeyPatch) -> Project:
     """The same without running mutants, and without running the baseline twice, for edits that keep it."""
-    known: dict[tuple[int, int], Any] = {}
+    known: dict[Any, Any] = {}
     take = campaign.take_baseline
 
     def baseline(request: Request, *arguments: Any, **options: Any) -> Any:
-        key = (request.rounds, request.seed)
+        key = (request.rounds, request.seed, request.families)
         if key not in known:
             known[key] = take(request, *arguments, **options)
         return copy.deepcopy(known[key])
@@ -231,6 +236,94 @@ def test_further_rounds_and_mutants_are_run_beside_those_that_hold(quick: Projec
     assert quick.run(rounds=2) == set()
 
 
+def test_a_selection_of_nothing_leaves_the_earlier_campaign_as_it_was(quick: Project) -> None:
+    first = quick.run()
+    before = quick.all_results()
+    with pytest.raises(SelectionError, match="revers"):
+        quick.run(only=("reversed",), fresh=True)
+    after = quick.all_results()
+    assert len(after.mutants) == len(first)
+    assert (after.mutants, after.groups, after.state) == (before.mutants, before.groups, "complete")
+    assert (after.attempt or "").startswith("SelectionError")
+    assert quick.run() == set()
+    assert quick.all_results().attempt is None
+
+
+@pytest.mark.parametrize("fresh", [False, True])
+def test_a_narrow_run_shows_its_mutants_beside_all_others(quick: Project, fresh: bool) -> None:
+    first = quick.run()
+    whole = quick.all_results()
+    narrow = quick.run(only=("2",), fresh=fresh)
+    assert len(narrow) == int(fresh)
+    results = quick.all_results()
+    assert [one.mutant for one in results.mutants] == [one.mutant for one in whole.mutants]
+    assert results.groups == whole.groups
+    assert len(results.earlier) == len(first) - 1
+    assert not any(one.outdated for one in results.mutants)
+    assert quick.state() == ("complete", 1)
+    assert quick.run() == set()
+    assert not quick.all_results().earlier
+
+
+def test_results_of_earlier_runs_are_marked_where_something_has_changed(quick: Project) -> None:
+    quick.run()
+    quick.edit("tests/test_mission.py")
+    narrow = quick.run(only=("1",))
+    outdated = {one.mutant.id for one in quick.all_results().mutants if one.outdated}
+    earlier = {one.mutant.id for one in quick.all_results().earlier}
+    assert {mutant for mutant, _ in of("left", {(mutant, 0) for mutant in earlier})} == outdated
+    assert outdated < earlier
+    assert not outdated & {mutant for mutant, _ in narrow}
+    quick.edit("scene.json")
+    quick.run(only=("1",))
+    assert all(one.outdated for one in quick.all_results().earlier)
+
+
+def test_mutants_of_another_family_stay_until_the_program_has_them_no_longer(quick: Project) -> None:
+    robots = {mutant for mutant, _ in quick.run()}
+    texts = {mutant for mutant, _ in quick.run(families=("classical",))}
+    shown = quick.all_results()
+    assert {one.mutant.id for one in shown.mutants} == robots | texts
+    assert {one.mutant.id for one in shown.earlier} == robots
+    assert not any(one.outdated for one in shown.mutants)
+    numbers = [one.mutant.number for one in shown.mutants]
+    assert len(numbers) == len(set(numbers))
+    quick.edit("mission.py")
+    quick.run(families=("classical",))
+    assert {one.mutant.id for one in quick.all_results().mutants if one.outdated} == robots
+    assert {mutant for mutant, _ in quick.run(families=("robot", "classical"))} == robots
+
+
+def test_mutants_that_the_program_has_no_longer_are_not_shown(project: Project) -> None:
+    project.run()
+    project.edit("mission.py", lambda text: text.replace("        return arm.position()\n", ""))
+    project.edit(
+        "mission.py", lambda text: text.replace("arm.move_by(0.3)", "arm.move_by(0.3)\n    return 1")
+    )
+    project.run(only=("1",))
+    shown = project.all_results()
+    assert {one.mutant.operation for one in shown.mutants} == {"robot:Arm.move_by"}
+    assert len(shown.mutants) == 6
+    assert sum(one.outdated for one in shown.mutants) == 5
+
+
+def test_an_interrupted_campaign_shows_what_was_there_before(
+    quick: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = quick.run()
+    quick.edit("scene.json")
+
+    def interrupted(*arguments: Any, **options: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(campaign, "run_mutants", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        quick.run()
+    shown = quick.all_results()
+    assert (shown.state, shown.done) == ("interrupted", len(first))
+    assert all(one.outdated for one in shown.mutants)
+
+
 def test_errors_and_unstable_outcomes_are_never_reused(quick: Project) -> None:
     first = sorted(quick.run())
     bad = {first[0], first[1]}
@@ -302,11 +395,13 @@ def test_a_campaign_that_ends_before_its_first_mutant_loses_nothing(
             patch.setattr(campaign, phase, interrupt)
             with pytest.raises(KeyboardInterrupt):
                 project.run()
-        assert project.state() == ("interrupted", 0)
+        assert project.state() == ("complete", len(first))
+        assert project.all_results().attempt == "interrupted"
     project.edit("tests/test_right.py", lambda text: text + "    assert False\n")
     with pytest.raises(BaselineError):
         project.run()
-    assert project.state()[0].startswith("BaselineError: 1 test fails")
+    assert project.state() == ("complete", len(first))
+    assert (project.all_results().attempt or "").startswith("BaselineError: 1 test fails")
     project.edit("tests/test_right.py", lambda text: text.removesuffix("    assert False\n"))
     with pytest.raises(NothingToDoError):
         project.run(only=("reverse",), skip=("reverse",))
@@ -397,7 +492,8 @@ def test_a_campaign_ended_from_outside_says_so_and_goes_on(project: Project, how
     process.send_signal(how)
     _, said = process.communicate()
     assert process.returncode == (130 if how == signal.SIGINT else -how), said
-    assert project.state() == ("interrupted" if how == signal.SIGINT else "killed", 0)
+    assert project.state() == ("complete", len(first))
+    assert project.all_results().attempt == ("interrupted" if how == signal.SIGINT else "killed")
     (project.folder / "tests" / "test_slow.py").unlink()
     assert project.run() == set()
     assert len(first) == project.state()[1]

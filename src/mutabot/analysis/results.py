@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.campaign.journal import BaselineTest, ControlEnd, Journal
@@ -26,12 +26,16 @@ class MutantResult:
         rounds: its outcome in each round; None where it has not been run.
         quantity: what it changes, if the journal holds the vocabulary.
         why: one line about how it ended.
+        earlier: whether an earlier campaign found some of it.
+        outdated: whether something has changed since that it depends on, as far as that is known.
     """
 
     mutant: Mutant
     rounds: tuple[Outcome | None, ...]
     quantity: Quantity | None
     why: str
+    earlier: bool = False
+    outdated: bool = False
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
@@ -78,6 +82,8 @@ class Results:
         confirmation: ``checked`` and ``unstable`` outcomes of ``--confirm``; None if it was not asked for.
         flaky: tests that cannot be relied on.
         drawing: how the mutants were drawn from those selected; None if they are all.
+        drawn: scores of those drawn, per family and role.
+        attempt: why a later campaign ended before it ran anything; None if there was none.
     """
 
     meta: Mapping[str, Any]
@@ -93,6 +99,13 @@ class Results:
     confirmation: Mapping[str, int] | None = None
     flaky: Flaky = field(default_factory=Flaky)
     drawing: Drawing | None = None
+    drawn: tuple[Group, ...] = ()
+    attempt: str | None = None
+
+    @property
+    def earlier(self) -> list[MutantResult]:
+        """Mutants of which an earlier campaign found something."""
+        return [result for result in self.mutants if result.earlier]
 
     @property
     def survivors(self) -> list[MutantResult]:
@@ -134,8 +147,8 @@ def find_mutant(results: Results, name: str) -> MutantResult:
     raise SelectionError(problem, unknown=[name])
 
 
-def read_results(journal: Journal) -> Results:
-    """Put together what the journal holds now."""
+def read_results(journal: Journal, *, earlier: bool = False) -> Results:
+    """Put together what the journal holds now: the last campaign, and all that is known if ``earlier``."""
     meta, mutants = journal.meta(), journal.mutants()
     planned = {mutant.id for mutant in mutants}
     outcomes = [outcome for outcome in journal.outcomes() if outcome.mutant in planned]
@@ -143,19 +156,27 @@ def read_results(journal: Journal) -> Results:
     outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
     vocabulary = journal.vocabulary
     drawing = from_data(Drawing, meta[DRAWING]) if DRAWING in meta else None
+    groups = groups_of(mutants, outcomes, rounds, drawing)
+    drawn = groups if drawing is not None else ()
+    old = _Earlier.of(journal, mutants, outcomes, rounds) if earlier else _Earlier()
+    if old.outcomes:
+        mutants = sorted([*mutants, *old.mutants], key=lambda mutant: mutant.number)
+        outcomes = [*outcomes, *old.outcomes]
+        groups = groups_of(mutants, outcomes, rounds, None)
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
     def result(mutant: Mutant) -> MutantResult:
         row = tuple(by_place.get((mutant.id, number)) for number in range(rounds))
         why = explain(mutant, [outcome for outcome in row if outcome is not None], vocabulary)
-        return MutantResult(mutant, row, quantity_of(mutant, vocabulary), why)
+        found = MutantResult(mutant, row, quantity_of(mutant, vocabulary), why)
+        return replace(found, earlier=mutant.id in old.ids, outdated=mutant.id in old.outdated)
 
     return Results(
         meta=meta,
         state=_state(journal),
         rounds=rounds,
         mutants=tuple(result(mutant) for mutant in mutants),
-        groups=groups_of(mutants, outcomes, rounds, drawing),
+        groups=groups,
         all=RoundScores.of(outcomes, rounds),
         left_out=tuple(journal.left_out()),
         controls=tuple(journal.controls()),
@@ -164,12 +185,67 @@ def read_results(journal: Journal) -> Results:
         confirmation=meta.get(CONFIRMATION),
         flaky=from_data(Flaky, meta[FLAKY]) if FLAKY in meta else Flaky(),
         drawing=drawing,
+        drawn=drawn,
+        attempt=_attempt(journal),
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Earlier:
+    """What earlier campaigns found that the last one did not.
+
+    Attributes:
+        mutants: those that the last campaign did not plan.
+        outcomes: of these, and of planned ones that have not been run yet.
+        outdated: ids of mutants that depend on something that has changed since.
+    """
+
+    mutants: tuple[Mutant, ...] = ()
+    outcomes: tuple[Outcome, ...] = ()
+    outdated: frozenset[str] = frozenset()
+
+    @property
+    def ids(self) -> set[str]:
+        return {outcome.mutant for outcome in self.outcomes}
+
+    @classmethod
+    def of(
+        cls, journal: Journal, planned: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int
+    ) -> _Earlier:
+        done = {(outcome.mutant, outcome.round) for outcome in outcomes}
+        order = journal.meta().get("order") or 1
+        known = {
+            mutant.id: (mutant, outdated)
+            for mutant, outdated in journal.known()
+            if len(mutant.singles) == order
+        }
+        wanted = {mutant.id for mutant in planned} | known.keys()
+        found = [
+            outcome
+            for outcome in journal.kept_outcomes()
+            if outcome.mutant in wanted
+            and outcome.round < rounds
+            and (outcome.mutant, outcome.round) not in done
+        ]
+        ids = {outcome.mutant for outcome in found}
+        mutants = tuple(mutant for mutant, _ in known.values() if mutant.id in ids)
+        # what was planned and would still hold has been taken over
+        outdated = {name for name in ids if name not in known or known[name][1]}
+        return cls(mutants, tuple(found), frozenset(outdated))
 
 
 def _number_of_rounds(meta: Mapping[str, Any], outcomes: list[Outcome]) -> int:
     said = meta.get("rounds")
     return said if isinstance(said, int) else max((one.round + 1 for one in outcomes), default=0)
+
+
+def _attempt(journal: Journal) -> str | None:
+    found = journal.attempt
+    if found:
+        return found
+    if found is None:
+        return None
+    return "running" if is_written(journal.path) else "killed"
 
 
 def _state(journal: Journal) -> str:

@@ -47,6 +47,7 @@ _CONFIGURATIONS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "se
 #: what our own pictures hold near their beginning; see ``mutabot.report.picture``
 _PICTURES, _PICTURE = {".svg", ".png"}, b"written by mutabot compare"
 _WRITTEN = "written by the tests themselves"
+_REACHING = "which tests reach it"
 _HASH = "#"
 
 
@@ -193,6 +194,20 @@ class Dependencies:
             for tests in dict.fromkeys(selections)
         )
 
+    def still_hold(self, key: str, of_place: Parts) -> bool:
+        """Whether all that is known now of what a key stands for is as it was; the rest is taken for granted.
+
+        For mutants of which nothing is known now, because their families are not asked for.
+        """
+        if key.split(maxsplit=1)[0] != self._common:
+            return False
+        now: dict[str, str] = dict(self.files)
+        for parts in self._operations.values():
+            now.update(parts)
+        return bool(of_place) and all(
+            now.get(name) == value for name, value in of_place.items() if name != _REACHING
+        )
+
     def _own(self, mutant: Mutant, round: int) -> list[Any]:
         """What a mutant does, beyond what its id says; of one in the program text, what it reads there."""
         planted = self._baseline.program.planted.get(mutant.id)
@@ -221,7 +236,7 @@ class Dependencies:
                     for operation in operations
                     for name, digest in self._operations.get(operation, {}).items()
                 },
-                "which tests reach it": _HASH + _digest(sorted(tests)),
+                _REACHING: _HASH + _digest(sorted(tests)),
             }
             found = self._places[round, tests, operations] = self._stored(parts)
         return found

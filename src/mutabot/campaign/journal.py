@@ -5,7 +5,8 @@ own and committed when it is added, so that a killed campaign loses nothing that
 (reports, resuming, comparing) reads from here.
 
 A new campaign begins in the same file: in one transaction the plan, the baseline and the outcomes of the
-one before make way, and its outcomes are kept aside under their keys, for those that still hold.
+one before make way. Its mutants and outcomes are kept aside: outcomes that still hold are taken over, and
+reports show those that a campaign of other mutants leaves alone.
 """
 
 from __future__ import annotations
@@ -50,10 +51,16 @@ CREATE TABLE kept (
 CREATE TABLE parts (digest TEXT PRIMARY KEY, data TEXT NOT NULL);
 """
 _LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
+#: came later: journals of before are read without it
+_KNOWN = (
+    "CREATE TABLE IF NOT EXISTS known (id TEXT PRIMARY KEY, data TEXT NOT NULL, outdated INTEGER NOT NULL)"
+)
 #: from one campaign to the next
 _ADOPT = f"""
+{_KNOWN};
+INSERT OR REPLACE INTO known SELECT id, data, 1 FROM mutant;
 INSERT OR REPLACE INTO kept
-    SELECT mutant, round, verdict, "by", data, key FROM outcome WHERE rowid IN ({_LAST}) AND key != '';
+    SELECT mutant, round, verdict, "by", data, key FROM outcome WHERE rowid IN ({_LAST});
 DELETE FROM meta;
 DELETE FROM test;
 DELETE FROM mutant;
@@ -64,6 +71,8 @@ DELETE FROM control
 """
 # Keys of meta that are the journal's own; the others are the campaign's.
 _VERSION_KEY, _FINISHED_KEY = "journal:version", "journal:finished"
+#: of a campaign that has not begun yet: why it ended, null as long as it has not
+_ATTEMPT_KEY = "journal:attempt"
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,13 +142,22 @@ class Journal:
         self.path = path
         self.key_of: Callable[[str, int], str] = lambda mutant, round: ""
         self._connection, self._lock, self._copy = connection, lock, copy
+        self._waits = False
 
     @classmethod
     def create(cls, path: Path, *, meta: Mapping[str, Any], fresh: bool = False) -> Journal:
-        """Begin a new campaign; outcomes of those before are kept aside, unless it is to begin ``fresh``.
+        """``prepare`` and ``begin`` a campaign at once."""
+        journal = cls.prepare(path, meta=meta)
+        with journal._closed_on_error():
+            if journal._waits:
+                journal.begin(meta, fresh=fresh)
+        return journal
 
-        All or nothing: until it has begun, the journal is that of the campaign before. A complete one stays
-        readable as ``previous_of`` the path, and so does what is no journal of this version.
+    @classmethod
+    def prepare(cls, path: Path, *, meta: Mapping[str, Any]) -> Journal:
+        """Take the journal for a campaign that is to ``begin``; until then it is that of the one before.
+
+        If there is none before, it has begun. What is no journal of this version is moved aside.
 
         Reports understand these keys of ``meta``, all optional: ``mutabot``, ``python``, ``versions`` (name
         to version), ``root``, ``seed``, ``rounds``, ``engine``, ``jobs``, ``started``, ``vocabulary`` (what
@@ -156,10 +174,27 @@ class Journal:
                 lock.release()
                 raise
             with journal._closed_on_error():
-                if is_journal and journal.finished == "complete":
-                    journal._keep_copy()
-                journal._begin(meta, adopt=is_journal, fresh=fresh)
+                if is_journal:
+                    journal._wait()
+                else:
+                    journal._begin(meta, _SCHEMA)
         return journal
+
+    def begin(self, meta: Mapping[str, Any], *, fresh: bool = False) -> None:
+        """Begin the campaign. Mutants and outcomes of those before are kept aside.
+
+        All or nothing. A complete campaign stays readable as ``previous_of`` the path. ``fresh``: none of the
+        outcomes is to be reused.
+        """
+        if not self._waits:
+            return  # nothing was there before
+        with guarded(self.path):
+            if self.finished == "complete":
+                self._keep_copy()
+            self._begin(meta, _ADOPT)
+            self._waits = False
+        if fresh:
+            self._write("UPDATE kept SET key = ''")
 
     @classmethod
     def open(cls, path: Path, *, writable: bool = False) -> Journal:
@@ -221,15 +256,27 @@ class Journal:
         return from_data(Vocabulary, data) if data is not None else None
 
     def finish(self, reason: str) -> None:
-        """Note that the campaign has ended: ``complete``, ``interrupted`` or why it stopped."""
+        """Note that the campaign has ended: ``complete``, ``interrupted`` or why it stopped.
+
+        If it has not even begun, the journal stays that of the one before, and tells about the attempt.
+        """
         with guarded(self.path):
-            self._put(_FINISHED_KEY, reason)
+            self._put(_ATTEMPT_KEY if self._waits else _FINISHED_KEY, reason)
 
     @property
     def finished(self) -> str | None:
         """Why the campaign ended; None while it runs and after it was killed."""
         rows = self._rows("SELECT value FROM meta WHERE key = ?", _FINISHED_KEY)
         return str(json.loads(rows[0][0])) if rows else None
+
+    @property
+    def attempt(self) -> str | None:
+        """Why a later campaign ended before it had begun; empty if it was killed or is about to begin.
+
+        None if there was no such campaign.
+        """
+        rows = self._rows("SELECT value FROM meta WHERE key = ?", _ATTEMPT_KEY)
+        return str(json.loads(rows[0][0]) or "") if rows else None
 
     def resume(self) -> None:
         """Note that a campaign that had ended goes on."""
@@ -310,12 +357,38 @@ class Journal:
     # Outcomes of earlier campaigns
 
     def kept(self) -> dict[tuple[str, int], Kept]:
-        """The last outcome that earlier campaigns found for each mutant and round."""
+        """The last outcome of each mutant and round that earlier campaigns found, if it can be reused."""
         rows = self._rows(
-            "SELECT mutant, round, key, verdict NOT IN ('error', 'unstable') AND data NOT LIKE ? FROM kept",
+            "SELECT mutant, round, key, verdict NOT IN ('error', 'unstable') AND data NOT LIKE ? FROM kept "
+            "WHERE key != ''",
             f"%{os.strerror(errno.ENOSPC)}%",
         )
         return {(mutant, round): Kept(key, bool(sound)) for mutant, round, key, sound in rows}
+
+    def kept_outcomes(self) -> list[Outcome]:
+        """All that earlier campaigns found, also what cannot be reused."""
+        return self._read(Outcome, "SELECT data FROM kept")
+
+    def forget(self, mutants: Iterable[str]) -> None:
+        """Never reuse what earlier campaigns found about these mutants."""
+        with guarded(self.path), self._transaction() as execute:
+            for mutant in mutants:
+                execute("UPDATE kept SET key = '' WHERE mutant = ?", mutant)
+
+    def known(self) -> list[tuple[Mutant, bool]]:
+        """Mutants of earlier campaigns, and whether something has changed since that they depend on."""
+        if not self._rows("SELECT 1 FROM sqlite_master WHERE name = 'known'"):
+            return []
+        rows = self._rows("SELECT data, outdated FROM known ORDER BY rowid")
+        return [(from_data(Mutant, json.loads(data)), bool(outdated)) for data, outdated in rows]
+
+    def set_known(self, known: Iterable[tuple[Mutant, bool]]) -> None:
+        """Write down the mutants of earlier campaigns that the program still has."""
+        with guarded(self.path), self._transaction() as execute:
+            execute(_KNOWN)
+            execute("DELETE FROM known")
+            for mutant, outdated in known:
+                execute("INSERT INTO known VALUES (?, ?, ?)", mutant.id, _dump(mutant), int(outdated))
 
     def reuse(self, pairs: Iterable[tuple[str, int]]) -> None:
         """Take over the kept outcomes of these mutants and rounds."""
@@ -384,12 +457,17 @@ class Journal:
     def _read(self, kind: type[Any], statement: str) -> list[Any]:
         return [from_data(kind, json.loads(data)) for (data,) in self._rows(statement)]
 
-    def _begin(self, meta: Mapping[str, Any], *, adopt: bool, fresh: bool) -> None:
+    def _wait(self) -> None:
+        """The campaign before this one has ended, whatever became of it; the next may fail to begin."""
+        self._waits = True
+        if self.finished is None:
+            self._put(_FINISHED_KEY, "killed")
+        self._put(_ATTEMPT_KEY, None)
+
+    def _begin(self, meta: Mapping[str, Any], statements: str) -> None:
         with self._transaction() as execute:
-            for statement in (_ADOPT if adopt else _SCHEMA).split(";"):
+            for statement in statements.split(";"):
                 execute(statement)
-            if fresh:
-                execute("DELETE FROM kept")
             self._put(_VERSION_KEY, SCHEMA_VERSION)
             for key, value in meta.items():
                 self._put(key, value)

@@ -20,6 +20,7 @@ from mutabot.vocabulary.load import shipped
 from .baseline import Baseline, take_baseline
 from .branching import Remainder
 from .dependencies import Dependencies, Snapshot
+from .earlier import carry, note_outdated
 from .engine import engine_of, repetitions_for, run_mutants, try_controls
 from .interruption import interruptions_kept
 from .journal import Journal
@@ -30,7 +31,7 @@ from .program_text import family_of
 from .request import CheckReport, Progress, Request
 from .reuse import reuse
 from .sampling import DRAWING, draw
-from .selection import select
+from .selection import numbered, select
 from .verify import look_again, refuse_flaky
 from .workers import Result, Workers
 
@@ -49,7 +50,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
     started = time.monotonic()
     with (
         interruptions_kept(),
-        Journal.create(request.journal_path, meta=_meta(request), fresh=request.fresh) as journal,
+        Journal.prepare(request.journal_path, meta=_meta(request)) as journal,
     ):
         try:
             with _disk_told(request), _workers(request) as workers:
@@ -68,7 +69,7 @@ def _run(request: Request, workers: Workers, progress: Progress, journal: Journa
     baseline, results = _baseline(request, workers, progress)
     whole = make_plan(baseline, request.vocabulary, request.families)
     plan = selected(request, whole, baseline)
-    _write_beginning(journal, request, results, plan)
+    _write_beginning(journal, request, results, plan, whole)
     _note_unstable(baseline, progress)
     refuse_flaky(request, baseline)
     after = Snapshot.take(request.root, before)
@@ -79,6 +80,7 @@ def _run(request: Request, workers: Workers, progress: Progress, journal: Journa
         look_again(request, baseline, workers, progress, plan.mutants, journal)
         return
     dependencies = Dependencies(request, baseline, _collected(results), before, after)
+    note_outdated(journal, request, dependencies)
     done = reuse(journal, dependencies, plan.mutants, request.rounds, progress)
     journal.key_of = _key_of(journal, dependencies, plan)
     try:
@@ -92,8 +94,9 @@ def _run(request: Request, workers: Workers, progress: Progress, journal: Journa
 def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
     """Forget mutants that the program has no longer; of other families and orders nothing is known now."""
     if request.order == 1:
+        known = {mutant.id for mutant, _ in journal.known()}
         others = {mutant for mutant, _ in journal.kept() if family_of(mutant) not in request.families}
-        journal.tidy([*others, *(mutant.id for mutant in whole.mutants)])
+        journal.tidy([*others, *known, *(mutant.id for mutant in whole.mutants)])
 
 
 def _collected(results: Sequence[Result]) -> set[str]:
@@ -211,13 +214,27 @@ def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
     return f"no mutants: all {len(plan.left_out)} would change nothing"
 
 
-def _write_beginning(journal: Journal, request: Request, results: Sequence[Result], plan: Plan) -> None:
+def _write_beginning(
+    journal: Journal, request: Request, results: Sequence[Result], plan: Plan, whole: Plan
+) -> None:
+    """From here on the journal is that of this campaign."""
+    journal.begin(_meta(request))
     for result in results:
         for end in result.ends:
             journal.add_test(result.task.key.round, result.task.key.repetition, end)
-    files = {mutant.site.span.file for mutant in plan.mutants}
-    sources = {file: (request.root / file).read_text(encoding="utf-8", errors="replace") for file in files}
+    numbers = numbered(whole.mutants, request.selection, left_out=whole.left_out)
+    known = [mutant for mutant, _ in journal.known()]
+    carried = carry(known, request, plan.mutants, [*whole.mutants, *numbers])
+    paths = {file: request.root / file for file in {m.site.span.file for m in (*plan.mutants, *carried)}}
+    sources = {
+        file: path.read_text(encoding="utf-8", errors="replace")
+        for file, path in paths.items()
+        if path.is_file()
+    }
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
+    journal.set_known((mutant, True) for mutant in carried)
+    if request.fresh:
+        journal.forget(mutant.id for mutant in plan.mutants)
     if plan.drawing is not None:
         journal.set_meta(DRAWING, to_data(plan.drawing))
 

@@ -30,14 +30,21 @@ def select(
 
     Raises SelectionError for anything that fits no mutant, nor one that the plan leaves out.
     """
-    only, skip = list(only), list(skip)
+    only, skip, left_out = list(only), list(skip), list(left_out)
     set_aside = [item.id for item in left_out]
-    chosen = list(mutants)
-    if selection_file is not None:
-        chosen = _from_file(selection_file, chosen, set_aside)
+    chosen = numbered(mutants, selection_file, left_out=left_out)
     wanted = _fitting(only, chosen, set_aside, "--only") if only else {mutant.id for mutant in chosen}
     wanted -= _fitting(skip, chosen, set_aside, "--skip")
     return [mutant for mutant in chosen if mutant.id in wanted]
+
+
+def numbered(
+    mutants: Sequence[Mutant], selection_file: Path | None, *, left_out: Iterable[LeftOut] = ()
+) -> list[Mutant]:
+    """The mutants of a selection file, numbered by it; all if there is none. Raises SelectionError."""
+    if selection_file is None:
+        return list(mutants)
+    return _from_file(selection_file, mutants, [item.id for item in left_out])
 
 
 def fits(pattern: str, mutant: Mutant) -> bool:

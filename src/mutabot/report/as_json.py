@@ -31,6 +31,7 @@ def results_data(results: Results) -> dict[str, Any]:
         "format": FORMAT,
         "state": results.state,
         "finished": results.state == "complete",
+        "attempt": results.attempt,
         "meta": {key: value for key, value in results.meta.items() if key not in _ELSEWHERE},
         "rounds": [
             {"round": number, **score_data(score)} for number, score in enumerate(results.all.rounds, start=1)
@@ -109,6 +110,8 @@ def result_data(result: MutantResult) -> dict[str, Any]:
         "indistinguishable": result.indistinguishable,
         "distance": result.distance if result.is_survivor else None,
         "why": result.why,
+        "earlier": result.earlier,
+        "outdated": result.outdated,
     }
 
 

@@ -37,7 +37,9 @@ def make_table(*, header: bool = True) -> Table:
     return Table(box=box.SIMPLE_HEAD, show_header=header, pad_edge=False, padding=(0, 1), header_style="bold")
 
 
-def add_row(table: Table, number: int, facts: Sequence[str], text: str, *more: Text, narrow: bool) -> None:
+def add_row(
+    table: Table, number: int | str, facts: Sequence[str], text: str, *more: Text, narrow: bool
+) -> None:
     """A row about a mutant: short facts, one text, and what follows it.
 
     On a narrow terminal the facts stand on a line above the text, in the same column.

@@ -55,6 +55,7 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
     yield Text(_title(results), style="bold")
     yield Text(_circumstances(results), style="dim")
     yield from error_lines(results)
+    yield from earlier_lines(results)
     if results.mutants:
         yield heading("Mutants by rounds")
         yield mutant_table(results, width)
@@ -93,6 +94,28 @@ def _circumstances(results: Results) -> str:
     return " · ".join(parts)
 
 
+def earlier_lines(results: Results) -> Iterator[RenderableType]:
+    """What the last campaign did not find itself, and a later one that ended before it ran anything."""
+    if results.attempt == "running":
+        yield Text("A new campaign runs its baseline; until it has a plan, this is the one before.")
+    elif results.attempt is not None:
+        text = (
+            f"A later run ended before its first mutant ({plain(results.attempt)}); this is the one before."
+        )
+        yield Text(text, style="bold", overflow="fold")
+    earlier = results.earlier
+    if not earlier:
+        return
+    text = f"{len(earlier)} of {plural(len(results.mutants), 'mutant')} from earlier runs"
+    outdated = sum(result.outdated for result in earlier)
+    if outdated:
+        what = "all" if outdated == len(earlier) else str(outdated)
+        text += (
+            f"; {what} of them (*) as of before something that they depend on changed: `mutabot run` tells"
+        )
+    yield Text(f"{text}.", overflow="fold")
+
+
 def mutant_table(results: Results, width: int) -> Table:
     """One row per mutant, one letter per round; on a narrow terminal a row has two lines."""
     narrow = width < WIDE
@@ -108,7 +131,8 @@ def mutant_table(results: Results, width: int) -> Table:
         more = [_row(result.rounds, many)]
         if with_rates:
             more.insert(0, _kill_rate(result.kill_rate, narrow=narrow))
-        add_row(table, mutant.number, facts, mutant.description, *more, narrow=narrow)
+        number = f"{mutant.number}{'*' if result.outdated else ''}"
+        add_row(table, number, facts, mutant.description, *more, narrow=narrow)
     return table
 
 
@@ -196,11 +220,11 @@ def sample_lines(results: Results) -> Iterator[RenderableType]:
     drawing = results.drawing
     if drawing is None:
         return
-    drawn = f"{len(results.mutants)} of {plural(drawing.selected, 'mutant')}"
+    drawn = f"{sum(group.mutants for group in results.drawn)} of {plural(drawing.selected, 'mutant')}"
     how = [f"a sample of {drawing.sample}"] if drawing.sample is not None else []
     how += ["one per site"] if drawing.one_per_site else []
     yield heading(f"{drawn} were drawn: {' of '.join(how)}")
-    for group in results.groups:
+    for group in results.drawn:
         if group.population is not None:
             yield Text(_all_text(group), overflow="fold")
 
