@@ -9,7 +9,7 @@ READY  := $(VENV)/.ready
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
-	$(VENV)/bin/mutabot -C examples/paper run --selection published.txt
+	$(VENV)/bin/mutabot -C examples/paper run --selection published.txt --table
 	$(RUN) benchmarks/paper_scores.py examples/paper
 
 ## lint, types and the whole test suite

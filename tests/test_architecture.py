@@ -25,6 +25,7 @@ ALLOWED = {
     "analysis": {"errors", "model", "vocabulary", "campaign"},
     "report": {"errors", "model", "vocabulary", "campaign", "analysis"},
     "cells": set(),
+    "__main__": {"cli"},
     "cli_options": {"errors", "model"},
     "cli_compare": {"errors", "campaign", "analysis"},
     "cli": {"errors", "model", "vocabulary", "campaign", "analysis", "report", "cli_options", "cli_compare"},

@@ -29,6 +29,7 @@ from mutabot.cli_options import (
     Json,
     MinScore,
     NoOracle,
+    OneMutant,
     OnePerSite,
     Only,
     Order,
@@ -41,6 +42,7 @@ from mutabot.cli_options import (
     Selection,
     Skip,
     Stored,
+    Table,
     Verify,
     Version,
 )
@@ -58,7 +60,7 @@ app = typer.Typer(
     name="mutabot",
     help="Mutation testing for robot programs: would your tests notice?",
     no_args_is_help=True,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
@@ -78,14 +80,15 @@ def options(
 def init(
     context: typer.Context,
     program: Annotated[
-        list[Path] | None, typer.Argument(help="Files or folders of the robot program.")
+        list[Path] | None,
+        typer.Argument(metavar="[PROGRAM]...", help="Files or folders of the robot program."),
     ] = None,
 ) -> None:
     """Run the tests once, look at what the program calls, and propose a configuration and a vocabulary."""
     from mutabot.campaign.proposal import propose
 
     for line in propose(context.obj, program or []):
-        typer.echo(line)
+        _echo(line)
 
 
 @app.command(rich_help_panel=_SETUP)
@@ -102,7 +105,7 @@ def check(
     request = _request(context.obj, jobs=jobs, rounds=rounds, family=family)
     with _progress() as progress:
         report = campaign.check(request, progress)
-    _print_json(report.data) if json else typer.echo("\n".join(report.lines))
+    _print_json(report.data) if json else _echo("\n".join(report.lines))
 
 
 @app.command("list", rich_help_panel=_SETUP)
@@ -158,6 +161,7 @@ def run(
     verify: Verify = 0,
     confirm: Confirm = False,
     min_score: MinScore = None,
+    table: Table = False,
     json: Json = False,
 ) -> None:
     """Run the campaign, or go on with it: baseline, controls, mutants, scores."""
@@ -171,7 +175,7 @@ def run(
     )  # fmt: skip
     with _progress() as progress:
         journal_path = run_campaign(request, progress)
-    results = _show_results(journal_path, json=json)
+    results = _show_results(journal_path, json=json, summary=not table)
     limit = min_score if min_score is not None else request.configuration.min_score
     decision = decide(
         results,
@@ -235,7 +239,7 @@ def compare(
 @app.command(rich_help_panel=_RUN)
 def replay(
     context: typer.Context,
-    mutant: Annotated[str, typer.Argument(help="The mutant's id or number.")],
+    mutant: OneMutant,
     round: Round = None,
     jobs: Jobs = None,
     json: Json = False,
@@ -278,7 +282,7 @@ def results(context: typer.Context, all: All = False, json: Json = False) -> Non
 @app.command(rich_help_panel=_LOOK)
 def show(
     context: typer.Context,
-    mutant: Annotated[str, typer.Argument(help="The mutant's id or number.")],
+    mutant: OneMutant,
     json: Json = False,
 ) -> None:
     """Show everything about one mutant."""
@@ -408,17 +412,22 @@ def _journal_path(project: Path, name: str | None = None) -> Path:
     return next((path for path in paths if path.is_file()), paths[0])
 
 
-def _show_results(path: Path, *, json: bool, everything: bool = False, earlier: bool = False) -> Any:
+def _show_results(
+    path: Path, *, json: bool, everything: bool = False, earlier: bool = False, summary: bool = False
+) -> Any:
     from mutabot.analysis.results import read_results
     from mutabot.campaign.journal import Journal
     from mutabot.report.as_json import results_data
     from mutabot.report.console import make_console
+    from mutabot.report.summary import print_summary
     from mutabot.report.terminal import print_results
 
     with Journal.open(path) as journal:
         found = read_results(journal, earlier=earlier)
     if json:
         _print_json(results_data(found))
+    elif summary:
+        print_summary(make_console(), found)
     else:
         print_results(make_console(), found, everything=everything)
     return found
@@ -441,7 +450,17 @@ def _show_comparison(comparison: Comparison, picture: Path | None, *, json: bool
 def _print_json(data: Any) -> None:
     from mutabot.report.as_json import dumps
 
-    typer.echo(dumps(data))
+    _echo(dumps(data))
+
+
+def _echo(text: str) -> None:
+    """Print, also where the reader leaves early: then the exit code still tells how it ended."""
+    from mutabot.report.console import leave_pipe
+
+    try:
+        typer.echo(text)
+    except BrokenPipeError:
+        leave_pipe()
 
 
 def _progress() -> Reporter:

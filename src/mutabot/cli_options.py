@@ -29,7 +29,8 @@ Only = Annotated[
     typer.Option(
         "--only",
         metavar="WHICH",
-        help="Only these: id, number, operator, family, role or file glob. Repeatable.",
+        help="Only these: id, number, numbers (3,16-20), file, file:line, operator, family or role; "
+        "globs too. Repeatable.",
     ),
 ]
 Skip = Annotated[list[str] | None, typer.Option("--skip", metavar="WHICH", help="All but these, likewise.")]
@@ -39,12 +40,16 @@ Families = Annotated[
         "--family",
         metavar="NAME",
         help=f"Families of mutants: {', '.join(FAMILIES)}. Repeatable, or with commas.",
+        autocompletion=lambda: list(FAMILIES),
     ),
 ]
 Order = Annotated[
-    int | None, typer.Option("--order", min=1, max=2, help="Mutants at once: 2 plants pairs of them.")
+    int | None,
+    typer.Option("--order", metavar="1|2", min=1, max=2, help="Mutants at once: 2 plants pairs of them."),
 ]
-Pairs = Annotated[int | None, typer.Option("--pairs", min=1, help="How many pairs --order 2 plants.")]
+Pairs = Annotated[
+    int | None, typer.Option("--pairs", metavar="N", min=1, help="How many pairs --order 2 plants.")
+]
 Selection = Annotated[
     Path | None, typer.Option("--selection", metavar="FILE", help="File with one mutant id per line.")
 ]
@@ -59,10 +64,24 @@ Sample = Annotated[
 OnePerSite = Annotated[
     bool, typer.Option("--one-per-site", help="Only one mutant per family and site, chosen at random.")
 ]
-Rounds = Annotated[int | None, typer.Option("--rounds", min=1, help="Repetitions, each with its own seeds.")]
-Seed = Annotated[int | None, typer.Option("--seed", min=0, help="The campaign's seed.")]
-Jobs = Annotated[int | None, typer.Option("-j", "--jobs", min=1, help="Processes at a time.")]
-Engine = Annotated[str, typer.Option("--engine", help=f"What runs the mutants: {' or '.join(ENGINES)}.")]
+Rounds = Annotated[
+    int | None, typer.Option("--rounds", metavar="N", min=1, help="Repetitions, each with its own seeds.")
+]
+Seed = Annotated[int | None, typer.Option("--seed", metavar="N", min=0, help="The campaign's seed.")]
+Jobs = Annotated[int | None, typer.Option("-j", "--jobs", metavar="N", min=1, help="Processes at a time.")]
+Engine = Annotated[
+    str,
+    typer.Option(
+        "--engine",
+        metavar="ENGINE",
+        help=f"What runs the mutants: {', '.join(ENGINES)}.",
+        autocompletion=lambda: list(ENGINES),
+    ),
+]
+OneMutant = Annotated[
+    str, typer.Argument(metavar="MUTANT", help="The mutant's number or id, or as much of it as is unique.")
+]
+Table = Annotated[bool, typer.Option("--table", help="Print every mutant at the end, not only a summary.")]
 NoOracle = Annotated[
     bool,
     typer.Option(
@@ -88,8 +107,14 @@ Confirm = Annotated[
     bool,
     typer.Option("--confirm", help="Run survivors and time-outs once more; unstable where that disagrees."),
 ]
-Round = Annotated[int | None, typer.Option("--round", min=1, help="Only this round.")]
+Round = Annotated[int | None, typer.Option("--round", metavar="N", min=1, help="Only this round.")]
 MinScore = Annotated[
     float | None,
-    typer.Option("--min-score", min=0, max=100, help="Exit with 1 if a score is under this many percent."),
+    typer.Option(
+        "--min-score",
+        metavar="PERCENT",
+        min=0,
+        max=100,
+        help="Exit with 1 if a score is under this many percent.",
+    ),
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,6 +28,13 @@ from mutabot.operators import registry
         ("tests", [NEGATE, NOISE]),
         ("tests/", [NEGATE, NOISE]),
         ("mission.py:*:reverse", [REVERSE]),
+        ("2-4", [SKIP, BY_TO, NEGATE]),
+        ("1,4-5", [REVERSE, NEGATE, NOISE]),
+        ("mission.py:3", [REVERSE]),
+        ("mission.py:3-9", [REVERSE, BY_TO]),
+        ("tests/sensors.py:2", [NEGATE, NOISE]),
+        ("sensors.py:2", [NEGATE, NOISE]),
+        ("*.py:2", [SKIP, NEGATE, NOISE]),
     ],
 )
 def test_only_and_skip_take_ids_numbers_names_and_globs(word: str, chosen: list[object]) -> None:
@@ -40,6 +48,12 @@ def test_only_adds_up_and_skip_takes_away() -> None:
 
 def test_words_may_come_from_an_iterator() -> None:
     assert select(MUTANTS, iter(["1"]), iter([])) == [REVERSE]
+
+
+@pytest.mark.parametrize("word", ["6-9", "4-3", "mission.py:40", "ission.py:3"])
+def test_a_range_or_line_without_a_mutant_is_an_error(word: str) -> None:
+    with pytest.raises(SelectionError, match=re.escape(repr(word))):
+        select(MUTANTS, [word])
 
 
 @pytest.mark.parametrize("option", ["only", "skip"])

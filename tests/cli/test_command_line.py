@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 import time
@@ -135,7 +136,17 @@ def test_a_run_prints_the_results(fake: Campaign, capsys: pytest.CaptureFixture[
     assert main(["run"]) == 0
     out, err = capsys.readouterr()
     assert "5 mutants × 2 rounds: complete" in out
+    assert "`mutabot results` shows every mutant" in out
+    assert "Mutants by rounds" not in out
     assert "mutants" in err
+
+
+def test_a_run_prints_every_mutant_on_request(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "--table"]) == 0
+    out = capsys.readouterr().out
+    main(["results"])
+    assert "Mutants by rounds" in out
+    assert out == capsys.readouterr().out
 
 
 def test_options_of_a_run_reach_the_campaign(fake: Campaign) -> None:
@@ -248,7 +259,7 @@ def test_errors_are_4_and_told_first_unless_the_limit_allows_them(
     assert main(["results"]) == 0
     for text in (out, capsys.readouterr().out):
         first = text.index("1 of 10 outcomes ended in error")
-        assert first < min(text.index(word) for word in ("Mutants by rounds", "Scores", "survivors"))
+        assert first < min(text.index(word) for word in ("family · role", "survivors"))
 
 
 def test_unstable_outcomes_beyond_the_limit_are_4(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:
@@ -335,7 +346,7 @@ def test_show_of_an_unknown_mutant_names_the_nearest(
     fake: Campaign, capsys: pytest.CaptureFixture[str]
 ) -> None:
     main(["run"])
-    assert main(["show", samples.SKIP.id[:-1]]) == 2
+    assert main(["show", samples.SKIP.id.replace("skip", "sikp")]) == 2
     assert samples.SKIP.id in capsys.readouterr().err
 
 
@@ -350,12 +361,43 @@ def test_results_can_be_piped_in_any_encoding(fake: Campaign, encoding: str) -> 
     assert b"Scores" in done.stdout
 
 
-def test_a_pipe_that_closes_early_is_no_crash(fake: Campaign) -> None:
+@pytest.mark.parametrize("command", ["results", "results --json", "show 1", "list --help"])
+def test_a_pipe_that_closes_early_is_no_error(fake: Campaign, command: str) -> None:
+    fake.journal = {"mutants": tuple(
+        samples.mutant(number, f"made-{number}", samples.MOVE, "dx", "arm.move_by " * 20)
+        for number in range(1, 400)
+    )}  # fmt: skip
     main(["run"])
-    command = f"{sys.executable} -m mutabot.cli results | head -1"
-    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
-    assert "Traceback" not in done.stderr
+    pipe = f"{sys.executable} -m mutabot {command} | head -1; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", pipe], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert len(done.stdout.splitlines()) == 1
     assert not (fake.project / ".mutabot" / "crash.txt").exists()
+
+
+@pytest.mark.parametrize("command", [[], ["run"], ["show"], ["compare"]])
+def test_the_short_option_asks_for_help_too(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*command, "-h"]) == 0
+    short = capsys.readouterr().out
+    main([*command, "--help"])
+    assert short == capsys.readouterr().out
+    assert "Usage: mutabot" in short
+    assert not re.search(r"<(str|int|float|path)[^>]*>\s{2}", short.partition("Options:")[2])
+
+
+def test_the_shell_completes_commands_and_names(project: Path) -> None:
+    def completed(words: str) -> list[str]:
+        variables = {"_MUTABOT_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": "2"}
+        count = str(len(words.split()) - (not words.endswith(" ")))
+        done = subprocess.run(
+            [Path(sys.executable).with_name("mutabot")], capture_output=True, text=True, check=False,
+            env={**os.environ, **variables, "COMP_CWORD": count},
+        )  # fmt: skip
+        return done.stdout.split()
+
+    assert completed("mutabot re") == ["replay", "results"]
+    assert completed("mutabot run --engine ") == ["auto", "branch", "replay"]
+    assert completed("mutabot run --family cl") == ["classical"]
 
 
 def test_help_is_quick() -> None:

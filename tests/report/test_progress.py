@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import io
+import re
 
+import pytest
+from rich.cells import cell_len
 from rich.console import Console
 
 from mutabot.report.console import make_console
 from mutabot.report.progress import Bar, Lines, make_progress
+
+_ESCAPES = re.compile(r"\x1b\[[0-9;?]*[a-zA-Z]")
 
 
 def test_a_pipe_gets_the_beginning_and_the_end_of_a_stage_and_little_between() -> None:
@@ -65,3 +70,28 @@ def test_a_terminal_gets_a_bar() -> None:
     assert "mutants" in out.getvalue()
     assert "2/2" in out.getvalue()
     assert "a note" in out.getvalue()
+
+
+@pytest.mark.parametrize("width", [50, 60, 80, 120, 200])
+def test_every_stage_is_one_line_with_a_whole_bar_count_and_time(width: int) -> None:
+    out = io.StringIO()
+    with Bar(Console(file=out, force_terminal=True, width=width)) as progress:
+        progress.stage("a stage with a rather long name, as some of them have", 100)
+        for _ in range(100):
+            progress.advance("#123 mission.py:33 reverse arm.move_by: killed\nby a check in a test")
+    last = [line for line in _ESCAPES.sub("", out.getvalue()).splitlines() if line.strip()][-1]
+    assert cell_len(last) <= width
+    assert last.count("━") >= 10
+    assert "100/100" in last
+    assert re.search(r"0:00:\d\d", last)
+    assert "killed" not in last  # what was told of the last step does not stay
+
+
+def test_what_is_told_beside_the_bar_never_takes_a_second_line() -> None:
+    out = io.StringIO()
+    with Bar(Console(file=out, force_terminal=True, width=60)) as progress:
+        progress.stage("mutants", 2)
+        progress.advance("a line that is much longer than the terminal is wide " * 3)
+        progress._progress.refresh()
+        shown = out.getvalue()
+    assert "\x1b[1A" not in shown  # nothing moves up: there is one line

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import io
+import re
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.cells import cell_len
@@ -12,14 +15,22 @@ from rich.console import Console
 from analysis import samples
 from mutabot.analysis.results import Results, find_mutant, read_results
 from mutabot.campaign.journal import Journal
+from mutabot.errors import SelectionError
 from mutabot.model import By, Outcome, Verdict
 from mutabot.report.console import make_console, plain, short_place
 from mutabot.report.detail import print_mutant
 from mutabot.report.listing import print_plan
 from mutabot.report.marks import mark_of
+from mutabot.report.summary import print_summary
 from mutabot.report.terminal import print_results
 
 WIDTHS = pytest.mark.parametrize("width", [60, 80, 120, 200])
+
+
+def summary(results: Results, width: int) -> str:
+    on = console(width)
+    print_summary(on, results)
+    return written(on)
 
 
 @pytest.fixture
@@ -195,6 +206,50 @@ def test_many_rounds_are_counted_and_split_over_several_tables(tmp_path: Path) -
     assert max(cell_len(line) for line in text.splitlines()) <= 80
 
 
+@WIDTHS
+def test_a_run_ends_with_errors_scores_survivors_and_where_to_read_on(results: Results, width: int) -> None:
+    text = summary(results, width)
+    lines = text.splitlines()
+    assert lines[0] == "5 mutants × 2 rounds: complete"
+    assert max(cell_len(line) for line in lines) <= width
+    order = ["ended in error", "robot · program", "robot · oracle", "3 survivors", "outside the score"]
+    assert [text.index(words) for words in order] == sorted(text.index(words) for words in order)
+    # of the first round 1 of 2 and of the second 2 of 3; by a check 1 of 2 and 0 of 3
+    assert re.search(r"robot · program +58\.3 %.* 25\.0 % +3 of 5", text)
+    assert "Mutants outside the score: 1 refused" in text
+    assert "`mutabot results` shows every mutant" in text.replace("\n", " ")
+    assert "by-to" not in text  # neither survived nor in error: a row in the full table only
+
+
+def test_of_many_survivors_a_run_shows_ten(tmp_path: Path) -> None:
+    mutants = tuple(
+        samples.mutant(number, f"made-{number}", samples.MOVE, "dx", "arm.move_by") for number in range(1, 31)
+    )
+    outcomes = tuple(Outcome(mutant.id, 0, Verdict.SURVIVED) for mutant in mutants)
+    path = samples.write_journal(tmp_path / "j.sqlite", outcomes=outcomes, mutants=mutants, rounds=1)
+    with Journal.open(path) as journal:
+        text = summary(read_results(journal), 120)
+    assert text.count("made-") == 10
+    assert "and 20 more" in text
+
+
+def test_what_fits_several_mutants_names_ten_of_them(tmp_path: Path, results: Results) -> None:
+    assert find_mutant(results, "noise").mutant == samples.NOISE
+    assert find_mutant(results, "mission.py:2").mutant == samples.SKIP
+    with pytest.raises(SelectionError) as caught:
+        find_mutant(results, "mission.py")
+    first, *others = str(caught.value).splitlines()
+    assert first == "'mission.py' fits 3 mutants; give a number or a whole id:"
+    assert others == [f"{one.number:>6}  {one.id}" for one in (samples.REVERSE, samples.SKIP, samples.BY_TO)]
+    many = tuple(replace(samples.REVERSE, number=number, variant=str(number)) for number in range(1, 15))
+    with Journal.open(samples.write_journal(tmp_path / "many.sqlite", mutants=many)) as journal:
+        results = read_results(journal)
+    with pytest.raises(SelectionError, match="fits 14 mutants") as caught:
+        find_mutant(results, "reverse")
+    assert len(str(caught.value).splitlines()) == 12
+    assert str(caught.value).endswith("and 4 more")
+
+
 def test_show_underlines_the_call_in_its_source(results: Results) -> None:
     on = console(80)
     print_mutant(on, find_mutant(results, "3"), samples.PROGRAM)
@@ -223,6 +278,38 @@ def test_show_tells_what_changed_and_how_each_round_ended(results: Results) -> N
         "Stop: hit",
     ):
         assert words in text
+
+
+def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
+    def killed(round: int, message: str, **more: Any) -> Outcome:
+        outcome = Outcome(
+            samples.REVERSE.id, round, Verdict.KILLED, By.CHECK, test=samples.TEST, message=message
+        )
+        return replace(outcome, hits=3, tests=1, wall=0.1 * (round + 1), **more)
+
+    outcomes = (
+        *(killed(round, f"box is at x = {round + 0.5} m", acted=3) for round in (0, 1, 2, 4)),
+        killed(3, "box is at x = 0.5 m", acted=2),
+        Outcome(samples.REVERSE.id, 5, Verdict.SURVIVED, hits=3, acted=3, tests=1, wall=0.2),
+        Outcome(samples.REVERSE.id, 6, Verdict.SURVIVED, hits=3, acted=3, tests=1, wall=0.2),
+    )
+    path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=outcomes, rounds=8)
+    with Journal.open(path) as journal:
+        on = console(100)
+        print_mutant(on, find_mutant(read_results(journal), "1"), None)
+    lines = [line.strip() for line in written(on).partition("Rounds\n")[2].splitlines()]
+    assert lines == [
+        f"rounds 1–3, 5: C killed by a check in {samples.TEST}",
+        "such as in round 1:",
+        "box is at x = 0.5 m",
+        "acted at 3 of 3 hits, 1 tests run, 0.1 to 0.5 s",
+        f"round 4: C killed by a check in {samples.TEST}",
+        "box is at x = 0.5 m",
+        "acted at 2 of 3 hits, 1 tests run, 0.4 s",
+        "rounds 6–7: S survived",
+        "acted at 3 of 3 hits, 1 tests run, 0.2 s",
+        "round 8: · not run",
+    ]
 
 
 @WIDTHS

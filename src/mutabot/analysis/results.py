@@ -9,12 +9,16 @@ from typing import Any
 from mutabot.campaign.journal import BaselineTest, ControlEnd, Journal
 from mutabot.campaign.lock import is_written
 from mutabot.campaign.sampling import DRAWING, Drawing
+from mutabot.campaign.selection import fits
 from mutabot.campaign.verify import CONFIRMATION, FLAKY, VERIFICATION, Flaky, Verification
 from mutabot.errors import SelectionError, unknown_name_text
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict, from_data
 
 from .divergence import explain, is_indistinguishable, quantity_of, rank
 from .score import Group, KillRate, RoundScores, groups_of
+
+#: mutants that are named where a text fits several
+_SHOWN = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +138,10 @@ class Results:
 
 
 def find_mutant(results: Results, name: str) -> MutantResult:
-    """The mutant with this number or id. Raises SelectionError, naming the nearest id."""
+    """The mutant with this number or id, or the only one that ``name`` fits as ``--only`` would take it.
+
+    A part of an id will do. Raises SelectionError, naming the nearest id, or the mutants that it fits.
+    """
     for result in results.mutants:
         if name in (result.mutant.id, str(result.mutant.number)):
             return result
@@ -143,8 +150,19 @@ def find_mutant(results: Results, name: str) -> MutantResult:
     if name.isdigit():
         problem = f"there is no mutant {name}; they are numbered 1 to {results.mutants[-1].mutant.number}"
         raise SelectionError(problem, unknown=[name])
+    found = [one for one in results.mutants if name in one.mutant.id or fits(name, one.mutant)]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise SelectionError(_several(name, found), unknown=[name])
     problem = unknown_name_text("mutant", name, (result.mutant.id for result in results.mutants))
     raise SelectionError(problem, unknown=[name])
+
+
+def _several(name: str, found: Sequence[MutantResult]) -> str:
+    lines = [f"{one.mutant.number:>6}  {one.mutant.id}" for one in found[:_SHOWN]]
+    more = [f"        and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else []
+    return "\n".join([f"{name!r} fits {len(found)} mutants; give a number or a whole id:", *lines, *more])
 
 
 def read_results(journal: Journal, *, earlier: bool = False) -> Results:

@@ -11,6 +11,8 @@ from mutabot.errors import SelectionError, nearest_name
 from mutabot.model import LeftOut, Mutant
 
 _WILD = re.compile(r"[*?]")
+_NUMBERS = re.compile(r"\d+(-\d+)?(,\d+(-\d+)?)*")
+_LINE = re.compile(r"(.+):(\d+(?:-\d+)?)")
 
 
 def select(
@@ -26,7 +28,8 @@ def select(
     A selection file holds one id (or an id with ``*`` and ``?``) per line; what follows ``#`` at the
     beginning of a line or after a space is a comment. Its mutants are numbered 1, 2, 3 … in the order of
     the file; otherwise numbers stay those of the plan. ``only`` and ``skip`` take ids (also with ``*`` and
-    ``?``), numbers, names of operators, families or roles, and file globs.
+    ``?``), numbers (``3``, ``16-20``, ``3,16-20``), names of operators, families or roles, files, file globs,
+    and lines (``mission.py:22``, ``mission.py:20-30``).
 
     Raises SelectionError for anything that fits no mutant, nor one that the plan leaves out.
     """
@@ -49,7 +52,12 @@ def numbered(
 
 def fits(pattern: str, mutant: Mutant) -> bool:
     """Whether a word of ``--only`` or ``--skip`` means this mutant."""
-    names = (str(mutant.number), mutant.operator, mutant.family, mutant.site.role.value)
+    if _NUMBERS.fullmatch(pattern):
+        return any(mutant.number in _range(part) for part in pattern.split(","))
+    line = _LINE.fullmatch(pattern)
+    if line is not None and any(_is_at(single, line[1], _range(line[2])) for single in mutant.singles):
+        return True
+    names = (mutant.operator, mutant.family, mutant.site.role.value)
     file = mutant.site.span.file
     return (
         pattern in names
@@ -57,6 +65,19 @@ def fits(pattern: str, mutant: Mutant) -> bool:
         or is_like(pattern, file)
         or file.startswith(pattern.rstrip("/") + "/")
     )
+
+
+def _range(text: str) -> range:
+    """The numbers that ``7`` or ``3-7`` means."""
+    first, _, last = text.partition("-")
+    return range(int(first), int(last or first) + 1)
+
+
+def _is_at(mutant: Mutant, file: str, lines: range) -> bool:
+    """Whether a mutant stands in these lines of a file, whose first folders may be left out."""
+    span = mutant.site.span
+    is_here = is_like(file, span.file) or span.file.endswith("/" + file.removeprefix("…/"))
+    return is_here and span.line < lines.stop and span.end_line >= lines.start
 
 
 def is_like(pattern: str, text: str) -> bool:

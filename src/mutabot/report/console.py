@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import sys
 from collections.abc import Sequence
 from typing import IO
 
@@ -17,9 +19,26 @@ _ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 
 
+class _Console(Console):
+    """A console whose reader may leave early, as ``head`` does: then nothing more is printed."""
+
+    def on_broken_pipe(self) -> None:
+        self.quiet = True
+        leave_pipe()
+
+
+def leave_pipe() -> None:
+    """Nobody reads standard output any more: what is still to be printed goes nowhere."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, sys.stdout.fileno())
+    finally:
+        os.close(nowhere)
+
+
 def make_console(file: IO[str] | None = None, *, width: int | None = None, stderr: bool = False) -> Console:
     """A console that prints texts as they are. ``file`` is standard output if None."""
-    return Console(file=file, width=width, stderr=stderr, markup=False, highlight=False, emoji=False)
+    return _Console(file=file, width=width, stderr=stderr, markup=False, highlight=False, emoji=False)
 
 
 def plain(text: str) -> str:

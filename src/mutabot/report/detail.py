@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 from rich.console import Console, RenderableType
 from rich.padding import Padding
@@ -21,6 +23,7 @@ from .marks import mark_of
 
 #: facts that a mutant of the program text has not
 _OF_CALLS = ("operation", "quantity")
+_NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
 
 
 def print_mutant(console: Console, result: MutantResult, source: str | None) -> None:
@@ -60,8 +63,11 @@ def _parts(result: MutantResult, source: str | None) -> Iterator[RenderableType]
     if change is not None:
         yield Text(f"\nWhere it first acted, the program {plain(change)}.")
     yield heading("Rounds")
-    for number, outcome in enumerate(result.rounds, start=1):
-        yield from _round(number, outcome)
+    groups: dict[Any, list[int]] = {}
+    for number, outcome in enumerate(result.rounds):
+        groups.setdefault(_alike(outcome), []).append(number)
+    for numbers in groups.values():
+        yield from _ended(numbers, result.rounds)
 
 
 def _facts(result: MutantResult) -> Table:
@@ -106,17 +112,65 @@ def _quantity_text(name: str | None, quantity: Quantity | None) -> str:
     return f"{name}: {', '.join(word for word in (*words, frame) if word)}"
 
 
-def _round(number: int, outcome: Outcome | None) -> Iterator[RenderableType]:
-    mark = mark_of(outcome)
-    line = Text.assemble(f"{number:>3}  ", mark.text, f"  {mark.words}")
+def _alike(outcome: Outcome | None) -> Any:
+    """Equal for rounds that ended alike: numbers in texts may differ."""
     if outcome is None:
-        yield line
-        return
-    if outcome.test is not None:
-        line.append(f" in {outcome.test}")
+        return None
+    texts = (outcome.message or "", *outcome.divergence)
+    return (
+        outcome.verdict, outcome.by, outcome.test, outcome.exception, outcome.place,
+        outcome.indistinguishable, outcome.gaps, outcome.acted == outcome.hits,
+        *(_NUMBER.sub("0", text) for text in texts),
+    )  # fmt: skip
+
+
+def _ended(numbers: list[int], rounds: Sequence[Outcome | None]) -> Iterator[RenderableType]:
+    """Rounds that ended alike, by their 0-based numbers; what differs a little is told of the first."""
+    outcomes = [outcome for number in numbers if (outcome := rounds[number]) is not None]
+    mark = mark_of(outcomes[0] if outcomes else None)
+    name = f"round{'s' if len(numbers) > 1 else ''} {_numbers(numbers)}:"
+    line = Text.assemble(f"  {name} ", mark.text, f" {mark.words}")
+    if outcomes and outcomes[0].test is not None:
+        line.append(f" in {outcomes[0].test}")
     yield line
-    for text in _evidence(outcome):
+    if not outcomes:
+        return
+    *texts, effort = _evidence(outcomes[0])
+    if any([*_evidence(other)][:-1] != texts for other in outcomes):
+        texts.insert(0, f"such as in round {numbers[0] + 1}:")
+    if any(_effort(other, with_time=False) != _effort(outcomes[0], with_time=False) for other in outcomes):
+        effort = _all_effort(outcomes)
+    elif len(outcomes) > 1:
+        effort = f"{_effort(outcomes[0], with_time=False)}, {_seconds(outcomes)}"
+    for text in (*texts, effort):
         yield Padding(Text(plain(text), overflow="fold"), (0, 0, 0, 8), expand=False)
+
+
+def _numbers(numbers: Sequence[int]) -> str:
+    """1-based numbers of rounds: ``1–3, 5``."""
+    parts: list[list[int]] = []
+    for number in numbers:
+        if parts and number == parts[-1][-1] + 1:
+            parts[-1].append(number)
+        else:
+            parts.append([number])
+    return ", ".join(f"{part[0] + 1}–{part[-1] + 1}" if len(part) > 1 else f"{part[0] + 1}" for part in parts)
+
+
+def _all_effort(outcomes: Sequence[Outcome]) -> str:
+    acted = _between(sorted(outcome.acted for outcome in outcomes))
+    hits = _between(sorted(outcome.hits for outcome in outcomes))
+    tests = _between(sorted(outcome.tests for outcome in outcomes))
+    return f"acted at {acted} of {hits} hits, {tests} tests run, {_seconds(outcomes)}"
+
+
+def _between(values: Sequence[int]) -> str:
+    return str(values[0]) if values[0] == values[-1] else f"{values[0]} to {values[-1]}"
+
+
+def _seconds(outcomes: Sequence[Outcome]) -> str:
+    low, high = (f"{pick(outcome.wall for outcome in outcomes):.1f}" for pick in (min, max))
+    return f"{low} s" if low == high else f"{low} to {high} s"
 
 
 def _evidence(outcome: Outcome) -> Iterator[str]:
@@ -129,4 +183,9 @@ def _evidence(outcome: Outcome) -> Iterator[str]:
         yield "calls and probes as in the original (indistinguishable)"
     yield from outcome.divergence
     yield from (f"not compared: {gap}" for gap in outcome.gaps)
-    yield f"acted at {outcome.acted} of {outcome.hits} hits, {outcome.tests} tests run, {outcome.wall:.1f} s"
+    yield _effort(outcome)
+
+
+def _effort(outcome: Outcome, *, with_time: bool = True) -> str:
+    text = f"acted at {outcome.acted} of {outcome.hits} hits, {outcome.tests} tests run"
+    return f"{text}, {outcome.wall:.1f} s" if with_time else text

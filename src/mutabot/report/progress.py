@@ -8,6 +8,7 @@ from typing import Protocol, Self
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.table import Column
 
 from .console import plain
 
@@ -15,6 +16,18 @@ from .console import plain
 EVERY = 5.0
 #: part of a stage after which the time left is worth telling: the first outcomes say little about the others
 _TELLING = 0.1
+
+
+#: columns of the terminal from which on the bar has this width
+_BARS = ((120, 40), (80, 20), (0, 10))
+#: widths of ``100/1000`` and ``0:00:10``
+_COUNT, _TIME = 9, 7
+#: what lies between the columns, and the least for the last of them
+_GAPS = 6
+
+
+def _column(width: int | None = None, *, at_most: int | None = None, ratio: int | None = None) -> Column:
+    return Column(min_width=width, max_width=at_most, ratio=ratio, no_wrap=True, overflow="ellipsis")
 
 
 class Reporter(Protocol):
@@ -45,13 +58,17 @@ class Bar:
     """A bar per stage on a terminal."""
 
     def __init__(self, console: Console) -> None:
+        # every stage keeps to one line, whatever is told beside it: texts are cut before the bar is
+        bar = next(width for columns, width in _BARS if console.width >= columns)
+        room = max(10, console.width - bar - _COUNT - _TIME - _GAPS)
         self._progress = Progress(
-            TextColumn("{task.description}", markup=False),
-            BarColumn(bar_width=None),
-            MofNCompleteColumn(),
-            TimeRemainingColumn(elapsed_when_finished=True),
-            TextColumn("{task.fields[line]}", markup=False),
+            TextColumn("{task.description}", markup=False, table_column=_column(at_most=room)),
+            BarColumn(bar_width=bar, table_column=_column(bar)),
+            MofNCompleteColumn(table_column=_column(_COUNT)),
+            TimeRemainingColumn(elapsed_when_finished=True, table_column=_column(_TIME)),
+            TextColumn("{task.fields[line]}", markup=False, table_column=_column(ratio=1)),
             console=console,
+            expand=True,
         )
         self._task: TaskID | None = None
 
@@ -63,7 +80,7 @@ class Bar:
     def advance(self, line: str | None = None) -> None:
         """Move the bar on; ``line`` stands beside it."""
         if self._task is not None:
-            self._progress.update(self._task, advance=1, line=plain(line or ""))
+            self._progress.update(self._task, advance=1, line=plain(line or "").partition("\n")[0])
 
     def note(self, text: str) -> None:
         """Print a line above the bars."""

@@ -52,7 +52,7 @@ def print_results(console: Console, results: Results, *, everything: bool = Fals
 
 
 def _parts(results: Results, width: int, everything: bool) -> Iterator[RenderableType]:
-    yield Text(_title(results), style="bold")
+    yield Text(title(results), style="bold")
     yield Text(_circumstances(results), style="dim")
     yield from error_lines(results)
     yield from earlier_lines(results)
@@ -68,14 +68,15 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
         if results.rounds > 1:
             yield Text(_INTERVALS, style="dim")
         yield from sample_lines(results)
-    yield from _survivors(results, width)
+    yield from survivor_lines(results, width)
     yield from _outside(results, width)
     yield from left_out_lines(results.left_out, everything=everything)
-    yield from _trust(results)
+    yield from trust_lines(results)
     yield from _controls(results)
 
 
-def _title(results: Results) -> str:
+def title(results: Results) -> str:
+    """How many mutants and rounds, and how the campaign ended."""
     size = f"{plural(len(results.mutants), 'mutant')} × {plural(results.rounds, 'round')}"
     if results.done == results.planned:
         return f"{size}: {results.state}"
@@ -177,7 +178,7 @@ def _round_table(results: Results, rounds: range) -> Table:
     for number in rounds:
         table.add_column(str(number + 1), justify="right", no_wrap=True)
     table.add_column("mean", justify="right", no_wrap=True)
-    rows = [(_name(group), group.scores) for group in results.groups]
+    rows = [(group_name(group), group.scores) for group in results.groups]
     if len(rows) > 1:
         rows.append(("all together", results.all))
     for name, scores in rows:
@@ -192,7 +193,8 @@ def _whole_percent(share: float | None) -> str:
     return "–" if share is None else f"{100 * share:.0f} %"
 
 
-def _name(group: Group) -> str:
+def group_name(group: Group) -> str:
+    """``robot · program``."""
     return f"{group.family} · {group.role}"
 
 
@@ -206,7 +208,7 @@ def group_table(results: Results) -> Table:
     for group in results.groups:
         total = group.scores.total
         table.add_row(
-            _name(group),
+            group_name(group),
             str(group.mutants),
             _score_cell(group.scores.mean, total.killed, total.valid, group.scores.interval),
             _score_cell(group.scores.mean_check, total.by_check, total.valid, group.scores.check_interval),
@@ -230,7 +232,7 @@ def sample_lines(results: Results) -> Iterator[RenderableType]:
 
 
 def _all_text(group: Group) -> str:
-    drawn = f"{_name(group)}: {group.mutants} of {group.population}"
+    drawn = f"{group_name(group)}: {group.mutants} of {group.population}"
     scores = group.scores
     if scores.sample_interval is None or scores.sample_check_interval is None:
         return f"{drawn}; too few to say anything about all of them"
@@ -252,7 +254,8 @@ def _counts(scores: RoundScores) -> str:
     return ", ".join(parts)
 
 
-def _survivors(results: Results, width: int) -> Iterator[RenderableType]:
+def survivor_lines(results: Results, width: int, *, at_most: int | None = None) -> Iterator[RenderableType]:
+    """The survivors, the farthest from the original first; of many, the first ``at_most``."""
     survivors = results.survivors
     if not survivors:
         if results.all.total.valid:
@@ -261,12 +264,14 @@ def _survivors(results: Results, width: int) -> Iterator[RenderableType]:
     yield heading(f"{plural(len(survivors), 'survivor')}, the farthest from the original first")
     narrow = width < WIDE
     table = make_mutant_table(("place", "operator", "let through"), "why", narrow=narrow)
-    for result in survivors:
+    for result in survivors[:at_most]:
         rate = result.kill_rate
         let_through = f"{rate.valid - rate.killed} of {rate.valid}"
         facts = (_place(result), result.mutant.operator, f"{let_through} rounds" if narrow else let_through)
         add_row(table, result.mutant.number, facts, result.why, narrow=narrow)
     yield table
+    if at_most is not None and len(survivors) > at_most:
+        yield Text(f"and {len(survivors) - at_most} more", style="dim")
 
 
 def _outside(results: Results, width: int) -> Iterator[RenderableType]:
@@ -299,7 +304,7 @@ def left_out_lines(left_out: Sequence[LeftOut], *, everything: bool = False) -> 
                     )
 
 
-def _trust(results: Results) -> Iterator[RenderableType]:
+def trust_lines(results: Results) -> Iterator[RenderableType]:
     """Flaky tests, and what a second look at outcomes found."""
     if results.flaky.tests:
         yield heading(f"{plural(len(results.flaky.tests), 'test')} set aside, which cannot be relied on")
