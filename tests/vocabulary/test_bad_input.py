@@ -119,6 +119,40 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
         "[[operation]]\ncall = 'robot:move'\noverrides = true",
         ["robot.toml:3", "no method of a class"],
     ),
+    "argument_of_a_pattern_that_holds_the_text": (
+        GOOD_OPERATION
+        + "message = 'm'\npatterns = [{ text = 'go', arguments.m = { kind = 'duration', unit = 's' } }]",
+        ["holds the text command"],
+    ),
+    "message_in_self_of_a_function": (
+        "[[operation]]\ncall = 'link:send'\nmessage = 'self'",
+        ["robot.toml:3", "no method of a class", "no self"],
+    ),
+    "field_of_a_message_in_self": (
+        GOOD_OPERATION
+        + "message = 'self'\npatterns = [{ text = 'x{n:d}', kind = 'output', range = [0, 9] }]",
+        ["robot.toml:4", "patterns", "comes from self", "{n} cannot be sent"],
+    ),
+    "opposite_of_a_message_in_self": (
+        GOOD_OPERATION + "message = 'self.id'\npatterns = [{ text = 'on', opposite = 'off' }]",
+        ["robot.toml:4", "comes from self.id", "an opposite cannot be sent"],
+    ),
+    "message_that_is_no_path": (
+        GOOD_OPERATION + "message = 'self..id'\npatterns = [{ text = 'on' }]",
+        ["robot.toml:3", "'self..id' is not the name"],
+    ),
+    "signature_without_the_deciding_argument": (
+        GOOD_OPERATION
+        + "signature = '(dx, rel)'\narguments.dx = { kind = 'rotation', unit = 'deg', "
+        + "mode = { argument = 'relative', true = 'by', false = 'to' } }",
+        ["unknown argument 'relative'", "'rel'"],
+    ),
+    "two_modes_that_disagree": (
+        GOOD_OPERATION
+        + "arguments.a = { kind = 'rotation', unit = 'deg', mode = { argument = 'r', 1 = 'by', 2 = 'to' } }\n"
+        + "arguments.b = { kind = 'rotation', unit = 'deg', mode = { argument = 'r', 1 = 'by', 3 = 'to' } }",
+        ["robot.toml:4", "arguments.b", "r has the values 1, 3 here, but 1, 2"],
+    ),
     "signature_without_brackets": (
         GOOD_OPERATION + "signature = 'x, y'",
         ["robot.toml:3", "signature", "bracket", "(body, joints"],
@@ -219,6 +253,34 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
         "arguments.x = { kind = 'position', unit = 'm' }",
         ["arguments.x.kind", "belongs to result", '"translation" with mode = "to"'],
     ),
+    "mode_without_an_argument": (
+        "arguments.dx = { kind = 'rotation', unit = 'deg', mode = { true = 'by', false = 'to' } }",
+        ["dx.mode", "needs the argument that decides", 'argument = "relative"'],
+    ),
+    "mode_with_one_value": (
+        "arguments.dx = { kind = 'rotation', unit = 'deg', mode = { argument = 'r', true = 'by' } }",
+        ["dx.mode", "needs a mode for each value of r"],
+    ),
+    "mode_with_a_wrong_value": (
+        "arguments.dx = { kind = 'rotation', unit = 'deg', mode = { argument = 'r', 1 = 'rel', 2 = 'to' } }",
+        ["dx.mode", "unknown mode 'rel'", "did you mean 'by'"],
+    ),
+    "mode_with_a_table": (
+        "arguments.dx = { kind = 'rotation', unit = 'deg', mode = { argument = 'r', 1 = {}, 2 = 'to' } }",
+        ["dx.mode", 'expected "by" or "to"'],
+    ),
+    "mode_with_a_bad_path": (
+        "arguments.dx = { kind = 'rotation', unit = 'deg', mode = { argument = '.r', 1 = 'by', 2 = 'to' } }",
+        ["dx.mode.argument", "begin with an argument's name"],
+    ),
+    "mode_that_the_object_decides": (
+        "arguments.d = { kind = 'rotation', unit = 'deg', mode = { argument = 'self', 1 = 'by', 2 = 'to' } }",
+        ["d.mode.argument", "not one argument of the call"],
+    ),
+    "decided_mode_of_an_output": (
+        "arguments.o = { kind = 'output', range = [0, 1], mode = { argument = 'r', 1 = 'by', 2 = 'to' } }",
+        ["o.mode", "an output has no mode"],
+    ),
     "label_as_argument": ("arguments.c = { kind = 'label', values = ['a', 'b'] }", ["result", '"output"']),
     "command_as_result": ("result = { " + _BY + " }", ["belongs to arguments", '"position"']),
     "label_without_values": ("result = { kind = 'label' }", ["a label needs values"]),
@@ -267,7 +329,10 @@ PATTERNS: dict[str, tuple[str, list[str]]] = {
         "{ text = 'go/{a:g}/{b:g}', kind = 'duration', unit = 's' }",
         ["{a} and {b}", "arguments = { a ="],
     ),
-    "no_field": ("{ text = 'go', kind = 'duration', unit = 's' }", ["'go' has no field"]),
+    "no_field": (
+        "{ text = 'go', kind = 'duration', unit = 's' }",
+        ["'go' has no field", "beside the text write arguments.NAME"],
+    ),
     "quantity_twice": (
         "{ text = 'go/{a:g}', kind = 'duration', unit = 's', arguments = { a = {} } }",
         ["either here or under arguments"],

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from mutabot import vocabulary as package
-from mutabot.model import Clock, Kind, Mode, Operation, Probe, Vocabulary
+from mutabot.model import Clock, Kind, Mode, Operation, Probe, Quantity, Vocabulary, from_data, to_data
 from mutabot.model.answer import restore
 from mutabot.vocabulary import load
 from mutabot.vocabulary.load import shipped
@@ -312,6 +312,74 @@ def test_the_time_is_in_the_result_or_in_an_argument(time: str, rooted: bool, tm
     clock = loaded(tmp_path, f"clock = {{ tick = 'sim:step', time = '{time}' }}").clock
     assert clock is not None
     assert (clock.time, clock.rooted, clock.unit) == (time, rooted, "s")
+
+
+def test_a_pattern_may_describe_arguments_beside_the_text(tmp_path: Path) -> None:
+    text = """message = "node"
+    arguments.timeout = { kind = "duration", unit = "s" }
+    [[operation.patterns]]
+    text = "axis/{n:d}"
+    arguments.n = { kind = "output", values = [1, 2] }
+    arguments.value = { kind = "translation", unit = "m", mode = "to" }
+    arguments.pose.x = { kind = "translation", unit = "m", mode = "to" }
+    """
+    operation = only(tmp_path, text)
+    (pattern,) = operation.patterns
+    assert [q.name for q in pattern.arguments] == ["n", "value", "pose.x", "timeout"]
+    assert pattern.fields == {"n"}
+    assert operation.described.keys() == {"timeout", "value", "pose", "node"}
+
+
+def test_the_object_of_a_call_may_tell_which_command_it_is(tmp_path: Path) -> None:
+    text = """message = "self.nodeid"
+    patterns = [{ text = "ns=2;s=X", arguments.value = { kind = "duration", unit = "s" } }]
+    """
+    operation = only(tmp_path, text)
+    assert (operation.message, operation.command) == ("self.nodeid", True)
+    assert operation.described == {"value": "arguments.value"}
+
+
+def test_an_argument_may_decide_about_the_mode(tmp_path: Path) -> None:
+    text = """
+    result = { kind = "flag" }
+    arguments.dx = { kind = "rotation", unit = "deg", mode = { argument = "rel", true = "by", false = "to" } }
+    arguments.speed = { kind = "output", range = [0, 1] }
+    """
+    operation = only(tmp_path, text)
+    assert not operation.arguments
+    assert operation.command
+    facts = [
+        (one.text, one.notation, [(q.name, q.mode) for q in one.arguments], [q.name for q in one.result])
+        for one in operation.patterns
+    ]
+    assert facts == [
+        ("rel=true", None, [("dx", Mode.BY), ("speed", None)], ["result"]),
+        ("rel=false", None, [("dx", Mode.TO), ("speed", None)], ["result"]),
+    ]
+    assert {type(q) for one in operation.patterns for q in one.arguments} == {Quantity}
+    assert from_data(Operation, to_data(operation)) == operation
+
+
+def test_two_arguments_that_decide_make_a_command_of_each_combination(tmp_path: Path) -> None:
+    def mode(argument: str) -> str:
+        return f'mode = {{ argument = "{argument}", true = "by", false = "to" }}'
+
+    text = f"""message = "m"
+    [[operation.patterns]]
+    text = "go/{{x:g}}/{{y:g}}"
+    opposite = "back/{{x:g}}/{{y:g}}"
+    arguments.x = {{ kind = "translation", unit = "m", {mode("a")} }}
+    arguments.y = {{ kind = "translation", unit = "m", {mode("b")} }}
+    """
+    patterns = only(tmp_path, text).patterns
+    assert [one.text.partition(" ")[2] for one in patterns] == [
+        "[a=true, b=true]",
+        "[a=true, b=false]",
+        "[a=false, b=true]",
+        "[a=false, b=false]",
+    ]
+    assert {one.notation for one in patterns} == {"go/{x:g}/{y:g}"}
+    assert patterns[1].name == "go/{x}/{y} [a=true, b=false]"
 
 
 def test_a_signature_names_the_arguments_of_a_callable_that_does_not(tmp_path: Path) -> None:

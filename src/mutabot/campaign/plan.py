@@ -196,5 +196,6 @@ def _reason(subject: Subject, value: Any, hits: int) -> str:
 def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen) -> str:
     what = place.site.text
     if subject.pattern is not None:
-        what = f"{what}({subject.pattern.name!r})"
+        name = subject.pattern.name
+        what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
     return f"{what}: {rule.describe(subject, seen.before, seen.after)}"

@@ -15,13 +15,13 @@ from typing import Any
 from mutabot.errors import PathError
 from mutabot.model import Call, Operation, Pattern, Quantity, Reply
 from mutabot.model.answer import NotKeptError, keep, restore
-from mutabot.model.notation import Notation
 from mutabot.model.quantity import Value, is_reading_of
 from mutabot.operators.driving import same
 
 from .answers import snapshot
 from .arguments import Arguments, signature_for
 from .intercept import resolve
+from .writer import Message, Writer
 
 
 @dataclass(slots=True)
@@ -33,7 +33,7 @@ class Invocation:
         instance: the object it is bound to, or None.
         args, kwargs: as the program gave them.
         arguments: the same by name; None if they do not fit the signature.
-        message: the text command, or None.
+        message: what says which command it is, or None.
     """
 
     wrapped: Callable[..., Any]
@@ -41,7 +41,7 @@ class Invocation:
     args: tuple[Any, ...]
     kwargs: dict[str, Any]
     arguments: Arguments | None
-    message: str | bytes | None = None
+    message: Message | None = None
 
 
 class Door:
@@ -68,6 +68,7 @@ class Door:
         self._reading = reading
         self._on_problem = on_problem
         self._signature: inspect.Signature | None = None
+        self._writer = Writer(operation, on_problem)
         self._last_replies: dict[str | None, Any] = {}
         self.commands = 0
         self.calls = 0
@@ -84,7 +85,10 @@ class Door:
         """The call as operators see it."""
         self.calls += 1
         invocation = Invocation(wrapped, instance, args, kwargs, self._bind(wrapped, args, kwargs))
-        pattern, values = self._written(invocation)
+        pattern, values = None, dict[str, Value]()
+        if invocation.arguments is not None:
+            invocation.message = self._writer.message(invocation.arguments, instance)
+            pattern, values = self._writer.read(invocation.arguments, invocation.message)
 
         async def current(quantity: Quantity) -> float:
             return await self._where(quantity, invocation)
@@ -96,16 +100,14 @@ class Door:
         invocation: Invocation = call.payload
         fits = invocation.arguments is not None or self.operation.signature is not None
         self.commands += self.operation.command and fits  # what does not fit never reaches the robot
-        wrapped = self._opposite(invocation) if call.reversed and call.pattern is None else invocation.wrapped
+        is_text = call.pattern is not None and call.pattern.notation is not None
+        wrapped = self._opposite(invocation) if call.reversed and not is_text else invocation.wrapped
         changed = {
             name: value for name, value in call.values.items() if not same(value, original.values.get(name))
         }
         if invocation.arguments is None or (not changed and not call.reversed):
             return wrapped(*invocation.args, **invocation.kwargs)
-        if call.pattern is not None:
-            args, kwargs = self._with_message(invocation.arguments, invocation, call, call.pattern)
-        else:
-            args, kwargs = self._with_values(invocation.arguments, changed)
+        args, kwargs = self._writer.changed(call, changed, invocation.arguments, invocation.message)
         return wrapped(*args, **kwargs)
 
     def reply(self, call: Call, result: Any) -> Reply:
@@ -158,64 +160,6 @@ class Door:
         if self._signature is None:
             self._signature = signature_for(self.operation.signature, wrapped)
         return Arguments.of(self._signature, args, kwargs)  # None: the call itself will say what is wrong
-
-    def _written(self, invocation: Invocation) -> tuple[Pattern | None, dict[str, Value]]:
-        if invocation.arguments is None:
-            return None, {}
-        if self.operation.message is not None:
-            return self._read_message(invocation, invocation.arguments)
-        values = {}
-        for quantity in self.operation.arguments:
-            start = invocation.arguments.get(quantity.path.root or "")
-            try:
-                value = quantity.path.get(start) if start is not None else None
-            except PathError as error:
-                self._on_problem(f"arguments.{quantity.name}", error)
-                continue
-            if value is not None:
-                values[quantity.name] = value
-        return None, values
-
-    def _read_message(
-        self, invocation: Invocation, arguments: Arguments
-    ) -> tuple[Pattern | None, dict[str, Value]]:
-        message = arguments.get(self.operation.message or "")
-        if not isinstance(message, str | bytes):
-            return None, {}
-        invocation.message = message
-        text = _body(message)[0]
-        for pattern in self.operation.patterns:
-            values = Notation.compile(pattern.text).read(text)
-            if values is not None:
-                named = {quantity.name for quantity in pattern.arguments}
-                return pattern, {name: value for name, value in values.items() if name in named}
-        return None, {}
-
-    def _with_message(
-        self, arguments: Arguments, invocation: Invocation, call: Call, pattern: Pattern
-    ) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        message = invocation.message
-        assert message is not None
-        text, ending = _body(message)
-        notation = Notation.compile(pattern.text)
-        values = {**(notation.read(text) or {}), **call.values}
-        if call.reversed and pattern.opposite is not None:
-            written = Notation.compile(pattern.opposite).write(values, looks=notation.looks(text)) + ending
-        else:
-            written = notation.write(values, like=text) + ending
-        changed = written.encode("utf-8", "surrogateescape") if isinstance(message, bytes) else written
-        return arguments.replaced({self.operation.message or "": changed})
-
-    def _with_values(
-        self, arguments: Arguments, values: Mapping[str, Value]
-    ) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        changed: dict[str, Any] = {}
-        for quantity in self.operation.arguments:
-            if quantity.name in values:
-                root = quantity.path.root or ""
-                start = changed.get(root, arguments.get(root))
-                changed[root] = quantity.path.put(start, values[quantity.name])
-        return arguments.replaced(changed)
 
     def _opposite(self, invocation: Invocation) -> Callable[..., Any]:
         assert self.operation.opposite is not None
@@ -271,13 +215,6 @@ def here(call: Call) -> dict[str, Any]:
 
 def _text_of(pattern: Pattern | None) -> str | None:
     return pattern.text if pattern is not None else None
-
-
-def _body(message: str | bytes) -> tuple[str, str]:
-    """A message without its line ending, and the ending."""
-    text = message.decode("utf-8", "surrogateescape") if isinstance(message, bytes) else message
-    body = text.rstrip("\r\n")
-    return body, text[len(body) :]
 
 
 def _typed_like(value: Value, original: Value) -> Value:

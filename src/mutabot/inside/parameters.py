@@ -46,7 +46,7 @@ def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
         original: the callable that its target names, as it is kept in its class or module.
     """
     callable = getattr(original, "__func__", original)
-    described = described_arguments(operation)
+    described = operation.described
     signature = signature_of(callable)
     if operation.signature is not None:
         signature = parse_signature(operation.signature)
@@ -63,14 +63,6 @@ def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
             yield Finding(key, f"{operation.target} has no argument {root!r}", root, known)
 
 
-def described_arguments(operation: Operation) -> dict[str, str]:
-    """The arguments that the vocabulary speaks of, and the key that does."""
-    roots = {quantity.path.root or "": f"arguments.{quantity.name}" for quantity in operation.arguments}
-    if operation.message is not None:
-        roots[operation.message] = "message"
-    return roots
-
-
 def _advice(operation: Operation, callable: Any, is_native: bool) -> str:
     name = operation.name.rpartition(".")[2]
     if is_native:
@@ -79,16 +71,12 @@ def _advice(operation: Operation, callable: Any, is_native: bool) -> str:
     else:
         why = f"{operation.target} is wrapped in (*args, **kwargs), which does not tell its arguments"
         found = _wrapped_in(callable, name, _DEPTH)
-    proposal = spell_signature(found) if found is not None else f"({', '.join(_roots(operation))}, …)"
+    proposal = spell_signature(found) if found is not None else f"({', '.join(operation.described)}, …)"
     order = "" if found is not None else ", with all names in their order"
     return (
         f"{why}: only those that a call gives by keyword can be told apart; "
         f'write signature = "{proposal}"{order}'
     )
-
-
-def _roots(operation: Operation) -> list[str]:
-    return list(dict.fromkeys(described_arguments(operation)))
 
 
 def _wrapped_in(function: Any, name: str, depth: int) -> inspect.Signature | None:

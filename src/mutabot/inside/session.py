@@ -460,7 +460,7 @@ class Session:
             if key.partition(".")[2] not in self._fit.get(operation.target, ()):
                 self._tell(operation.source, key, str(error), name, error.known)
 
-        if operation.patterns or not key.startswith("result."):
+        if operation.message is not None or not key.startswith("result."):
             tell()
         elif self.job.inspect:  # one result may lack what others have
             self._unfit.setdefault((operation.source, key), tell)

@@ -37,6 +37,7 @@ from .job import TokensHeld as TokensHeld
 from .job import Unbranched as Unbranched
 from .job import Undiverged as Undiverged
 from .mutant import Mutant as Mutant
+from .operation import Case as Case
 from .operation import Clock as Clock
 from .operation import Operation as Operation
 from .operation import Pattern as Pattern

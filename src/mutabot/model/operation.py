@@ -6,21 +6,37 @@ from dataclasses import dataclass
 from typing import Any
 
 from .notation import Notation
+from .path import Path
 from .quantity import Quantity
 
 
 @dataclass(frozen=True, slots=True)
-class Pattern:
-    """One command of an operation whose commands are text.
+class Case:
+    """A value of an argument, on which the meaning of a call depends.
 
     Attributes:
-        text: the notation, such as ``lift/{height:g}``.
-        arguments: the meaning of the fields.
+        argument: path to the argument.
+        value: the value as text: ``true``, ``false``, ``none``, or what it prints.
+    """
+
+    argument: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Pattern:
+    """One command of an operation whose calls are several: by a text, by the value of an argument, or both.
+
+    Attributes:
+        text: the notation of the text, such as ``lift/{height:g}``, together with the cases.
+        arguments: the meaning of the fields, and of other arguments beside the text.
         result: the meaning of what the call returns for this command.
         opposite: notation of the opposite command, or None if it has none.
         idle: what the call returns while the robot does nothing, as data (see ``answer``); None if the
             vocabulary does not say.
         source: where the vocabulary says so (``robot.toml:12 · link:send · lift/{height}``).
+        when: the values of arguments for which a call is this command.
+        base: the notation of the text alone; None without cases, or if there is no text.
     """
 
     text: str
@@ -29,6 +45,19 @@ class Pattern:
     opposite: str | None = None
     source: str = ""
     idle: Any = None
+    when: tuple[Case, ...] = ()
+    base: str | None = None
+
+    @property
+    def notation(self) -> str | None:
+        """The notation of the text by which a call is this command; None if no text tells."""
+        return self.base if self.when else self.text
+
+    @property
+    def fields(self) -> frozenset[str]:
+        """The names of the fields of the text."""
+        notation = self.notation
+        return frozenset(one.name for one in Notation.compile(notation).fields) if notation else frozenset()
 
     @property
     def name(self) -> str:
@@ -48,8 +77,8 @@ class Operation:
         current: operation that tells where the robot is now; None if by-to cannot be computed.
         opposite: callable that does the opposite, with the same arguments; None if there is none.
         refusals: exceptions (``module:Name``) by which the robot refuses a command.
-        message: argument that holds a text command; None for operations that are not text.
-        patterns: the text commands, if ``message`` is given.
+        message: path to what says which command a call is, from an argument or ``self``; or None.
+        patterns: the commands, if ``message`` is given, or if the meaning depends on an argument.
         idle: what it returns while the robot does nothing, as data (see ``answer``); None if the vocabulary
             does not say.
         source: where the vocabulary says so (``robot.toml:12 · robot:Arm.move_by``).
@@ -85,6 +114,23 @@ class Operation:
     def name(self) -> str:
         """The short name for reports."""
         return self.qualname
+
+    @property
+    def described(self) -> dict[str, str]:
+        """The arguments that the vocabulary speaks of, and the key that does."""
+        found = {quantity.path.root or "": f"arguments.{quantity.name}" for quantity in self.arguments}
+        for pattern in self.patterns:
+            fields = pattern.fields
+            for quantity in pattern.arguments:
+                if quantity.name not in fields:
+                    found.setdefault(quantity.path.root or "", f"arguments.{quantity.name}")
+            for case in pattern.when:
+                found.setdefault(Path.parse(case.argument, rooted=True).root or "", "mode")
+        if self.message is not None:
+            root = Path.parse(self.message, rooted=True).root or ""
+            if root != "self":
+                found[root] = "message"
+        return found
 
     def pattern(self, text: str | None) -> Pattern | None:
         """The pattern with this notation, or None."""

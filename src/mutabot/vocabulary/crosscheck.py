@@ -64,7 +64,8 @@ def _all_arguments(operation: Operation) -> list[Quantity]:
 
 
 def _roots(operation: Operation) -> set[str]:
-    return {quantity.path.root for quantity in operation.arguments if quantity.path.root is not None}
+    quantities = operation.arguments if operation.message is not None else _all_arguments(operation)
+    return {quantity.path.root for quantity in quantities if quantity.path.root is not None}
 
 
 def _wanted(written: Quantity) -> str:

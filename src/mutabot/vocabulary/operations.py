@@ -11,6 +11,7 @@ from mutabot.model.units import UNITS, Dimension, dimension_of
 from .explain import Check
 from .idle import read_idle
 from .lines import Place
+from .modes import Undecided, cases_of, name_of
 from .patterns import read_patterns
 from .quantities import read_arguments, read_result
 from .schema import ClockTable, OperationTable, ProbeTable
@@ -27,26 +28,29 @@ def read_operation(check: Check, raw: Any, place: Place) -> Operation | None:
     source = source_of(check, place, table.call)
     arguments = read_arguments(check, table.arguments, (*place, "arguments"))
     result = read_result(check, table.result, (*place, "result"))
-    patterns = read_patterns(check, table.patterns, (*place, "patterns"), source)
-    _check_message(check, table, arguments, place)
-    _check_signature(check, table, arguments, place)
+    patterns = read_patterns(check, table.patterns, (*place, "patterns"), source, arguments)
+    message = _read_message(check, table, (arguments, *(one.arguments for one in patterns)), place)
+    if table.message is None and not table.patterns:
+        arguments, patterns = _in_cases(check, table, arguments, result, source, place)
     if table.overrides and "." not in table.call.partition(":")[2]:
         check.error((*place, "overrides"), f"{table.call} is no method of a class, so nothing overrides it")
     operation = Operation(
         target=table.call,
-        arguments=arguments,
+        arguments=tuple(one for one in arguments if not isinstance(one, Undecided)),
         result=result,
         command=_is_command(table, arguments, result, patterns),
         current=table.current,
         opposite=table.opposite,
         refusals=tuple(table.refusals),
-        message=table.message,
+        message=message,
         patterns=patterns,
         source=source,
         signature=table.signature,
         overrides=table.overrides,
         idle=read_idle(check, table.idle, (*place, "idle")),
     )
+    _check_from_self(check, operation, place)
+    _check_signature(check, operation, place)
     if not (table.arguments or table.result or table.message or operation.command):
         check.error(place, "says nothing: no arguments, no result, no patterns, and command = false")
     return operation
@@ -99,38 +103,84 @@ def source_of(check: Check, place: Place, name: str) -> str:
     return f"{check.document.file}{f':{line}' if line is not None else ''} · {name}"
 
 
-def _check_message(
-    check: Check, table: OperationTable, arguments: tuple[Quantity, ...], place: Place
-) -> None:
+def _in_cases(
+    check: Check,
+    table: OperationTable,
+    arguments: tuple[Quantity, ...],
+    result: tuple[Quantity, ...],
+    source: str,
+    place: Place,
+) -> tuple[tuple[Quantity, ...], tuple[Pattern, ...]]:
+    """The arguments of an operation, or its commands if an argument decides about their modes."""
+    found = cases_of(check, arguments, (*place, "arguments"))
+    if not found[0][0]:
+        return found[0][1], ()
+    patterns = [
+        Pattern(
+            text=name_of(cases),
+            arguments=quantities,
+            result=result,
+            opposite=table.opposite,
+            source=f"{source} · {name_of(cases)}",
+            when=cases,
+        )
+        for cases, quantities in found
+    ]
+    return (), tuple(patterns)
+
+
+def _read_message(
+    check: Check, table: OperationTable, described: tuple[tuple[Quantity, ...], ...], place: Place
+) -> str | None:
+    """The path to what says which command a call is; None if there is none, or a mistake, which is noted."""
     if table.patterns and table.message is None:
         check.error((*place, "patterns"), 'needs message = "…": the argument that holds the command')
     if table.message is None:
-        return
-    if not table.message.isidentifier():
+        return None
+    try:
+        path = Path.parse(table.message, rooted=True)
+    except ValueError:
         check.error((*place, "message"), f"{table.message!r} is not the name of an argument")
-    if any(quantity.path.root == table.message for quantity in arguments):
-        where = (*place, "arguments", table.message)
-        check.error(where, "holds the text command, which patterns describe")
+        return None
+    if path.root == "self" and "." not in table.call.partition(":")[2]:
+        check.error((*place, "message"), f"{table.call} is no method of a class, so it has no self")
+    for quantity in (one for several in described for one in several):
+        if quantity.path == path:
+            where = (*place, "arguments", table.message)
+            check.error(where, "holds the text command, which patterns describe")
+            break
+    return table.message
 
 
-def _check_signature(
-    check: Check, table: OperationTable, arguments: tuple[Quantity, ...], place: Place
-) -> None:
-    if table.signature is None:
+def _check_from_self(check: Check, operation: Operation, place: Place) -> None:
+    """What lies in the object tells which command it is, but cannot be said otherwise."""
+    if operation.message is None or Path.parse(operation.message, rooted=True).root != "self":
+        return
+    for index, pattern in enumerate(operation.patterns):
+        fields = [quantity.name for quantity in pattern.arguments if quantity.name in pattern.fields]
+        what = f"{{{fields[0]}}}" if fields else "an opposite" if pattern.opposite is not None else None
+        if what is not None:
+            where = (*place, "patterns", index)
+            check.error(
+                where,
+                f"the text comes from {operation.message}, which no call gives, so {what} cannot be "
+                "sent in its place; describe the arguments of the call beside it",
+            )
+
+
+def _check_signature(check: Check, operation: Operation, place: Place) -> None:
+    if operation.signature is None:
         return
     try:
-        signature = parse_signature(table.signature)
+        signature = parse_signature(operation.signature)
     except ValueError as error:
         check.error((*place, "signature"), str(error))
         return
     if any(one.kind is one.VAR_KEYWORD for one in signature.parameters.values()):
         return
-    for quantity in arguments:
-        if quantity.path.root not in signature.parameters:
-            name = quantity.path.root or ""
-            check.unknown((*place, "arguments", name), "argument", name, signature.parameters)
-    if table.message is not None and table.message not in signature.parameters:
-        check.unknown((*place, "message"), "argument", table.message, signature.parameters)
+    for name, key in operation.described.items():
+        if name not in signature.parameters:
+            check.unknown((*place, *key.split(".", 1)), "argument", name, signature.parameters)
 
 
 def _is_command(

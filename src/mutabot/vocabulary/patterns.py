@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
+from mutabot.errors import nearest_name
 from mutabot.model import Path, Pattern, Quantity
 from mutabot.model.notation import Field, Notation
 
 from .explain import Check
 from .idle import read_idle
 from .lines import Place
-from .quantities import read_quantity, read_result
+from .modes import cases_of, name_of
+from .quantities import read_arguments, read_quantity, read_result
 from .schema import PatternTable, QuantityTable
 
 
-def read_patterns(check: Check, raw: list[Any], place: Place, source: str) -> tuple[Pattern, ...]:
-    """The patterns of an operation; ``source`` is the operation's own."""
+def read_patterns(
+    check: Check, raw: list[Any], place: Place, source: str, common: tuple[Quantity, ...] = ()
+) -> tuple[Pattern, ...]:
+    """The patterns of an operation.
+
+    Args:
+        check: the document.
+        raw, place: the entries, and where they stand.
+        source: the operation's own.
+        common: arguments that all of them have beside the text, unless they describe them otherwise.
+    """
     patterns: list[Pattern] = []
     seen: dict[tuple[str, ...], str] = {}
     for index, item in enumerate(raw):
@@ -27,8 +40,27 @@ def read_patterns(check: Check, raw: list[Any], place: Place, source: str) -> tu
         if form in seen:
             check.error((*where, "text"), f"takes the same commands as {seen[form]!r}")
         seen.setdefault(form, pattern.text)
-        patterns.append(pattern)
+        own = {quantity.name for quantity in pattern.arguments} | pattern.fields
+        beside = (one for one in common if one.name not in own)
+        pattern = replace(pattern, arguments=(*pattern.arguments, *beside))
+        patterns.extend(_in_cases(check, pattern, where))
     return tuple(patterns)
+
+
+def _in_cases(check: Check, pattern: Pattern, place: Place) -> Iterator[Pattern]:
+    """The pattern, once for each value of the arguments that decide about modes."""
+    for cases, quantities in cases_of(check, pattern.arguments, (*place, "arguments")):
+        if not cases:
+            yield pattern
+            continue
+        yield replace(
+            pattern,
+            text=f"{pattern.text} [{name_of(cases)}]",
+            arguments=quantities,
+            source=f"{pattern.source} [{name_of(cases)}]",
+            when=cases,
+            base=pattern.text,
+        )
 
 
 def _read_pattern(check: Check, raw: Any, place: Place, source: str) -> Pattern | None:
@@ -61,7 +93,11 @@ def _read_only_field(
     if table.arguments:
         check.error(place, "describe the fields either here or under arguments, not both")
     elif not fields:
-        check.error(place, f"{table.text!r} has no field that this quantity could describe")
+        check.error(
+            place,
+            f"{table.text!r} has no field that this quantity could describe; "
+            "for an argument beside the text write arguments.NAME = { … }",
+        )
     elif len(fields) > 1:
         text = (
             f"has the fields {names}: describe each, as arguments = {{ {fields[0].name} = {{ kind = … }} }}"
@@ -74,13 +110,17 @@ def _read_only_field(
 
 def _read_fields(check: Check, raw: dict[str, Any], place: Place, notation: Notation) -> tuple[Quantity, ...]:
     fields = {field.name: field for field in notation.fields}
+    free = [name for name in fields if name not in raw]
     quantities: list[Quantity] = []
+    beside: dict[str, Any] = {}
     for name, item in raw.items():
         if name in fields:
             quantities.extend(_read_field(check, item, (*place, name), fields[name]))
-        else:
+        elif nearest_name(name, free) is not None:  # a field that is misspelt, rather than an argument
             check.unknown((*place, name), "field", name, fields)
-    return tuple(quantities)
+        else:
+            beside[name] = item
+    return (*quantities, *read_arguments(check, beside, place))
 
 
 def _read_field(check: Check, raw: Any, place: Place, field: Field) -> tuple[Quantity, ...]:

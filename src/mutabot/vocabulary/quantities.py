@@ -10,6 +10,7 @@ from mutabot.model import Path, Quantity
 from .axes import slice_of, split_axes, spread
 from .explain import Check, shown
 from .lines import Place
+from .modes import Decision, Undecided, read_decision
 from .rules import default_unit, default_values, faults
 from .schema import QuantityTable
 
@@ -37,6 +38,7 @@ def read_quantity(
     check: Check, raw: Any, place: Place, path: Path, *, written: bool, name: str | None = None
 ) -> Iterator[Quantity]:
     """The quantity of a table, or one per axis where a slice has several; mistakes are noted."""
+    raw, decision = read_decision(check, raw, place)
     table = check.table(QuantityTable, raw, place)
     if table is None:
         return
@@ -53,11 +55,11 @@ def read_quantity(
     if found:
         return
     if axes is None or not several:
-        yield _quantity(table, path, table.axis, name)
+        yield _undecided(_quantity(table, path, table.axis, name), decision)
         return
     try:
         for axis, part in zip(axes, _spread(path, axes), strict=True):
-            yield _quantity(table, part, axis, None)
+            yield _undecided(_quantity(table, part, axis, None), decision)
     except ValueError as error:
         check.error((*place, "axis"), str(error))
 
@@ -123,6 +125,10 @@ def _spread(path: Path, axes: Sequence[str]) -> list[Path]:
             f'such as "{path}[0:{len(axes)}]"'
         )
     return spread(path, tuple(axes))
+
+
+def _undecided(quantity: Quantity, decision: Decision | None) -> Quantity:
+    return quantity if decision is None else Undecided.of(quantity, decision)
 
 
 def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | None) -> Quantity:
