@@ -1,7 +1,7 @@
-"""Write docs/operators.md from the operators' own examples.
+"""Write docs/operators.md from the operators' own examples, and docs/configuration.md from the settings.
 
-Use: ``python tools/make_docs.py``; with ``--check`` nothing is written, and the exit code is 1 if the page
-is out of date.
+Use: ``python tools/make_docs.py``; with ``--check`` nothing is written, and the exit code is 1 if a page is
+out of date.
 """
 
 from __future__ import annotations
@@ -11,12 +11,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import configuration_page
 from mutabot.model import Quantity
 from mutabot.model.notation import Notation
 from mutabot.operators import Example, Operator, Subject, operator
 from mutabot.operators.registry import BUILT_IN
 
-PAGE = Path(__file__).parents[1] / "docs" / "operators.md"
+DOCS = Path(__file__).parents[1] / "docs"
 
 #: the published operators: original, mutant, the operator that makes it
 PUBLISHED = (
@@ -179,11 +180,13 @@ def _row(*cells: str) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Write the page, or check it; returns the exit code."""
-    text = page()
+    """Write the pages, or check them; returns the exit code."""
+    pages = {"operators.md": page(), "configuration.md": configuration_page.page()}
     if arguments == ["--check"]:
-        return 0 if PAGE.is_file() and PAGE.read_text(encoding="utf-8") == text else 1
-    PAGE.write_text(text, encoding="utf-8")
+        paths = {DOCS / name: text for name, text in pages.items()}
+        return int(any(not path.is_file() or path.read_text("utf-8") != text for path, text in paths.items()))
+    for name, text in pages.items():
+        (DOCS / name).write_text(text, encoding="utf-8")
     return 0
 
 

@@ -48,52 +48,130 @@ _Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class Settings(BaseModel):
-    """The keys a user can write, as documented in ``Configuration``."""
+    """The keys a user can write.
+
+    The text below each key, with its example, is what docs/configuration.md says.
+    """
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
     program: _SomeTexts
+    """Files and folders of the robot program; globs may be used. Calls in them are mutated, in the role
+    `program`.
+
+        program = ["mission.py", "cell/*.py"]
+    """
     oracle: _Texts = ()
+    """The same for code of the tests that takes readings for their own checks. Calls
+    in it are mutated in the role `oracle`, whose score is a score of its own. No file can be both.
+
+        oracle = ["tests/sensors.py"]
+    """
     tests: _SomeTexts = ("tests",)
+    """Pytest's arguments that say which tests there are: folders, files,
+    node ids.
+
+        tests = ["tests", "acceptance/test_cell.py"]
+    """
     vocabulary: _SomeTexts
+    """Vocabulary files of the project, or names of vocabularies that come with
+    mutabot; see [vocabulary](vocabulary.md).
+
+        vocabulary = ["robot.toml"]
+    """
     rounds: Annotated[int, Field(ge=1)] = 1
+    """How often everything is repeated, each time with other
+    seeds. `--rounds` goes before it.
+
+        rounds = 5
+    """
     seed: Annotated[int, Field(ge=0)] = 1
+    """The campaign's seed, from which those of all rounds and tests
+    come. `--seed` goes before it.
+
+        seed = 42
+    """
     jobs: Annotated[int, Field(ge=1)] | None = None
+    """Processes at a time. Without it, one per core that
+    may be used. `--jobs` goes before it.
+
+        jobs = 1
+    """
     selection: str | None = None
+    """File with the ids of the mutants to run, one per line; they are
+    numbered in its order. Without it, all are run. `--selection` goes before it.
+
+        selection = "published.txt"
+    """
     timeout_factor: Annotated[float, Field(gt=1)] = 10.0
+    """How many times the operations and the simulated
+    time of the original a mutant may use in a test.
+
+        timeout_factor = 3.0
+    """
     timeout_seconds: Annotated[float, Field(gt=0)] = 60.0
+    """Seconds of wall clock that every test gets at
+    least, be the original ever so quick: the safety net for mutants that neither operations nor simulated
+    time can end.
+
+        timeout_seconds = 300.0
+    """
     memory: Annotated[int, BeforeValidator(parse_memory)] = 4_000_000_000
+    """Address space of a process, as
+    a text with a unit or in bytes.
+
+        memory = "16 GB"
+    """
     unstable_limit: _Share = 0.1
+    """Share of outcomes that may be unstable; above it, `run` ends with 4.
+
+        unstable_limit = 0.0
+    """
     timeout_limit: _Share = 1.0
+    """Share of outcomes that may be time-outs; above it, `run` ends with 5.
+
+        timeout_limit = 0.2
+    """
     error_limit: _Share = 0.0
+    """Share of outcomes that may be errors, in which nothing is known of the
+    mutant; above it, `run` ends with 4.
+
+        error_limit = 0.05
+    """
     min_score: Annotated[float, Field(ge=0, le=100)] | None = None
+    """Least score in percent, for each
+    family and role by itself; below it, `run` ends with 1. `--min-score` goes before it.
+
+        min_score = 80.0
+    """
     pytest_args: _Texts = ()
+    """Further arguments for pytest.
+
+        pytest_args = ["-m", "not slow"]
+    """
     families: _Families = ("robot",)
+    """Families of mutants to plant: `robot` in calls, `classical` and
+    `text` in the program's text. `--family` goes before it.
+
+        families = ["robot", "classical"]
+    """
     order: Literal[1, 2] = 1
+    """How many mutants are planted at once. `--order` goes before it.
+
+        order = 2
+    """
     pairs: Annotated[int, Field(ge=1)] = 200
+    """How many pairs are planted where `order` is 2, chosen by
+    the seed. `--pairs` goes before it.
+
+        pairs = 1000
+    """
 
 
 class Configuration(Settings):
-    """What a campaign is to do.
+    """What a campaign is to do: the settings, with paths expanded and sorted.
 
     Attributes:
-        program: files and folders with the robot program, relative to ``root``, sorted, globs expanded.
-        oracle: the same for readings that the tests' own checks take.
-        tests: pytest arguments that say which tests there are.
-        vocabulary: vocabulary files, or names of shipped vocabularies.
-        rounds: repetitions, each with its own seeds.
-        seed: the campaign's seed.
-        jobs: processes at a time; None for one per core.
-        selection: file with the ids of the mutants to run, relative to ``root``; None for all.
-        timeout_factor: how many times the baseline's operations and simulated time a mutant may use.
-        timeout_seconds: wall-clock time in seconds that every test gets at least.
-        memory: address space of a worker, in bytes.
-        unstable_limit, timeout_limit, error_limit: share of outcomes above which a run fails.
-        min_score: score in percent below which a run fails; None for no limit.
-        pytest_args: further pytest arguments.
-        families: families of the mutants to plant: ``robot``, ``classical``, ``text``.
-        order: how many mutants are one: 1 or 2.
-        pairs: how many mutants of the second order to plant, chosen by the seed.
         root: absolute path of the project.
         file: the file it was read from, relative to ``root``.
     """
