@@ -38,6 +38,7 @@ def test_the_example_does_what_it_says(name: str, index: int) -> None:
     if example.away:
         assert not passage.acted, example.away
         assert len(passage.performed) == 1
+        assert passage.away or example.subject.quantity is None
         return
     assert passage.acted
     shown = [{**call.values, **({"reversed": True} if call.reversed else {})} for call in passage.performed]

@@ -299,6 +299,16 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
         "arguments.dx = { " + _BY + ", range = [2, 1] }",
         ["dx.range", "must rise", "[2.0, 1.0]"],
     ),
+    "clip_of_a_reading": (
+        "result = { kind = 'distance', unit = 'm', clip = [0, 1] }",
+        ["result.clip", "a distance is read, not sent"],
+    ),
+    "falling_clip": ("arguments.dx = { " + _BY + ", clip = [2, 1] }", ["dx.clip", "must rise", "[2.0, 1.0]"]),
+    "clip_of_three": ("arguments.dx = { " + _BY + ", clip = [1, 2, 3] }", ["clip", "at most 2", "got 3"]),
+    "clip_and_values": (
+        "arguments.o = { kind = 'output', values = [1, 9], clip = [0, 5] }",
+        ["o.clip", "values are all that can be sent"],
+    ),
     "range_of_three": ("arguments.dx = { " + _BY + ", range = [1, 2, 3] }", ["range", "at most 2", "got 3"]),
     "infinite_range": ("arguments.dx = { " + _BY + ", range = [0, inf] }", ["finite number"]),
     "value_outside_range": (

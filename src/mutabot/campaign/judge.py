@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from mutabot.model import By, Kill, Mutant, Outcome, TestEnd, Verdict
+from mutabot.model.outcome import added
 
 from .baseline import Baseline
 from .comparison import Observation, compare, farthest
@@ -88,6 +89,7 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
         # a test that never ended cannot say how often, but that the mutant was at work is known
         hits=sum(end.hits for end in run.ends) + died_at_work,
         acted=sum(end.acted for end in run.ends) + died_at_work,
+        away=added(end.away for end in run.ends),
         example=next((end.example for end in run.ends if end.example is not None), None),
         tests=len(run.ends),
         wall=run.wall,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from random import Random
@@ -50,17 +52,21 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary) -> Plan:
     left_out: list[LeftOut] = []
     taken: set[str] = set()
     operators = load_all()
+    operations_at = Counter(site for site, _ in {(place.site, place.operation) for place in baseline.hits})
     for place, hits in baseline.hits.items():
         operation = vocabulary.operation(place.operation)
         if operation is None:
             continue
+        is_shared = operations_at[place.site] > 1
         for subject, rule in _subjects(operators, operation, place):
             mutant = _mutant(len(mutants) + 1, rule, subject, place)
             mutant = _distinct(mutant, taken)
             seen, reason = _foresee(rule, subject, hits)
             if rule.asks_where and not _is_told(subject, vocabulary):
                 reason = f"{operation.current or 'no reading'} does not tell where it is"
-            mutant = replace(mutant, description=_description(rule, subject, place, seen))
+            mutant = replace(
+                mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
+            )
             if rule.asks_idle and reason is None:
                 try:
                     mutant = replace(
@@ -193,9 +199,22 @@ def _reason(subject: Subject, value: Any, hits: int) -> str:
     return f"would change nothing in {calls}{within} (value {shown})"
 
 
-def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen) -> str:
+def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen, *, is_shared: bool) -> str:
+    """What the mutant does, in one line; ``is_shared``: whether the site reaches several operations."""
+    operation = subject.operation
     what = place.site.text
+    if not _names(what, operation.qualname, is_shared=is_shared):
+        what = f"{what} ({operation.name})"
     if subject.pattern is not None:
         name = subject.pattern.name
         what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
     return f"{what}: {rule.describe(subject, seen.before, seen.after)}"
+
+
+def _names(text: str, qualname: str, *, is_shared: bool) -> bool:
+    """Whether the text of a call says which operation it is: a variable, a table or a wrapper may not."""
+    wanted = qualname if is_shared else qualname.rpartition(".")[2]
+    return (
+        re.search(rf"(?<![\w.]){re.escape(wanted)}$" if is_shared else rf"\b{re.escape(wanted)}$", text)
+        is not None
+    )

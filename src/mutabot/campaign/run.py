@@ -28,6 +28,7 @@ from .lock import at_work
 from .pairs import pairs
 from .plan import Plan, make_plan
 from .program_text import family_of
+from .ranges import note_ranges
 from .request import CheckReport, Progress, Request
 from .reuse import reuse
 from .sampling import DRAWING, draw
@@ -170,7 +171,10 @@ def _baseline(request: Request, workers: Workers, progress: Progress) -> tuple[B
     workers.on_unshared = lambda reason: progress.note(
         f"each run starts anew, imports and collection included: {reason}"
     )
-    return take_baseline(request, workers, progress, repetitions=repetitions_for(request), may_share=branches)
+    repetitions = repetitions_for(request)
+    baseline, results = take_baseline(request, workers, progress, repetitions=repetitions, may_share=branches)
+    note_ranges(baseline, request.vocabulary, progress)
+    return baseline, results
 
 
 def selected(request: Request, plan: Plan, baseline: Baseline) -> Plan:

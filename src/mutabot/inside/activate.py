@@ -13,6 +13,7 @@ from mutabot.errors import OperatorError
 from mutabot.model import Call, Middleware, Mutant, Operation, Reply, Span
 from mutabot.model.answer import restore
 from mutabot.model.idle import Idle
+from mutabot.model.outcome import added
 from mutabot.operators import Operator, Subject, operator
 from mutabot.operators.control import FatalFault
 from mutabot.operators.driving import Carried, Passage, passed, run
@@ -40,6 +41,7 @@ class Evidence:
         is_of_text: whether the mutant is one of the program text, which makes no calls itself: a refusal
             then counts only if it ends the test.
         is_unknown: whether what the robot refused is no command at all.
+        away: hits at which it stayed away, by the reason, as far as the operator says.
     """
 
     hits: int = 0
@@ -51,6 +53,7 @@ class Evidence:
     is_partial: bool = False
     is_of_text: bool = False
     is_unknown: bool = False
+    away: dict[str, int] = field(default_factory=dict)
 
     @property
     def refusal(self) -> str | None:
@@ -72,6 +75,7 @@ def together(found: Sequence[Evidence]) -> Evidence:
         is_partial=any(one.acted or one.is_partial for one in found),
         is_of_text=any(one.is_of_text for one in found),
         is_unknown=any(one.is_unknown for one in found),
+        away=added(one.away for one in found),
     )
 
 
@@ -163,6 +167,8 @@ class Activation:
 
     def _note(self, passage: Passage) -> None:
         if not passage.acted:
+            if passage.away:
+                self.evidence.away[passage.away] = self.evidence.away.get(passage.away, 0) + 1
             return
         if not self.evidence.acted:
             self.evidence.example = self._example(passage)

@@ -356,6 +356,7 @@ class Conductor:
             caught=refusal is not None and self._outcome == FAILED and not ended_by_refusal,
             hits=evidence.hits,
             acted=evidence.acted,
+            away=evidence.away,
             partly=evidence.is_partial and not evidence.acted,
             example=evidence.example,
             operations=meter.operations,

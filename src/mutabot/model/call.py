@@ -21,14 +21,20 @@ class Reply:
     Attributes:
         values: value of each read quantity by name, in the quantity's unit.
         payload: the result object itself; operators never look inside.
+        away: why the operator left it as it is; empty if it does not say so.
     """
 
     values: Mapping[str, Value] = field(default_factory=dict)
     payload: Any = None
+    away: str = ""
 
     def with_value(self, quantity: Quantity, value: Value) -> Reply:
         """The same reply with another value for one quantity."""
         return replace(self, values={**self.values, quantity.name: value})
+
+    def as_is(self, why: str) -> Reply:
+        """The same reply, with the reason why the operator leaves it alone."""
+        return replace(self, away=why)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +53,7 @@ class Call:
         idle: what the operation answers while the robot does nothing; None unless the operator has declared
             that it asks (``asks_idle``).
         payload: what the door needs to perform the call; operators never look inside.
+        away: why the operator left it as it is; empty if it does not say so.
     """
 
     operation: Operation
@@ -56,10 +63,15 @@ class Call:
     current: Callable[[Quantity], Awaitable[float]] = _unknown
     idle: Reply | None = None
     payload: Any = None
+    away: str = ""
 
     def with_value(self, quantity: Quantity, value: Value) -> Call:
         """The same call with another value for one quantity."""
         return replace(self, values={**self.values, quantity.name: value})
+
+    def as_is(self, why: str) -> Call:
+        """The same call, with the reason why the operator leaves it alone."""
+        return replace(self, away=why)
 
     def opposite(self) -> Call:
         """The call of the opposite operation or text command, with the same values."""

@@ -260,6 +260,7 @@ class TestEnd:
         caught: whether the program handled that refusal, so that the test ended for another reason.
         hits: calls at the mutant's site (with its operation and pattern).
         acted: hits at which the mutant changed something.
+        away: hits at which it stayed away, by the reason.
         partly: whether a part of a mutant of higher order changed something, and another did not.
         example: value before and after at the first hit at which it acted.
         operations: intercepted calls at any site.
@@ -291,6 +292,7 @@ class TestEnd:
     caught: bool = False
     hits: int = 0
     acted: int = 0
+    away: Mapping[str, int] = field(default_factory=dict)
     partly: bool = False
     example: tuple[Any, ...] | None = None
     operations: int = 0

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from .verdict import By, Verdict
@@ -40,6 +41,7 @@ class Outcome:
         place: ``file:line`` where it was noticed.
         hits: calls at the mutant's site, over all tests run.
         acted: hits at which the mutant changed something.
+        away: hits at which it stayed away, by the reason, as far as its operator says.
         example: value before and after at the first hit at which it acted.
         tests: number of tests run.
         wall: seconds from the start of the process to its end.
@@ -70,6 +72,7 @@ class Outcome:
     place: str | None = None
     hits: int = 0
     acted: int = 0
+    away: Mapping[str, int] = field(default_factory=dict)
     example: tuple[Any, ...] | None = None
     tests: int = 0
     wall: float = 0.0
@@ -84,6 +87,15 @@ class Outcome:
     complete: bool = False
     kills: tuple[Kill, ...] = ()
     commands: int | None = None
+
+
+def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
+    """Counts by name, put together."""
+    total: dict[str, int] = {}
+    for one in counts:
+        for name, count in one.items():
+            total[name] = total.get(name, 0) + count
+    return total
 
 
 @dataclass(frozen=True, slots=True)

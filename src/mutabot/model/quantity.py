@@ -84,6 +84,8 @@ class Quantity:
         mode: relative or absolute; None for quantities that are not commanded motions.
         values: the allowed values of a discrete quantity, or None for a continuous one.
         range: least and greatest allowed value, or None for no limit.
+        clip: what the robot or its environment limits a value to that is sent: values beyond are taken for
+            the nearer end; None if it does not.
         noise: standard deviation of the sensor noise to plant, or None for the operator's default.
     """
 
@@ -97,6 +99,7 @@ class Quantity:
     values: tuple[Value, ...] | None = None
     range: tuple[float, float] | None = None
     noise: float | None = None
+    clip: tuple[float, float] | None = None
 
     @property
     def is_measured(self) -> bool:
@@ -108,8 +111,16 @@ class Quantity:
         if self.values is not None and value not in self.values:
             return False
         if self.range is not None:
-            return bool(self.range[0] <= value <= self.range[1])
+            return bool(self.range[0] <= self.clipped(value) <= self.range[1])
         return True
+
+    def clipped(self, value: Value) -> Value:
+        """A number, or each number of a vector, as it counts after ``clip``; other values as they are."""
+        if self.clip is None or isinstance(value, str | bytes | bool | None):
+            return value
+        if hasattr(value, "__len__"):
+            return [self.clipped(item) for item in value]
+        return min(max(value, self.clip[0]), self.clip[1])
 
     def from_unit(self, value: float, unit: str) -> float:
         """``value`` in ``unit``, expressed in this quantity's own unit."""

@@ -9,7 +9,11 @@ from random import Random
 from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Quantity, Reply
 from mutabot.model.quantity import Value
 
+from .driving import same
 from .operator import Operator, Subject
+
+#: why an operator stays away from a call without a value
+NOT_GIVEN = "the call gives no such value"
 
 
 class WrittenValueOperator(Operator):
@@ -32,11 +36,11 @@ class WrittenValueOperator(Operator):
 
         async def mutated(call: Call, proceed: Proceed) -> Reply:
             if quantity.name not in call.values:
-                return await proceed(call)
-            value = self.change(quantity, call.values[quantity.name])
-            if value is None or not allowed(quantity, value):
-                return await proceed(call)
-            return await proceed(call.with_value(quantity, value))
+                return await proceed(call.as_is(NOT_GIVEN))
+            before = call.values[quantity.name]
+            value = self.change(quantity, before)
+            why = why_away(quantity, before, value)
+            return await proceed(call.as_is(why) if why else call.with_value(quantity, value))
 
         return mutated
 
@@ -66,11 +70,11 @@ class ReadValueOperator(Operator):
         async def mutated(call: Call, proceed: Proceed) -> Reply:
             reply = await proceed(call)
             if quantity.name not in reply.values:
-                return reply
-            value = self.change(subject, reply.values[quantity.name], random)
-            if value is None or not allowed(quantity, value):
-                return reply
-            return reply.with_value(quantity, value)
+                return reply.as_is(NOT_GIVEN)
+            before = reply.values[quantity.name]
+            value = self.change(subject, before, random)
+            why = why_away(quantity, before, value)
+            return reply.as_is(why) if why else reply.with_value(quantity, value)
 
         return mutated
 
@@ -91,6 +95,21 @@ def label(quantity: Quantity) -> str:
     if quantity.axis is None or name == quantity.axis or quantity.axis in name.split("_"):
         return name
     return f"{name} ({quantity.axis})"
+
+
+def why_away(quantity: Quantity, before: Value, after: Value | None) -> str:
+    """Why a new value is not put in place of another one; empty if it can be."""
+    if after is None:
+        return f"its value is none that {'can be ' if quantity.is_measured else ''}changed"
+    if not allowed(quantity, after):
+        if quantity.range is None:
+            return "the value would be none of those that the vocabulary allows"
+        return "the value would leave the range [{:g}, {:g}]".format(*quantity.range)
+    if same(before, after):
+        return "the value would stay the same"
+    if quantity.clip is not None and same(quantity.clipped(before), quantity.clipped(after)):
+        return "both values are limited to the same one by clip = [{:g}, {:g}]".format(*quantity.clip)
+    return ""
 
 
 def allowed(quantity: Quantity, value: Value) -> bool:

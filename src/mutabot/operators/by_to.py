@@ -9,7 +9,7 @@ from typing import ClassVar
 from mutabot.model import Call, Kind, Middleware, Mode, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.quantity import READING_OF, Value
 
-from ._values import allowed, label, quantity_of
+from ._values import NOT_GIVEN, label, quantity_of, why_away
 from .operator import Example, Operator, Subject, is_number
 
 _DX = Quantity("dx", Path("dx"), Kind.TRANSLATION, "x", "m", "base", Mode.BY)
@@ -56,12 +56,13 @@ class ByTo(Operator):
 
         async def mutated(call: Call, proceed: Proceed) -> Reply:
             value = call.values.get(quantity.name)
-            if value is None or not is_number(value) or (quantity.mode is Mode.BY and value == 0):
-                return await proceed(call)
+            if value is None or not is_number(value):
+                return await proceed(call.as_is(NOT_GIVEN))
+            if quantity.mode is Mode.BY and value == 0:
+                return await proceed(call.as_is("the amount is zero"))
             changed = value + sign * await call.current(quantity)
-            if not allowed(quantity, changed):
-                return await proceed(call)
-            return await proceed(call.with_value(quantity, changed))
+            why = why_away(quantity, value, changed)
+            return await proceed(call.as_is(why) if why else call.with_value(quantity, changed))
 
         return mutated
 

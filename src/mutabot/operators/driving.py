@@ -69,6 +69,13 @@ class Passage:
         return self.changed_command or self.changed_reading
 
     @property
+    def away(self) -> str:
+        """Why the mutant changed nothing, if its operator says so."""
+        if self.acted or self.received is None:
+            return ""
+        return self.received.away or (self.performed[-1].away if self.performed else "")
+
+    @property
     def changed_command(self) -> bool:
         """Whether the robot was told something else than the program said."""
         if len(self.performed) != 1:

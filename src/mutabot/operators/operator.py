@@ -110,7 +110,8 @@ class Operator(ABC):
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         """The mutant at work: ``mutated(call, proceed) -> reply``.
 
-        Must pass the call on unchanged where the changed value would not be one the robot API takes.
+        Must pass the call on unchanged where the changed value would not be one the robot API takes, and
+        says why, for the reports: ``await proceed(call.as_is("…"))``, or ``reply.as_is("…")`` for a reading.
         ``random`` is the mutant's own generator for this round and test; use no other randomness.
         """
 

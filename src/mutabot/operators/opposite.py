@@ -72,7 +72,9 @@ class Opposite(Operator):
         async def toggled(call: Call, proceed: Proceed) -> Reply:
             assert quantity is not None
             value = other_end(quantity, call.values.get(quantity.name))
-            return await proceed(call if value is None else call.with_value(quantity, value))
+            if value is None:
+                return await proceed(call.as_is("the value is neither of the two ends"))
+            return await proceed(call.with_value(quantity, value))
 
         return whole if quantity is None else toggled
 
@@ -88,12 +90,13 @@ class Opposite(Operator):
 def _ends(quantity: Quantity) -> tuple[Value, Value] | None:
     if quantity.values is not None:
         return (quantity.values[0], quantity.values[1]) if len(quantity.values) == 2 else None
-    return quantity.range
+    return quantity.range or quantity.clip
 
 
 def other_end(quantity: Quantity, value: Value) -> Value | None:
     """The other of a quantity's two states, or None if the value is neither."""
     ends = _ends(quantity)
+    value = quantity.clipped(value)
     if ends is None or value is None or value not in ends:
         return None
     return ends[1] if value == ends[0] else ends[0]

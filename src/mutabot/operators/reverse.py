@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import ClassVar
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
@@ -15,8 +16,12 @@ _DY = Quantity("dy", Path("dy"), Kind.TRANSLATION, "y", "m", "base", Mode.BY)
 _YAW = Quantity("yaw", Path("yaw"), Kind.ROTATION, "z", "deg", "base", Mode.BY)
 _TURN = Quantity("angle", Path("angle"), Kind.ROTATION, "z", "deg", None, Mode.TO, range=(0.0, 360.0))
 _LIFT = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.5))
+_PUSH = Quantity("push", Path("push"), Kind.TRANSLATION, "x", "m", None, Mode.BY, range=(-1.0, 1.0))
+_LIMITED = replace(_PUSH, clip=(-1.0, 1.0))
 _MOVE = Operation("robot:Arm.move_by", (_DY, _YAW))
 _TURN_TO = Operation("robot:Arm.turn_to", (_TURN,))
+_STEP = Operation("env:Env.step", (_PUSH,))
+_CLIPPED = Operation("env:Env.step", (_LIMITED,))
 _LIFT_TO = Operation("robot:Arm.lift_to", (_LIFT,))
 
 
@@ -46,6 +51,13 @@ class Reverse(WrittenValueOperator):
             performed=({"angle": 270},),
             note="an angle limited to a full turn stays within it",
         ),
+        Example(
+            Subject(_CLIPPED, quantity=_LIMITED),
+            {"push": 1.7},
+            performed=({"push": -1.7},),
+            note="the vocabulary says that the robot limits it: clip = [−1, 1]",
+        ),
+        Example(Subject(_STEP, quantity=_PUSH), {"push": 1.7}, away="−1.7 m is outside the range [−1, 1]"),
         Example(Subject(_MOVE, quantity=_DY), {"dy": 0.0}, away="a zero has no other way"),
         Example(Subject(_MOVE, quantity=_DY), {"yaw": 80}, away="the call does not give this component"),
         Example(Subject(_LIFT_TO, quantity=_LIFT), {"z": 0.3}, away="−0.3 m is outside the allowed range"),

@@ -194,6 +194,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "place": outcome.place,
         "hits": outcome.hits,
         "acted": outcome.acted,
+        "away": dict(outcome.away),
         "example": list(outcome.example) if outcome.example is not None else None,
         "tests": outcome.tests,
         "wall": outcome.wall,

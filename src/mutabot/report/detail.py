@@ -119,7 +119,7 @@ def _alike(outcome: Outcome | None) -> Any:
     texts = (outcome.message or "", *outcome.divergence)
     return (
         outcome.verdict, outcome.by, outcome.test, outcome.exception, outcome.place,
-        outcome.indistinguishable, outcome.gaps, outcome.acted == outcome.hits,
+        outcome.indistinguishable, outcome.gaps, outcome.acted == outcome.hits, tuple(outcome.away),
         *(_NUMBER.sub("0", text) for text in texts),
     )  # fmt: skip
 
@@ -183,7 +183,12 @@ def _evidence(outcome: Outcome) -> Iterator[str]:
         yield "calls and probes as in the original (indistinguishable)"
     yield from outcome.divergence
     yield from (f"not compared: {gap}" for gap in outcome.gaps)
+    yield from (f"stayed away at {_hits(count)}: {why}" for why, count in outcome.away.items())
     yield _effort(outcome)
+
+
+def _hits(count: int) -> str:
+    return "1 hit" if count == 1 else f"{count} hits"
 
 
 def _effort(outcome: Outcome, *, with_time: bool = True) -> str:

@@ -58,13 +58,14 @@ def faults(table: QuantityTable, *, written: bool, vector: bool = False) -> Iter
     yield from _vector(table, vector)
     yield from _values(table)
     yield from _range(table)
+    yield from _clip(table, written)
     yield from _noise(table)
 
 
 def default_unit(table: QuantityTable) -> str | None:
     """The unit, where it goes without saying: an opening between 0 and 1 is a fraction."""
     if table.unit is None and table.kind is Kind.OPENING:
-        numbers = [*(table.values or ()), *(table.range or ())]
+        numbers = [*(table.values or ()), *(table.range or table.clip or ())]
         if numbers and all(_is_number(number) and 0 <= number <= 1 for number in numbers):
             return "fraction"
     return table.unit
@@ -141,8 +142,8 @@ def _values(table: QuantityTable) -> Iterator[Fault]:
     if values is None:
         if kind is Kind.LABEL:
             yield Fault("values", "a label needs values: all that it can read")
-        if kind in (Kind.OPENING, Kind.OUTPUT) and table.range is None:
-            yield Fault("values", f"{_a(kind)} needs values (all that can be sent) or a range")
+        if kind in (Kind.OPENING, Kind.OUTPUT) and table.range is None and table.clip is None:
+            yield Fault("values", f"{_a(kind)} needs values (all that can be sent), a range or a clip")
         return
     wrong = [value for value in values if not _fits(kind, value)]
     if wrong:
@@ -169,6 +170,20 @@ def _range(table: QuantityTable) -> Iterator[Fault]:
         outside = [v for v in table.values or () if _is_number(v) and not least <= v <= most]
         if outside:
             yield Fault("values", f"{outside[0]} lies outside the range [{least}, {most}]")
+
+
+def _clip(table: QuantityTable, written: bool) -> Iterator[Fault]:
+    if table.clip is None:
+        return
+    least, most = table.clip
+    if not written:
+        yield Fault(
+            "clip", f"{_a(table.kind)} is read, not sent: only what is sent can be limited by the robot"
+        )
+    elif table.values is not None:
+        yield Fault("clip", "values are all that can be sent, so nothing is left to limit")
+    elif not least < most:
+        yield Fault("clip", f"must rise from the least to the greatest value, got [{least}, {most}]")
 
 
 def _noise(table: QuantityTable) -> Iterator[Fault]:

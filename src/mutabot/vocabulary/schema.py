@@ -28,6 +28,7 @@ class QuantityTable(Table):
     mode: Annotated[Mode | None, Field(strict=False)] = None
     values: list[Any] | None = None
     range: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
+    clip: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
     noise: float | None = None
 
 
@@ -46,6 +47,7 @@ class PatternTable(Table):
     mode: Any = None
     values: Any = None
     range: Any = None
+    clip: Any = None
     noise: Any = None
 
 
