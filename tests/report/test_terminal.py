@@ -312,6 +312,18 @@ def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
     ]
 
 
+def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None:
+    mutant = find_mutant(results, "1")
+    why = {"the value would leave the range [-1, 1]": 138, "the value would stay the same": 1}
+    rounds = tuple(one and replace(one, acted=161, hits=300, away=why) for one in mutant.rounds)
+    on = console(100)
+    print_mutant(on, replace(mutant, rounds=rounds), None)
+    text = written(on)
+    assert "acted at 161 of 300 hits" in text
+    assert "stayed away at 138 hits: the value would leave the range [-1, 1]" in text
+    assert "stayed away at 1 hit: the value would stay the same" in text
+
+
 @WIDTHS
 def test_the_plan_names_place_operator_and_quantity(width: int) -> None:
     on = console(width)
