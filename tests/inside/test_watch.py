@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import builtins
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -85,11 +86,33 @@ def test_values_are_described_by_path(values: list[Any], expected: dict[str, lis
     assert {leaf.path: leaf.values for leaf in leaves.found.values()} == expected
 
 
-def test_an_object_that_holds_itself_ends_somewhere() -> None:
-    class Node:
-        def __init__(self) -> None:
-            self.next, self.value = self, 1
+@dataclass
+class Node:
+    value: int = 1
+    next: Node | None = None
 
+
+class Pose:
+    def __init__(self) -> None:
+        self.x, self.y, self._private = 1.0, [2.0, 3.0], 4.0
+
+
+class World:
+    def __init__(self) -> None:
+        self.height, self.engine = 480, object()
+
+
+def test_a_record_that_holds_itself_ends_somewhere() -> None:
+    node = Node()
+    node.next = node
     leaves = Leaves()
-    leaves.see(Node(), "n")
-    assert "n.value" in leaves.found
+    leaves.see(node, "n")
+    assert "n.next.value" in leaves.found
+
+
+def test_only_objects_that_hold_plain_values_are_taken_apart() -> None:
+    pose, world = Leaves(), Leaves()
+    pose.see(Pose())
+    world.see(World())
+    assert {leaf.path: leaf.values for leaf in pose.found.values()} == {".x": [1.0], ".y": [[2.0, 3.0]]}
+    assert {leaf.path: leaf.type for leaf in world.found.values()} == {"": "World"}

@@ -14,6 +14,8 @@ MOST_VALUES = 8
 #: elements of a sequence that are kept, and parts of an object
 MOST_ELEMENTS, MOST_PARTS = 16, 24
 _DEPTH = 3
+#: parts of an object that is no declared record but may be one
+_MOST_FIELDS = 12
 
 
 @dataclass
@@ -116,11 +118,27 @@ def _named(value: Any) -> Iterator[tuple[str, str, Any]]:
     if isinstance(value, type) or callable(value):
         return
     names: Any = getattr(value, "_fields", None)
+    if names is None and not dataclasses.is_dataclass(value) and not _is_data(value):
+        return
     if names is None:
         names = vars(value) if hasattr(value, "__dict__") else getattr(type(value), "__slots__", ())
     for name in [names] if isinstance(names, str) else list(names):
         if not name.startswith("_") and hasattr(value, name):
             yield f".{name}", name, getattr(value, name)
+
+
+def _is_data(value: Any) -> bool:
+    """Whether an object does little more than hold plain values, as a pose or a message does."""
+    parts = vars(value).values() if hasattr(value, "__dict__") else ()
+    slots = hasattr(type(value), "__slots__") and not parts
+    return slots or (0 < len(parts) <= _MOST_FIELDS and all(_is_plain_part(part) for part in parts))
+
+
+def _is_plain_part(part: Any) -> bool:
+    part = _plain(part)
+    if isinstance(part, list | tuple):
+        return len(part) <= MOST_ELEMENTS and all(_is_plain_part(one) for one in part)
+    return isinstance(part, bool | int | float | str | None | enum.Enum) or dataclasses.is_dataclass(part)
 
 
 def _promised(hint: Any, leaf: Leaf, depth: int) -> Iterator[Leaf]:

@@ -59,6 +59,11 @@ class _Look:
         names = [one.name for one in self.known]
         return [*names, VOCABULARY] if self.found or not names else names
 
+    @property
+    def needs_vocabulary(self) -> bool:
+        """Whether there is anything to say that no shipped vocabulary says."""
+        return bool(self.found or self.others or self.unreached or not self.known)
+
     def _new(self, calls: Sequence[SeenCall]) -> list[SeenCall]:
         return [call for call in calls if not any(one.describes(call) for one in self.known)]
 
@@ -101,7 +106,8 @@ def propose(root: Path, program: Sequence[Path] = (), *, limit: float = LIMIT) -
     _refuse_existing(root)
     found = _Look(root, program, limit)
     text = _loadable(found)
-    _write(root / VOCABULARY, text)
+    if found.needs_vocabulary:
+        _write(root / VOCABULARY, text)
     _write(root / CONFIGURATION, _configuration(found))
     return _told(found)
 
@@ -193,7 +199,8 @@ def _told(found: _Look) -> list[str]:
     lines += [
         f"vocabulary {one.name}: comes with mutabot, describes {one.seen} of the calls" for one in found.known
     ]
-    lines.append(_about_vocabulary(found))
+    if found.needs_vocabulary:
+        lines.append(_about_vocabulary(found))
     return [*lines, _next(found)]
 
 
