@@ -9,6 +9,7 @@ from typing import Any
 from mutabot.campaign.journal import Journal
 from mutabot.model import (
     By,
+    Compared,
     Kind,
     LeftOut,
     Mode,
@@ -93,7 +94,7 @@ OUTCOMES = (
     Outcome(BY_TO.id, 1, Verdict.TIMEOUT, test=TEST, message="over 1000 operations"),
     Outcome(
         NEGATE.id, 0, Verdict.SURVIVED, indistinguishable=True, distance=0.0, example=(0.0014, -0.0014),
-        hits=3, acted=3, tests=2,
+        hits=3, acted=3, tests=2, compared=Compared(calls=3, moments=1, returned=2),
     ),
     Outcome(NEGATE.id, 1, Verdict.KILLED, By.CHECK, test=TEST, message="assert False"),
     Outcome(NOISE.id, 0, Verdict.ERROR, message="the simulator gave NaN [bold]not markup[/bold]"),

@@ -8,10 +8,16 @@ import pytest
 
 from analysis.samples import BACK, NEGATE, REVERSE, SKIP, VOCABULARY, mutant
 from mutabot.analysis.divergence import explain, is_indistinguishable, quantity_of, rank
-from mutabot.model import By, Outcome, Verdict
+from mutabot.model import By, Compared, Outcome, Verdict
 
 READ = Outcome(
-    NEGATE.id, 0, Verdict.SURVIVED, example=(0.0014, -0.0014), indistinguishable=True, distance=0.0
+    NEGATE.id,
+    0,
+    Verdict.SURVIVED,
+    example=(0.0014, -0.0014),
+    indistinguishable=True,
+    distance=0.0,
+    compared=Compared(calls=3, moments=1, returned=2),
 )
 FAR = Outcome(
     SKIP.id, 1, Verdict.SURVIVED, indistinguishable=False, distance=312.0, divergence=("box.x: 1", "b")
@@ -20,7 +26,8 @@ FAR = Outcome(
 
 def test_a_reading_is_told_with_its_unit_and_what_became_of_the_world() -> None:
     assert explain(NEGATE, [READ], VOCABULARY) == (
-        "read -0.0014 m instead of 0.0014 m; the world ended as in the original (indistinguishable)"
+        "read -0.0014 m instead of 0.0014 m; "
+        "nothing differs in 3 calls, probes at 1 moment, 2 returned values (indistinguishable)"
     )
 
 

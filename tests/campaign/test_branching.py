@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 from textwrap import dedent
+from typing import Any
 
 import pytest
 
@@ -30,7 +31,7 @@ MISSION = """
 """
 FACTS = (
     "verdict", "by", "test", "message", "exception", "place", "hits", "acted", "example",
-    "indistinguishable", "distance", "divergence", "simulated",
+    "indistinguishable", "distance", "divergence", "gaps", "compared", "simulated",
 )  # fmt: skip
 
 
@@ -39,11 +40,11 @@ def facts(outcome: Outcome) -> dict[str, object]:
     return {name: getattr(outcome, name) for name in FACTS}
 
 
-def both_engines(folder: Path) -> dict[tuple[str, int], Outcome]:
+def both_engines(folder: Path, **changes: Any) -> dict[tuple[str, int], Outcome]:
     """Outcomes of the branch engine, after comparing each with replay's."""
     found = {}
     for engine in ("branch", "replay"):
-        path = run_campaign(request_for(folder, engine=engine), Quiet())
+        path = run_campaign(request_for(folder, engine=engine, **changes), Quiet())
         found[engine] = {(outcome.mutant, outcome.round): outcome for outcome in outcomes(path)}
     assert found["branch"].keys() == found["replay"].keys()
     for key, outcome in found["branch"].items():

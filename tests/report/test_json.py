@@ -154,5 +154,6 @@ def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
         found["confirmation"],
         *found["baseline"],
         *(one for mutant in found["mutants"] for one in mutant["rounds"]),
+        *(one["compared"] for mutant in found["mutants"] for one in mutant["rounds"] if one.get("compared")),
     ]
     assert {key for part in parts for key in part} == documented

@@ -71,7 +71,7 @@ def _verb(quantity: Quantity | None) -> str:
 
 def _world_text(outcome: Outcome) -> str:
     if outcome.indistinguishable:
-        return "the world ended as in the original (indistinguishable)"
+        return f"nothing differs{_extent_text(outcome)} (indistinguishable)"
     if outcome.divergence:
         return outcome.divergence[0]
     if outcome.gaps:
@@ -79,6 +79,10 @@ def _world_text(outcome: Outcome) -> str:
     if outcome.distance is not None:
         return "every probe ended within its tolerance"
     return "nothing tells how the world ended (the vocabulary names no probe)"
+
+
+def _extent_text(outcome: Outcome) -> str:
+    return f" in {outcome.compared.text}" if outcome.compared is not None else " that was compared"
 
 
 def _end_text(outcome: Outcome) -> str:

@@ -11,13 +11,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.errors import BaselineError, NothingToDoError
-from mutabot.model import Budget, Instrumentation, Mutant, ProgramText, Remark, SiteSeen, TestEnd
+from mutabot.model import Budget, Instrumentation, Mutant, Probe, ProgramText, Remark, SiteSeen, TestEnd
 from mutabot.model.job import Line
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 
 from .answers import Answers
-from .comparison import Event, Observation, compare
+from .comparison import Event, Observation, as_steady
 from .failing import refuse_failing, rounds_to_repeat, why_set_aside
 from .places import Place
 from .program_text import ProgramTexts, read_texts
@@ -141,6 +141,14 @@ class Baseline:
             for other in range(len(self.tests))
             for found in (self.reaching, self.flaky_reaching)
         )
+
+    def observe_again(self, round: int, test: str, found: Observation, probes: Sequence[Probe]) -> None:
+        """An equal run of the original: only what both have alike can be compared with a mutant's."""
+        steady = as_steady(self.observations[round, test], found, probes)
+        if steady is None:
+            self.restless.add((round, test))
+        else:
+            self.observations[round, test] = steady
 
     def by_cost(self, round: int) -> list[str]:
         """All tests of a round, quickest first: the order of every selection."""
@@ -313,11 +321,8 @@ def _add_round(
             good.append(test)
             baseline.ends[round, test] = replace(end, wall=max([end.wall, *(o.wall for o in others if o)]))
             baseline.observations[round, test] = observed[0][test]
-            probes = request.vocabulary.probes
-            if not all(
-                compare(observed[0][test], run[test], probes).indistinguishable for run in observed[1:]
-            ):
-                baseline.restless.add((round, test))
+            for run in observed[1:]:
+                baseline.observe_again(round, test, run[test], request.vocabulary.probes)
     baseline.tests.append(good)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])
@@ -393,4 +398,5 @@ def _observations(result: Result, sources: Sources) -> dict[str, Observation]:
 def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     """What is compared of a test."""
     events = [Event(places[index].key, written, read) for index, written, read, _ in end.trace]
-    return Observation(events, end.probes, end.truncated, end.unread, end.outcome)
+    prepared, called = end.returned[: end.prepared], end.returned[end.prepared :]
+    return Observation(events, end.probes, end.truncated, end.unread, end.outcome, prepared, called)

@@ -26,7 +26,7 @@ from mutabot.model import (
 from mutabot.model.job import Line
 
 from .baseline import Baseline, death, observation, place_of
-from .comparison import Observation, compare
+from .comparison import Observation
 from .judge import Death, Run, judge
 from .places import Place
 from .replay import Pair, wall_limit, without_tests
@@ -265,10 +265,7 @@ class _Trunk:
             branches.observations[end.test] = found
 
     def _compare_with_baseline(self, test: str, found: Observation) -> None:
-        key = (self._round, test)
-        probes = self._request.vocabulary.probes
-        if not compare(self._baseline.observations[key], found, probes).indistinguishable:
-            self._baseline.restless.add(key)
+        self._baseline.observe_again(self._round, test, found, self._request.vocabulary.probes)
 
     def _settle(self, mutant: str) -> Iterator[Outcome]:
         """Yield the mutant's outcome if all that it depends on is known."""

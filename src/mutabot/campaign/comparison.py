@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.model import Probe
+from mutabot.model import Compared, Probe
 from mutabot.model.quantity import told_apart
 
 #: greatest difference of two equal numbers where the vocabulary names no probe
@@ -38,9 +38,11 @@ class Observation:
     Attributes:
         events: the calls.
         probes: values by ``target.part``.
-        unread: why a probe could not be read, by target.
         truncated: whether the list of calls was cut off.
+        unread: why a probe could not be read, by target.
         outcome: how the test ended for the suite.
+        prepared, returned: what the program returned to the test's fixtures and to the test itself, as in
+            ``TestEnd.returned``; None if that is not to be compared.
     """
 
     events: Sequence[Event] = ()
@@ -48,6 +50,8 @@ class Observation:
     truncated: bool = False
     unread: Mapping[str, str] = field(default_factory=dict)
     outcome: str = "passed"
+    prepared: Sequence[Any] | None = ()
+    returned: Sequence[Any] | None = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,12 +64,14 @@ class Comparison:
             that is not of numbers); None without probes, or if none that differs more is all that is known.
         divergence: one line per difference: the outcome, the worst probe first, the first call that differs.
         gaps: what could not be compared, one line each.
+        compared: how much was.
     """
 
     indistinguishable: bool
     distance: float | None
     divergence: tuple[str, ...]
     gaps: tuple[str, ...] = ()
+    compared: Compared = field(default=Compared(), compare=False)
 
 
 def compare(original: Observation, mutant: Observation, probes: Sequence[Probe] = ()) -> Comparison:
@@ -73,7 +79,8 @@ def compare(original: Observation, mutant: Observation, probes: Sequence[Probe] 
 
     Numbers are equal when they differ by no more than their probe's tolerance; values in the trace, when
     they differ by no more than the greatest tolerance of any probe. All else is compared by equality.
-    Two cut-off traces are compared as far as they go.
+    Two cut-off traces are compared as far as they go. What the program returned is compared by the finest of
+    these tolerances if it is a fraction, and exactly if not.
     """
     probe_lines = _probe_differences(original, mutant, probes)
     gaps = tuple(
@@ -85,13 +92,25 @@ def compare(original: Observation, mutant: Observation, probes: Sequence[Probe] 
         gaps = ("no probe reads anything",)
     tolerance = max((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
     trace_line = _first_difference(original, mutant, tolerance)
+    returned_line = _returned_difference(original, mutant, probes)
     distances = [distance for distance, _ in probe_lines]
     different = [line for distance, line in probe_lines if distance > 1.0]
-    lines = [*_outcome_lines(original, mutant), *different, *([trace_line] if trace_line else [])]
+    lines = [*_outcome_lines(original, mutant), *different, *filter(None, [returned_line, trace_line])]
     distance = max(distances, default=None)
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
-    return Comparison(not lines, distance, tuple(lines), gaps)
+    return Comparison(not lines, distance, tuple(lines), gaps, _compared(original, mutant))
+
+
+def as_steady(first: Observation, second: Observation, probes: Sequence[Probe]) -> Observation | None:
+    """The observation of the original that mutants are compared with, after a second run of it.
+
+    Without what the program returned if only that differs; None if more does.
+    """
+    if compare(first, second, probes).indistinguishable:
+        return first
+    bare = replace(first, prepared=None, returned=None)
+    return bare if compare(bare, second, probes).indistinguishable else None
 
 
 def farthest(comparisons: Sequence[Comparison]) -> Comparison:
@@ -108,7 +127,8 @@ def farthest(comparisons: Sequence[Comparison]) -> Comparison:
     distance = max(distances, default=None)
     if gaps and (distance or 0.0) <= 1.0:
         distance = None
-    return Comparison(together, distance, tuple(lines), gaps)
+    compared = Compared.together(one.compared for one in comparisons)
+    return Comparison(together, distance, tuple(lines), gaps, compared)
 
 
 def _outcome_lines(original: Observation, mutant: Observation) -> list[str]:
@@ -184,6 +204,77 @@ def _first_difference(original: Observation, mutant: Observation, tolerance: flo
     if more == 0 or original.truncated or mutant.truncated:
         return None
     return f"{abs(more)} {'calls' if abs(more) > 1 else 'call'} {'more' if more > 0 else 'fewer'}"
+
+
+def _compared(original: Observation, mutant: Observation) -> Compared:
+    returned = 0
+    for before, after in ((original.prepared, mutant.prepared), (original.returned, mutant.returned)):
+        if before is not None and after is not None:
+            returned += sum("opaque" not in str(entry[1]) for entry in before[: len(after)])
+    return Compared(
+        calls=min(len(original.events), len(mutant.events)),
+        moments=1 if original.probes and mutant.probes else 0,
+        returned=returned,
+    )
+
+
+def _returned_difference(original: Observation, mutant: Observation, probes: Sequence[Probe]) -> str | None:
+    """The first difference in what the program returned.
+
+    A fixture that tests share is set up in one of them, in another one if others are run before: the last of
+    what was returned to fixtures is from those that the test has alone.
+    """
+    tolerance = min((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
+    if original.prepared is not None and mutant.prepared is not None:
+        shorter = min(len(original.prepared), len(mutant.prepared))
+        pairs = zip(
+            original.prepared[::-1][:shorter][::-1], mutant.prepared[::-1][:shorter][::-1], strict=True
+        )
+        for before, after in pairs:
+            if not _is_same(before, after, tolerance):
+                return _returned_text(before, after)
+    if original.returned is None or mutant.returned is None:
+        return None
+    for before, after in zip(original.returned, mutant.returned, strict=False):
+        if not _is_same(before, after, tolerance):
+            return _returned_text(before, after)
+    more, fewer = mutant.returned[len(original.returned) :], original.returned[len(mutant.returned) :]
+    if more:
+        return f"{_event_text(*more[0])} only with the mutant"
+    return f"{_event_text(*fewer[0])} only in the original" if fewer else None
+
+
+def _is_same(before: Any, after: Any, tolerance: float) -> bool:
+    """Whether two values are equal, fractions within the tolerance."""
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        same_keys = before.keys() == after.keys()
+        return same_keys and all(_is_same(before[key], after[key], tolerance) for key in before)
+    if isinstance(before, list | tuple) and isinstance(after, list | tuple):
+        return len(before) == len(after) and all(
+            _is_same(*pair, tolerance) for pair in zip(before, after, strict=True)
+        )
+    if _is_number(before) and _is_number(after) and isinstance(before + after, float):
+        return _distance(before, after) <= tolerance
+    return type(before) is type(after) and bool(before == after)
+
+
+def _returned_text(before: Any, after: Any) -> str:
+    (name, was), (other, is_now) = before, after
+    if name != other:
+        return f"{other} returned to the test instead of {name}"
+    if isinstance(is_now, Mapping):
+        return _event_text(name, is_now)
+    if isinstance(was, Mapping):
+        return f"{name} returned {value_text(is_now[0])} instead of raising {was['raised']}"
+    if any(isinstance(value, Mapping) and "digest" in value for value in (*was, *is_now)):
+        return f"{name} returned something else"
+    return f"{name} returned {_change(was[0], is_now[0])}"
+
+
+def _event_text(name: str, value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{name} raised {value['raised']}"
+    return f"{name} returned {value_text(value[0])}"
 
 
 def _short(key: str) -> str:

@@ -199,4 +199,5 @@ def _compared(outcome: Outcome, run: Run, request: Request, baseline: Baseline) 
         distance=worst.distance,
         divergence=worst.divergence,
         gaps=worst.gaps,
+        compared=worst.compared if comparisons else None,
     )

@@ -48,7 +48,7 @@ def note_readability(vocabulary: Vocabulary, ends: Sequence[TestEnd], progress: 
 
 def _with_calls(ends: Sequence[TestEnd]) -> Sequence[TestEnd]:
     """The tests that have anything to do with the robot; all of them if none has."""
-    return [end for end in ends if end.trace] or ends
+    return [end for end in ends if end.trace] or [end for end in ends if end.outcome != "skipped"]
 
 
 def is_read(probe: Probe, names: Iterable[str]) -> bool:

@@ -30,6 +30,7 @@ from .no_oracle import NoOracle
 from .outcomes import FAILED, PASSED, is_expected_failure, outcome_so_far
 from .pipe import Held, Pipe
 from .probes import Reading
+from .returns import Returns
 from .session import Session
 
 if TYPE_CHECKING:
@@ -81,6 +82,8 @@ class Conductor:
             conductor = cls(job, pipe, ForkServer(job.serving, pipe, os.path.join(home, LOG)))
         else:
             conductor = cls(job, pipe_of(job, home, descriptor))
+        conductor.session.returns = Returns(conductor.locator)
+        conductor.session.returns.install()
         conductor.session.install()
         if job.no_oracle:
             conductor.switch_off_checks()
@@ -243,6 +246,12 @@ class Conductor:
             item.session.shouldstop = "the mutant's verdict is known"
         return result
 
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_call(self) -> None:
+        """The test's fixtures are set up."""
+        if self.session.returns is not None:
+            self.session.returns.begin_call()
+
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_teardown(self) -> Generator[None, Any, Any]:
         """Before fixtures take the world down: take the probes."""
@@ -327,14 +336,14 @@ class Conductor:
         end = self._test_end(self.session.test)
         sites = self.session.recorder.sites_of_trace() if end.outcome != FAILED else ()
         if end.outcome == FAILED:
-            end = replace(end, trace=())  # only survivors are compared with the original
+            end = replace(end, trace=(), returned=())  # only survivors are compared with the original
         self._pipe.send(BranchEnd(mutant, end, sites, self._shared))
         return DECIDED if end.is_decided else ALIVE
 
     def _test_end(self, test: str) -> TestEnd:
         session, evidence, ending = self.session, self.session.evidence, self._ending
         wall, cpu = time.perf_counter() - self._started[0], time.process_time() - self._started[1]
-        meter = session.meter
+        meter, returns = session.meter, session.returns
         assert meter is not None
         cause = ending or self._expected  # what a test said that it would do ends it as well
         ended_by_refusal = cause is not None and cause.refused is not None
@@ -366,6 +375,8 @@ class Conductor:
             simulated=meter.simulated,
             trace=tuple(session.recorder.trace) if self.job.record else (),
             truncated=session.recorder.truncated,
+            returned=tuple(returns.entries) if returns is not None and self.job.record else (),
+            prepared=returns.prepared if returns is not None else 0,
             probes=self._reading.values,
             unread=self._reading.unread,
         )

@@ -35,7 +35,7 @@ class ImportHook:
         imported: files that were instrumented, relative to the root.
         problems: files that were not, with the reason.
 
-    ``on_problem`` is told the file and the reason at once.
+    ``on_problem`` is told the file and the reason at once; ``finish`` may change the tree of a file at last.
     """
 
     def __init__(
@@ -43,6 +43,7 @@ class ImportHook:
         root: str,
         instrumentation: Instrumentation,
         on_problem: Callable[[str, str], None] = lambda file, reason: None,
+        finish: Callable[[ast.Module, str], None] = lambda tree, path: None,
     ) -> None:
         texts = instrumentation.texts
         places = [place for text in texts for place in text.places]
@@ -61,6 +62,7 @@ class ImportHook:
         self._real_paths: dict[str, str] = {}
         self._original: GetCode | None = None
         self._on_problem = on_problem
+        self._finish = finish
 
     def install(self) -> None:
         """Instrument the program's files from now on; files imported before are told as problems."""
@@ -102,7 +104,11 @@ class ImportHook:
             return None
         try:
             record = self.recording is not None
-            code = compile_text(source, path, text, record=record, originals=self._originals)
+
+            def finish(tree: ast.Module) -> None:
+                self._finish(tree, path)
+
+            code = compile_text(source, path, text, record=record, originals=self._originals, finish=finish)
         except (MismatchError, RecursionError, SyntaxError, ValueError) as error:
             self._refuse(text, f"it cannot be instrumented: {error}")
             return None

@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 import copy
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from types import CodeType
 from typing import TypeVar
 
@@ -37,14 +37,17 @@ def compile_text(
     *,
     record: bool = False,
     originals: dict[int, ast.expr] | None = None,
+    finish: Callable[[ast.Module], None] = lambda tree: None,
 ) -> CodeType:
     """Code of a module with all alternatives of its places in it, or with recording.
 
-    ``originals`` takes the expressions at the places as they stand in the text, by number.
+    ``originals`` takes the expressions at the places as they stand in the text, by number. ``finish`` may
+    change the tree at last.
 
     Raises SyntaxError like ``compile``, MismatchError if a place cannot be found.
     """
     tree = instrumented(ast.parse(source, filename), text.places, record=record, originals=originals)
+    finish(tree)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SyntaxWarning)  # alternatives may look as if they were slips
         return compile(tree, filename, "exec", dont_inherit=True)

@@ -43,6 +43,7 @@ from .parameters import look_at
 from .pipe import Held, Pipe
 from .probes import Reading, take
 from .record import Recorder
+from .returns import Returns
 from .seeds import derive
 from .texts import Texts
 
@@ -63,6 +64,7 @@ class Session:
         branch: id of the mutant that this process was forked to be; None in all others.
         activations: the mutants of calls that are at work: none for the original.
         texts: the program text, if it is instrumented.
+        returns: what the program returns to its tests; None if that is not noted.
         meter: what the running test has used; None between tests.
         test: node id of the running test.
     """
@@ -77,6 +79,7 @@ class Session:
     branch: str | None = None
     activations: list[Activation] = field(default_factory=list)
     texts: Texts | None = None
+    returns: Returns | None = None
     meter: Meter | None = None
     test: str = ""
     _doors: list[Door] = field(default_factory=list)
@@ -94,7 +97,8 @@ class Session:
 
     def install(self) -> None:
         """Put the interception of the whole vocabulary in place, and the mutant with it."""
-        self.texts = Texts.of(self.job, self.pipe, partial(self._acted, ""))
+        finish = (self.returns.add_notes,) if self.returns is not None else ()
+        self.texts = Texts.of(self.job, self.pipe, partial(self._acted, ""), *finish)
         vocabulary = self.job.vocabulary
         for operation in vocabulary.operations:
             door = self._door(operation)
@@ -160,6 +164,8 @@ class Session:
         self.recorder.answers = Answers.of(self.job.vocabulary) if is_baseline else None
         self.recorder.start()
         self.instances.start()
+        if self.returns is not None:
+            self.returns.start()
         for door in self._doors:
             door.reset()
         if self.trunk is not None:
@@ -201,6 +207,8 @@ class Session:
 
     def take_probes(self) -> Reading:
         """Read all probes: at the end of a test, before its fixtures take the world down."""
+        if self.returns is not None:
+            self.returns.stop()
         meter, self.meter = self.meter, None  # probes are no operations of the program's
         try:
             return take(self.job.vocabulary.probes, self.instances)

@@ -43,6 +43,7 @@ from .operation import Operation as Operation
 from .operation import Pattern as Pattern
 from .operation import Probe as Probe
 from .operation import Vocabulary as Vocabulary
+from .outcome import Compared as Compared
 from .outcome import Kill as Kill
 from .outcome import LeftOut as LeftOut
 from .outcome import Outcome as Outcome

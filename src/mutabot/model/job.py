@@ -271,6 +271,9 @@ class TestEnd:
             returned: a plain value, ``{"kept": data}`` or ``{"opaque": what}`` at a site's first hit,
             ``{"same"}`` or ``{"other"}`` than that later on, ``{"raised"}`` if it did not return.
         truncated: whether the trace was cut off.
+        returned: what functions of the program returned to the test: name, and the value in a list or, for
+            one that raised, ``{"raised": text}``.
+        prepared: how many of these are from before the test itself began: from its fixtures.
         probes: values of each probe by ``target.part``; those of the second object of a class by
             ``target#2.part``.
         unread: why a probe could not be read, by target.
@@ -302,6 +305,8 @@ class TestEnd:
     simulated: float | None = None
     trace: tuple[Any, ...] = ()
     truncated: bool = False
+    returned: tuple[Any, ...] = ()
+    prepared: int = 0
     probes: Mapping[str, Any] = field(default_factory=dict)
     unread: Mapping[str, str] = field(default_factory=dict)
 

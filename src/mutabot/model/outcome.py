@@ -10,6 +10,42 @@ from .verdict import By, Verdict
 
 
 @dataclass(frozen=True, slots=True)
+class Compared:
+    """How much of a mutant's tests was compared with the original's.
+
+    Attributes:
+        calls: calls of operations.
+        moments: moments at which probes were read, those at the ends of tests included.
+        returned: values that the program returned to the tests, as far as they are plain data.
+    """
+
+    calls: int = 0
+    moments: int = 0
+    returned: int = 0
+
+    @classmethod
+    def together(cls, parts: Iterable[Compared]) -> Compared:
+        """Of several tests."""
+        parts = list(parts)
+        return cls(
+            sum(part.calls for part in parts),
+            sum(part.moments for part in parts),
+            sum(part.returned for part in parts),
+        )
+
+    @property
+    def text(self) -> str:
+        """``14 calls, probes at 9 moments, 1 returned value``."""
+        return ", ".join(
+            (
+                f"{self.calls} {'call' if self.calls == 1 else 'calls'}",
+                f"probes at {self.moments} {'moment' if self.moments == 1 else 'moments'}",
+                f"{self.returned} returned {'value' if self.returned == 1 else 'values'}",
+            )
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Kill:
     """One test that noticed a mutant.
 
@@ -54,6 +90,7 @@ class Outcome:
             None without probes, or if one cannot be read.
         divergence: what ended otherwise than in the original, one line each, worst first.
         gaps: what could not be compared with the original, one line each.
+        compared: how much was compared; None if nothing was.
         engine: ``replay`` or ``branch``.
         complete: whether every test that reaches the mutant was run, also after one had noticed it.
         kills: the tests that noticed it, in the order in which they ran: all of them if ``complete``, else
@@ -83,6 +120,7 @@ class Outcome:
     distance: float | None = None
     divergence: tuple[str, ...] = ()
     gaps: tuple[str, ...] = ()
+    compared: Compared | None = None
     engine: str = "replay"
     complete: bool = False
     kills: tuple[Kill, ...] = ()

@@ -12,7 +12,7 @@ from mutabot.analysis.score import KillRate, RoundScores, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.campaign.sampling import DRAWING, Drawing
 from mutabot.campaign.verify import CONFIRMATION, FLAKY, VERIFICATION, Replayed, Verification
-from mutabot.model import Mutant, Outcome, Quantity, Verdict
+from mutabot.model import Mutant, Outcome, Quantity, Verdict, to_data
 
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
@@ -203,6 +203,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "distance": outcome.distance,
         "divergence": list(outcome.divergence),
         "gaps": list(outcome.gaps),
+        "compared": to_data(outcome.compared) if outcome.compared is not None else None,
         "engine": outcome.engine,
     }
 

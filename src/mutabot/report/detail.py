@@ -179,8 +179,9 @@ def _evidence(outcome: Outcome) -> Iterator[str]:
         yield f"{exception}{outcome.message.rstrip()}"
     if outcome.place is not None:
         yield f"at {outcome.place}"
-    if outcome.indistinguishable:
-        yield "calls and probes as in the original (indistinguishable)"
+    if outcome.compared is not None:
+        equal = ": nothing differs (indistinguishable)" if outcome.indistinguishable else ""
+        yield f"compared with the original: {outcome.compared.text}{equal}"
     yield from outcome.divergence
     yield from (f"not compared: {gap}" for gap in outcome.gaps)
     yield from (f"stayed away at {_hits(count)}: {why}" for why, count in outcome.away.items())
