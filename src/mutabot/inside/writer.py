@@ -69,6 +69,7 @@ class Writer:
         self._operation = operation
         self._on_problem = on_problem
         self._path = Path.parse(operation.message, rooted=True) if operation.message is not None else None
+        self._parts = {pattern.text: _parts(pattern) for pattern in operation.patterns}
 
     def message(self, arguments: Arguments, instance: Any) -> Message | None:
         """What says which command a call is; None if the operation has no such argument, or the call."""
@@ -85,12 +86,13 @@ class Writer:
 
     def read(self, arguments: Arguments, message: Message | None) -> tuple[Pattern | None, dict[str, Value]]:
         """Which of the operation's commands a call is, if any, and the values it writes."""
-        here = list(self._candidates(message))
-        for pattern, values in here:
+        undecided = []
+        for pattern, values in self._candidates(message):
             if all(case.value in _names(arguments, case.argument) for case in pattern.when):
                 return pattern, self._written(pattern, values, arguments, message)
-        if here:
-            self._tell_undecided([pattern for pattern, _ in here], arguments)
+            undecided.append(pattern)
+        if undecided:
+            self._tell_undecided(undecided, arguments)
         return None, self._values(self._operation.arguments, arguments)
 
     def changed(
@@ -98,12 +100,12 @@ class Writer:
     ) -> tuple[tuple[Any, ...], dict[str, Any]]:
         """Positional and keyword arguments of a call with these other values, or of its opposite."""
         pattern = call.pattern
-        fields: frozenset[str] = pattern.fields if pattern is not None else frozenset()
+        fields, beside = self._parts[pattern.text] if pattern is not None else ((), self._operation.arguments)
         roots: dict[str, Any] = {}
-        for quantity in pattern.arguments if pattern is not None else self._operation.arguments:
-            if quantity.name in values and quantity.name not in fields:
+        for quantity in beside:
+            if quantity.name in values:
                 _put(roots, arguments, quantity.path, values[quantity.name])
-        is_said_otherwise = call.reversed or not fields.isdisjoint(values)
+        is_said_otherwise = call.reversed or any(name in values for name in fields)
         if pattern is not None and message is not None and self._path is not None and is_said_otherwise:
             _put(roots, arguments, self._path, message.with_text(_text(pattern, call, message)))
         return arguments.replaced(roots)
@@ -120,22 +122,21 @@ class Writer:
     def _written(
         self, pattern: Pattern, said: Mapping[str, Value], arguments: Arguments, message: Message | None
     ) -> dict[str, Value]:
-        fields = pattern.fields
-        beside = tuple(quantity for quantity in pattern.arguments if quantity.name not in fields)
-        found = self._values(beside, arguments)
-        if message is None or not self._can_be_written(pattern, message, len(beside)):
-            return found
-        named = {quantity.name for quantity in pattern.arguments} & fields
-        return {**{name: value for name, value in said.items() if name in named}, **found}
+        fields, beside = self._parts[pattern.text]
+        found = self._values(beside, arguments) if beside else {}
+        if fields and message is not None and self._can_be_written(message):
+            found |= {name: said[name] for name in fields}
+        elif pattern.notation is not None and pattern.opposite is not None and message is not None:
+            self._can_be_written(message)
+        return found
 
-    def _can_be_written(self, pattern: Pattern, message: Message, beside: int) -> bool:
-        if message.can_be_written:
-            return True
-        if pattern.opposite is not None or len(pattern.arguments) > beside:
+    def _can_be_written(self, message: Message) -> bool:
+        """Whether the text can be changed; a problem if not."""
+        if not message.can_be_written:
             kind = type(message.value).__name__
             text = f"{self._operation.message} is {_a(kind)}, whose text cannot be changed"
             self._tell("message", f"{text}; describe the arguments beside it, and no opposite")
-        return False
+        return message.can_be_written
 
     def _values(self, quantities: tuple[Quantity, ...], arguments: Arguments) -> dict[str, Value]:
         values = {}
@@ -162,6 +163,13 @@ class Writer:
 
     def _tell(self, key: str, text: str) -> None:
         self._on_problem(key, PathError(text, path="", step="", found=""))
+
+
+def _parts(pattern: Pattern) -> tuple[tuple[str, ...], tuple[Quantity, ...]]:
+    """The names of the described fields of a command's text, and the quantities beside it."""
+    fields = pattern.fields
+    named = tuple(quantity.name for quantity in pattern.arguments if quantity.name in fields)
+    return named, tuple(quantity for quantity in pattern.arguments if quantity.name not in fields)
 
 
 def _put(roots: dict[str, Any], arguments: Arguments, path: Path, value: Any) -> None:
