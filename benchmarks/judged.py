@@ -1,0 +1,101 @@
+"""Do the engines find what plain pytest finds? Every verdict against a judge that knows nothing of mutabot.
+
+The judge (``tests/suites/judge.py``) edits the source text of a copy and runs plain pytest on it. Judged are
+all robot mutants of all projects of the corpus (``tests/suites/projects``) with some mutants of their text,
+and mutants of the examples, drawn by a fixed seed, by both engines.
+
+Use: ``python benchmarks/judged.py [NAME …] [--engines branch replay] [--cache FOLDER]``. Without a name all
+projects and all examples run. The exit code is 1 if one verdict disagrees, or if there is nothing to compare.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+
+from suites.agreement import ENGINES, Found, compare, corpus  # noqa: E402
+
+#: mutants of the program text of each project of the corpus
+CLASSICAL = 4
+#: example to the number of mutants of each family; what is not named runs whole
+EXAMPLES = {
+    "paper": {"classical": 40},
+    "scales": {"classical": 15, "text": 45},
+    "pick_and_place": {"robot": 40, "classical": 40},
+}
+
+
+def main() -> int:
+    """The command."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("names", nargs="*", help="projects of the corpus, or examples")
+    parser.add_argument("--engines", nargs="+", default=list(ENGINES), choices=ENGINES)
+    parser.add_argument("--classical", type=int, default=CLASSICAL, help="text mutants of each project")
+    parser.add_argument("--cache", type=Path, help="folder that keeps what plain pytest said")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--unwritable", action="store_true", help="list what the judge cannot write")
+    given = parser.parse_args()
+    projects = {folder.name: folder for folder in corpus()}
+    unknown = sorted({*given.names} - {*projects, *EXAMPLES})
+    if unknown:
+        parser.error(f"no project or example {', '.join(unknown)}")
+    every: list[Found] = []
+    for name in given.names or [*projects, *EXAMPLES]:
+        began = time.monotonic()
+        if name in projects:
+            families = ("robot", "classical") if given.classical else ("robot",)
+            only = {"classical": given.classical} if given.classical else None
+            folder, limit = projects[name], 30.0
+        else:
+            families, only, limit = ("robot", *sorted({*EXAMPLES[name]} - {"robot"})), EXAMPLES[name], 180.0
+            folder = ROOT / "examples" / name
+        found = compare(
+            folder, families=families, only=only, engines=given.engines, jobs=given.jobs, cache=given.cache,
+            limit=limit,
+        )  # fmt: skip
+        every.append(found)
+        print(line(found, time.monotonic() - began), flush=True)
+        for text in found.disagreements:
+            print(text, flush=True)
+        for one in found.compared:
+            if one.agrees and one.names_another_test:
+                print(f"  another test is named: {one.line}", flush=True)
+        if given.unwritable:
+            for text in sorted({f"  {one.mutant}: {one.plain.text}" for one in found.verdicts
+                                if one.plain.state == "unwritable"}):  # fmt: skip
+                print(text, flush=True)
+    print(total(every))
+    return 0 if any(one.compared for one in every) and not any(one.disagreements for one in every) else 1
+
+
+def line(found: Found, seconds: float) -> str:
+    """What came of one project, in one line."""
+    ends = Counter(one.ours for one in found.verdicts)
+    agreed = sum(one.agrees for one in found.compared)
+    counts = ", ".join(f"{count} {verdict}" for verdict, count in ends.most_common())
+    return f"{found.project}: {agreed} of {len(found.compared)} agree, {seconds:.0f} s ({counts})"
+
+
+def total(every: list[Found]) -> str:
+    """The last line."""
+    compared = [one for found in every for one in found.compared]
+    agreed = sum(one.agrees for one in compared)
+    unwritten = sum(one.plain.state == "unwritable" for found in every for one in found.verdicts)
+    failed = sum(len(found.failed) for found in every)
+    mutants = len({(one.project, one.mutant) for one in compared})
+    return (
+        f"{agreed} of {len(compared)} verdicts agree, over {mutants} mutants of {len(every)} projects; "
+        f"{unwritten} not compared, since the judge cannot write the mutant; {failed} campaigns stopped"
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,224 @@
+"""The third judge: plain pytest on a copy of a project whose source text was edited.
+
+It knows nothing of Mutabot. In the folder ``tests``, ``python -m suites.judge PROJECT MUTANT.json`` prints
+what plain pytest says about one mutant, given as the object that ``mutabot list --json`` prints for it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from .editor import CannotWriteError, Edit, Facts, edits_for
+
+HERE = Path(__file__).resolve().parent
+IGNORED = shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache", "judge.toml")
+SEEDS = """
+import json, os, pytest
+
+@pytest.fixture
+def mutabot_seed(request):
+    return json.loads(os.environ["JUDGE_SEEDS"]).get(request.node.nodeid, 0)
+"""
+NOTING = """
+
+def _judge_notes(kind):
+    import os, sys
+    init = kind.__init__
+    file, first, last = os.environ["JUDGE_PLACE"].split("|")
+    def noted(self, *given, **named):
+        init(self, *given, **named)
+        frame = sys._getframe()
+        while file and frame is not None:
+            if frame.f_code.co_filename.endswith("/" + file) and int(first) <= frame.f_lineno <= int(last):
+                break
+            frame = frame.f_back
+        if frame is not None:
+            with open(os.environ["JUDGE_NOTES"], "a") as notes:
+                notes.write("refused\\n")
+    kind.__init__ = noted
+
+_judge_notes({name})
+"""
+_SUMMARY = re.compile(r"^(?:FAILED|ERROR|SUBFAILED(?:\([^)]*\))?(?:\[[^\]]*\])?) (.+?)(?: - .*)?$")
+#: what a draw of noise is worth: the verdict must be the same with each
+DRAWS = (1, 2, 3)
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What plain pytest says.
+
+    Attributes:
+        state: ``passes``, ``fails``, ``hangs``, or ``unwritable`` with the reason in ``text``.
+        tests: the tests that fail, in the order of pytest's summary.
+        refused: whether the robot refused the mutated call more often than on the original; with a mutant of
+            the program text, any call.
+        text: the end of pytest's output.
+    """
+
+    state: str
+    tests: tuple[str, ...] = ()
+    refused: bool = False
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Judge:
+    """Judges the mutants of one project.
+
+    Attributes:
+        folder: the project.
+        limit: seconds after which a run counts as hanging.
+        seeds: what the fixture ``mutabot_seed`` gives, by test.
+        cache: folder that keeps judgements by their input, or None.
+    """
+
+    folder: Path
+    limit: float = 30.0
+    seeds: Mapping[str, int] | None = None
+    cache: Path | None = None
+
+    def original(self) -> Judgement:
+        """The project as it is."""
+        return self._run([])
+
+    def mutant(self, mutant: Mapping[str, Any], *, look_for_refusals: bool = False) -> Judgement:
+        """One mutant; with noise, only if several draws say the same."""
+        try:
+            edits = edits_for(Facts.of(self.folder), mutant)
+        except CannotWriteError as error:
+            return Judgement("unwritable", text=str(error))
+        if mutant["operator"] == "noise":
+            drawn = [self._run(edits, noise=draw) for draw in DRAWS]
+            if len({one.state for one in drawn}) > 1:
+                return Judgement("unwritable", text="draws of noise end differently")
+            return drawn[0]
+        found = self._run(edits)
+        if not look_for_refusals:
+            return found
+        span = mutant["span"]
+        place = f"{mutant['file']}|{span['line']}|{span['end_line']}" if mutant["operation"] else "||"
+        if not self._refusals_are_ours():
+            return replace(found, refused=self._names_a_refusal(found.text))
+        return replace(found, refused=self._notes(edits, place) > self._notes([], place))
+
+    def _refusals_are_ours(self) -> bool:
+        """Whether the project itself defines all exceptions by which its robot refuses."""
+        files = [name.partition(":")[0].replace(".", "/") for name in Facts.of(self.folder).refusals]
+        return all((self.folder / f"{file}.py").is_file() for file in files)
+
+    def _names_a_refusal(self, output: str) -> bool:
+        names = [name.rpartition(":")[2].rpartition(".")[2] for name in Facts.of(self.folder).refusals]
+        return any(re.search(rf"^E .*\b{name}\b", output, re.MULTILINE) for name in names)
+
+    def _notes(self, edits: Sequence[Edit], place: str) -> int:
+        """How often the robot refused, under the lines of ``place`` only."""
+        with tempfile.TemporaryDirectory() as name:
+            copy = self._copied(Path(name), edits)
+            for refusal in Facts.of(self.folder).refusals:
+                module, _, kind = refusal.partition(":")
+                file = copy / f"{module.replace('.', '/')}.py"
+                if file.is_file():
+                    with file.open("a", encoding="utf-8") as end:
+                        end.write(NOTING.format(name=kind))
+            notes = Path(name) / "notes"
+            notes.touch()
+            self._pytest(copy, {"JUDGE_NOTES": str(notes), "JUDGE_PLACE": place})
+            return notes.read_text().count("refused")
+
+    def _run(self, edits: Sequence[Edit], noise: int = 1) -> Judgement:
+        kept = self._kept(edits, noise)
+        if kept is not None and kept.is_file():
+            data = json.loads(kept.read_text())
+            return Judgement(data["state"], tuple(data["tests"]), data["refused"], data["text"])
+        with tempfile.TemporaryDirectory() as name:
+            found = self._pytest(self._copied(Path(name), edits), {"JUDGE_NOISE": str(noise)})
+        if kept is not None:
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            kept.write_text(json.dumps(asdict(found)))
+        return found
+
+    def _copied(self, place: Path, edits: Sequence[Edit]) -> Path:
+        """A copy of the project with the edits in it, and beside it what they call."""
+        copy = place / "beside" / self.folder.name
+        shutil.copytree(self.folder, copy, ignore=IGNORED)
+        (place / "planted").mkdir()
+        (place / "tmp").mkdir()
+        shutil.copy(HERE / "planted.py", place / "planted" / "_planted.py")
+        (place / "planted" / "_judge_seeds.py").write_text(SEEDS)
+        for edit in edits:
+            file = copy / edit.file
+            file.write_bytes(edit.applied(file.read_bytes()))
+        return copy
+
+    def _pytest(self, copy: Path, more: Mapping[str, str]) -> Judgement:
+        facts = Facts.of(self.folder)
+        settings = facts.settings
+        place = copy.parent.parent
+        environment = {
+            "PATH": os.environ.get("PATH", ""),
+            "HOME": os.environ.get("HOME", "/"),
+            "LANG": "C.UTF-8",
+            "COLUMNS": "400",
+            "PYTHONPATH": str(place / "planted"),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "PYTHONHASHSEED": "0",
+            "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
+            "TMPDIR": str(place / "tmp"),
+            "JUDGE_SEEDS": json.dumps(dict(self.seeds or {})),
+            **more,
+        }
+        plugins = ["no:mutabot", "no:cacheprovider", "_judge_seeds", *facts.hints.get("plugins", [])]
+        words = [
+            *(sys.executable, "-m", "pytest", "-q", "-rfE", "--tb=short"),
+            *(word for plugin in plugins for word in ("-p", plugin)),
+            *settings.get("pytest_args", []),
+            *settings.get("tests", ["tests"]),
+        ]
+        process = subprocess.Popen(
+            words, cwd=copy, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True,
+        )  # fmt: skip
+        try:
+            output, _ = process.communicate(timeout=self.limit)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, 9)
+            process.communicate()
+            return Judgement("hangs")
+        tests = dict.fromkeys(found[1] for line in output.splitlines() if (found := _SUMMARY.match(line)))
+        state = "passes" if process.returncode == 0 else "fails"
+        return Judgement(state, tuple(tests), text=output[-6000:])
+
+    def _kept(self, edits: Sequence[Edit], noise: int) -> Path | None:
+        if self.cache is None:
+            return None
+        digest = hashlib.sha256()
+        files = [*self.folder.rglob("*"), HERE / "planted.py", HERE / "judge.py"]
+        for file in sorted(files):
+            if file.is_file() and not {".mutabot", "__pycache__", ".pytest_cache"} & set(file.parts):
+                digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+        digest.update(repr((edits, noise, dict(self.seeds or {}))).encode())
+        return self.cache / f"{digest.hexdigest()}.json"
+
+
+def main() -> int:
+    """Judge one mutant."""
+    folder, file = sys.argv[1:]
+    found = Judge(Path(folder).resolve()).mutant(json.loads(Path(file).read_text()), look_for_refusals=True)
+    print(json.dumps(asdict(found), indent=2))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

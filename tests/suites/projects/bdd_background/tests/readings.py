@@ -1,0 +1,2 @@
+def held(arm):
+    return arm.look()

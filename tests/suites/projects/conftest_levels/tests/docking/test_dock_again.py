@@ -1,0 +1,2 @@
+def test_heading(agv):
+    assert agv.heading == 180

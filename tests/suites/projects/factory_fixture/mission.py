@@ -1,0 +1,5 @@
+def transfer(arm, start, goal):
+    arm.go(start)
+    arm.suck(True)
+    arm.go(goal)
+    arm.suck(False)

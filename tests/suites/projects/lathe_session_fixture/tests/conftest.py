@@ -1,0 +1,7 @@
+import pytest
+from robot import Robot
+
+
+@pytest.fixture(scope="session")
+def robot():
+    return Robot()

@@ -1,0 +1,9 @@
+from .pick import pick
+from .place import place
+
+
+def cycle(robot):
+    grabbed = pick(robot)
+    if grabbed:
+        place(robot)
+    return grabbed

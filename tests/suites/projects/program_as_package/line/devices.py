@@ -1,0 +1,2 @@
+def gripper(robot):
+    return robot.gripper

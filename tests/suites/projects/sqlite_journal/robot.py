@@ -1,0 +1,9 @@
+class Arm:
+    def __init__(self):
+        self.x = 0.0
+
+    def move(self, dx):
+        self.x = round(self.x + dx, 6)
+
+    def position(self):
+        return self.x

@@ -1,0 +1,2 @@
+def test_coolant(spindle):
+    assert spindle.cooled

@@ -1,0 +1,39 @@
+"""Both engines say what plain pytest says about small projects in the styles that people use.
+
+Here a few of them, of the kinds that are hardest; ``benchmarks/judged.py`` runs all.
+"""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from .agreement import PROJECTS, compare, corpus
+
+#: act once and assert many, state and files kept by session fixtures, answers that are objects, exception
+#: groups, outcomes other than passed
+PART = (
+    "welding_module_fixture",
+    "setupclass_cell",
+    "growing_log_file",
+    "returns_objects",
+    "taskgroup_cell",
+    "strict_xfail_limits",
+)
+
+
+@pytest.mark.parametrize("name", PART)
+def test_every_verdict_is_that_of_plain_pytest(name: str) -> None:
+    found = compare(PROJECTS / name, jobs=len(os.sched_getaffinity(0)))
+    assert found.disagreements == []
+    assert {one.plain.state for one in found.compared} >= {"passes", "fails"}
+    assert sum(one.plain.state == "unwritable" for one in found.verdicts) <= len(found.verdicts) / 10
+
+
+def test_the_corpus_has_at_least_forty_projects_that_can_be_read() -> None:
+    folders = corpus()
+    assert len(folders) >= 40
+    assert {*PART} <= {folder.name for folder in folders}
+    for folder in folders:
+        assert list(folder.rglob("test_*.py")) or list(folder.rglob("*.txt"))

@@ -1,0 +1,282 @@
+"""The third judge edits as people would, knows nothing of mutabot, and says what plain pytest says."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+import pytest
+
+from .editor import CannotWriteError, Facts, edits_for
+from .judge import Judge
+
+VOCABULARY = """
+    refusals = ["robot:Refused"]
+
+    [[operation]]
+    call = "robot:Arm.move"
+    arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
+    current = "robot:Arm.where"
+
+    [[operation]]
+    call = "robot:Arm.turn"
+    arguments.angle = { kind = "rotation", axis = "z", unit = "deg", mode = "to", range = [0, 360] }
+
+    [[operation]]
+    call = "robot:Arm.follow"
+    arguments."path[1]" = { kind = "translation", axis = "x", unit = "m", mode = "to" }
+
+    [[operation]]
+    call = "robot:Arm.where"
+    result = { kind = "position", axis = "x", unit = "m", noise = 2.0 }
+
+    [[operation]]
+    call = "robot:Arm.see"
+    result.".colour" = { kind = "label", values = ["red", "blue", "grey"] }
+
+    [[operation]]
+    call = "robot:Arm.open"
+    opposite = "robot:Arm.close"
+
+    [[operation]]
+    call = "robot:Arm.grip"
+    arguments.closed = { kind = "output", values = [false, true] }
+
+    [[operation]]
+    call = "robot:Arm.send"
+    message = "text"
+    patterns = [
+      { text = "lift/{h:g}", kind = "translation", axis = "z", unit = "cm", mode = "by", opposite = "drop/{h:g}" },
+    ]
+"""  # noqa: E501
+ROBOT = """
+    class Refused(Exception):
+        pass
+
+    class Arm:
+        x = 0.0
+        def move(self, dx):
+            if dx > 5:
+                raise Refused("too far")
+            self.x += dx
+        def turn(self, angle): pass
+        def follow(self, path): pass
+        def where(self): return self.x
+        async def reach(self): return self.x
+        def see(self): pass
+        def open(self): pass
+        def close(self): pass
+        def grip(self, closed): pass
+        def send(self, text): pass
+"""
+HINTS = """
+    [idle]
+    "robot:Arm.where" = "7.5"
+
+    [current]
+    "robot:Arm.move" = "SELF.where()"
+"""
+
+
+def project(folder: Path, mission: str, tests: str = "") -> Path:
+    """A project with one program."""
+    files = {
+        "mission.py": mission, "robot.py": ROBOT, "robot.toml": VOCABULARY, "judge.toml": HINTS,
+        "test_it.py": tests,
+        "mutabot.toml": 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\ntests = ["test_it.py"]',
+        "pytest.ini": "[pytest]\npythonpath = .",
+    }  # fmt: skip
+    for name, text in files.items():
+        (folder / name).write_text(dedent(text))
+    return folder
+
+
+def mutant(call: str, source: str, **facts: Any) -> dict[str, Any]:
+    """What ``mutabot list --json`` says of a mutant of ``call`` in a one-line program."""
+    start = source.index(call)
+    span = {"line": 1, "column": start + 1, "end_line": 1, "end_column": start + len(call) + 1}
+    defaults = {"id": "mission.py:x#1:call:y", "family": "robot", "file": "mission.py", "pattern": None,
+                "quantity": None, "variant": "", "description": ""}  # fmt: skip
+    return {**defaults, "span": span, **facts}
+
+
+P = '__import__("_planted")'
+EDITS = {
+    "reverse": ("arm.move(0.5)", "Arm.move", "dx", "", "arm.move(-(0.5))"),
+    "reverse of a name": ("arm.move(dx=x)", "Arm.move", "dx", "", f"arm.move(dx={P}.negative(x))"),
+    "reverse within a full turn": (
+        "arm.turn(90)", "Arm.turn", "angle", "",
+        f"arm.turn({P}.partial({P}.negative_within, 0, 360, 360)(90))",
+    ),
+    "reverse of a part": (
+        "arm.follow(p)", "Arm.follow", "path[1]", "", f"arm.follow({P}.changed('[1]', {P}.negative, p))"
+    ),
+    "by-to": (
+        "arm.move(0.5)", "Arm.move", "dx", "",
+        "arm.move((lambda value: value - (arm.where()) if value else value)(0.5))",
+    ),
+    "skip": ("arm.move(0.5)", "Arm.move", None, "", "None"),
+    "skip of a call in an argument": (
+        "arm.move(f())", "Arm.move", None, "", f"{P}.skipped(arm.move, lambda self: None)(f())"
+    ),
+    "repeat": ("arm.move(0.5)", "Arm.move", None, "", "(arm.move(0.5), arm.move(0.5))[1]"),
+    "repeat of a call in an argument": ("arm.move(f())", "Arm.move", None, "", f"{P}.twice(arm.move)(f())"),
+    "opposite": ("arm.open()", "Arm.open", None, "", "arm.close()"),
+    "opposite of a value": (
+        "arm.grip(closed=True)", "Arm.grip", "closed", "",
+        f"arm.grip(closed={P}.partial({P}.other, {{False: True, True: False}})(True))",
+    ),
+    "negate": ("arm.where()", "Arm.where", "result", "", f"({P}.negative(arm.where()))"),
+    "noise": (
+        "arm.where()", "Arm.where", "result", "", f"{P}.changed('', {P}.partial({P}.noisy, 2.0), arm.where())"
+    ),
+    "misread": (
+        "arm.see()", "Arm.see", ".colour", "+2",
+        f"{P}.changed('.colour', {P}.partial({P}.other, "
+        "{'red': 'grey', 'blue': 'red', 'grey': 'blue'}), arm.see())",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_an_operator_is_an_edit_that_a_person_could_make(tmp_path: Path, name: str) -> None:
+    call, operation, quantity, variant, expected = EDITS[name]
+    source = f"x = [{call}, arm]\n"
+    facts = Facts.of(project(tmp_path, source))
+    operator = name.partition(" ")[0]
+    found = mutant(
+        call, source, operator=operator, operation=f"robot:{operation}", quantity=quantity, variant=variant
+    )
+    (edit,) = edits_for(facts, found)
+    assert edit.applied(source.encode()).decode() == f"x = [{expected}, arm]\n"
+
+
+def test_an_awaited_call_is_edited_with_its_await(tmp_path: Path) -> None:
+    source = "async def f(arm): return await arm.move(1.0)\n"
+    facts = Facts.of(project(tmp_path, source))
+    found = mutant("arm.move(1.0)", source, operator="repeat", operation="robot:Arm.move")
+    (edit,) = edits_for(facts, found)
+    assert "(await arm.move(1.0), await arm.move(1.0))[1]" in edit.applied(source.encode()).decode()
+
+
+@pytest.mark.parametrize(
+    ("operator", "quantity", "told"),
+    [("reverse", "h", "lift/-5.00"), ("opposite", None, "drop/5.00"), ("skip", None, None)],
+)
+def test_a_text_command_is_edited_where_it_reads_like_the_pattern(
+    tmp_path: Path, operator: str, quantity: str | None, told: str | None
+) -> None:
+    source = 'sent = [arm.send(text) for text in ("lift/5.00", "pick")]\n'
+    facts = Facts.of(project(tmp_path, source))
+    found = mutant(
+        "arm.send(text)", source, operator=operator, operation="robot:Arm.send", quantity=quantity,
+        pattern="lift/{h:g}",
+    )  # fmt: skip
+    (edit,) = edits_for(facts, found)
+    (tmp_path / "_planted.py").write_text(Path(__file__).with_name("planted.py").read_text())
+    heard: list[str] = []
+
+    class Arm:
+        def send(self, text: str) -> None:
+            heard.append(text)
+
+    sys.path.insert(0, str(tmp_path))
+    try:
+        exec(edit.applied(source.encode()).decode(), {"arm": Arm()})
+    finally:
+        sys.path.remove(str(tmp_path))
+        sys.modules.pop("_planted", None)
+    assert heard == ([told, "pick"] if told else ["pick"])
+
+
+@pytest.mark.parametrize(
+    ("operator", "variant", "description", "expected"),
+    [
+        ("AOR", "sub", "a + b → a - b", "x = (a - b)"),
+        ("ABS", "failOnZero", "a + b → failOnZero(a + b)", f"x = ({P}.fail_on_zero(a + b))"),
+        ("BSR", "", "x = a + b → Bomb()", 'raise RuntimeError("planted")'),
+    ],
+)
+def test_a_mutant_of_the_text_is_what_its_description_says(
+    tmp_path: Path, operator: str, variant: str, description: str, expected: str
+) -> None:
+    source = "x = a + b\n"
+    facts = Facts.of(project(tmp_path, source))
+    text = source.strip() if operator == "BSR" else "a + b"
+    told = {"operator": operator, "variant": variant, "description": description, "operation": ""}
+    found = mutant(text, source, family="classical", **told)
+    (edit,) = edits_for(facts, found)
+    assert edit.applied(source.encode()).decode() == f"{expected}\n"
+
+
+@pytest.mark.parametrize("description", ["a + c → a - c", "a + b + a very long… → a - b"])
+def test_a_mutant_that_cannot_be_written_is_said_to_be_so(tmp_path: Path, description: str) -> None:
+    facts = Facts.of(project(tmp_path, "x = a + b\n"))
+    found = mutant(
+        "a + b", "x = a + b\n", family="classical", operator="AOR", description=description, operation=""
+    )  # fmt: skip
+    with pytest.raises(CannotWriteError):
+        edits_for(facts, found)
+
+
+TESTS = """
+    import sys
+
+    import mission
+    from robot import Arm
+
+    def test_moves():
+        arm = Arm()
+        mission.run(arm)
+        assert 0 <= arm.x < 3
+
+    def test_nothing_of_mutabot_is_loaded():
+        assert "mutabot" not in sys.modules
+"""
+
+
+def judged(folder: Path, mission: str, call: str, **facts: Any) -> Any:
+    source = dedent(mission)
+    found = mutant(call, source.splitlines()[1], operation="robot:Arm.move", **facts)
+    found["span"] |= {"line": 2, "end_line": 2}
+    return Judge(project(folder, mission, TESTS), limit=20).mutant(found, look_for_refusals=True)
+
+
+MOVES = "def run(arm):\n    arm.move(2.0)\n"
+
+
+def test_the_judge_says_what_plain_pytest_says(tmp_path: Path) -> None:
+    survivor = judged(tmp_path, MOVES, "arm.move(2.0)", operator="skip")
+    assert (survivor.state, survivor.tests) == ("passes", ())
+    killed = judged(tmp_path, MOVES, "arm.move(2.0)", operator="reverse", quantity="dx")
+    assert (killed.state, killed.tests, killed.refused) == ("fails", ("test_it.py::test_moves",), False)
+
+
+def test_the_judge_sees_that_the_robot_refused_the_mutated_call(tmp_path: Path) -> None:
+    mission = "def run(arm):\n    arm.move(-9.0)\n    arm.x = 1.0\n"
+    found = judged(tmp_path, mission, "arm.move(-9.0)", operator="reverse", quantity="dx")
+    assert (found.state, found.refused) == ("fails", True)
+
+
+def test_the_judge_sees_a_program_that_hangs(tmp_path: Path) -> None:
+    mission = "def run(arm):\n    arm.move(1.0)\n    while arm.x < 1: pass\n"
+    source = dedent(mission)
+    found = mutant("arm.move(1.0)", source.splitlines()[1], operation="robot:Arm.move", operator="skip")
+    found["span"] |= {"line": 2, "end_line": 2}
+    assert Judge(project(tmp_path, mission, TESTS), limit=3).mutant(found).state == "hangs"
+
+
+def test_the_judge_imports_nothing_of_mutabot() -> None:
+    code = (
+        "import json, sys, suites.judge, suites.planted;"
+        "print(json.dumps([name for name in sys.modules if name.startswith('mutabot')]))"
+    )
+    folder = Path(__file__).resolve().parents[1]
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True
+    )
+    assert json.loads(done.stdout) == []
