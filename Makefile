@@ -5,7 +5,7 @@ VENV   := .venv
 RUN    := $(VENV)/bin/python
 READY  := $(VENV)/.ready
 
-.PHONY: demo test check format docs comparison bench stress shipped foreign clean
+.PHONY: demo test check format docs comparison bench stress judged shipped foreign clean
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
@@ -56,12 +56,18 @@ bench: $(READY)
 	$(RUN) benchmarks/pick_and_place_seeds.py
 
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the
-## examples; ten thousand mutants; 200 campaigns in a row
+## examples; both engines against plain pytest; ten thousand mutants; 200 campaigns in a row
 stress: $(READY)
 	$(RUN) benchmarks/kill_and_resume.py --kills 30
 	$(RUN) benchmarks/differential.py
+	$(RUN) benchmarks/judged.py
 	$(RUN) benchmarks/ten_thousand.py
 	$(RUN) benchmarks/campaigns_in_a_row.py --count 200
+
+## slow: every verdict on the corpus of tests/suites and on mutants of the examples, by both engines, against plain
+## pytest on program text that was edited
+judged: $(READY)
+	$(RUN) benchmarks/judged.py
 
 ## compare the shipped vocabularies with the packages they describe, which get a virtual environment of their own
 shipped: $(VENV)-shipped/.ready

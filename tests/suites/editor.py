@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
+#: what the judge must know of the examples; a project of the corpus brings its own ``judge.toml``
+EXAMPLES = Path(__file__).resolve().parent / "examples"
 SHIPPED = ROOT / "src" / "mutabot" / "vocabulary" / "shipped"
 PLANTED = '__import__("_planted")'
 DEVIATIONS = {"position": (0.02, "m"), "distance": (0.02, "m"), "orientation": (0.05, "rad"),
@@ -53,12 +55,13 @@ class Facts:
 
     @classmethod
     def of(cls, folder: Path) -> Facts:
-        """Read configuration, vocabularies, and ``judge.toml`` if there is one."""
+        """Read configuration, vocabularies, and what the judge must know beside them."""
         own = folder / "mutabot.toml"
         settings = _toml(own) if own.exists() else _toml(folder / "pyproject.toml")["tool"]["mutabot"]
         files = [folder / name for name in settings["vocabulary"]]
         files = [file if file.is_file() else SHIPPED / f"{file.name}.toml" for file in files]
         hints = folder / "judge.toml"
+        hints = hints if hints.exists() else EXAMPLES / f"{folder.name}.toml"
         return cls(folder, settings, [_toml(file) for file in files], _toml(hints) if hints.exists() else {})
 
     @property

@@ -11,12 +11,8 @@ import pytest
 
 from .agreement import PROJECTS, compare, corpus
 
-#: act once and assert many, state and files kept by session fixtures, answers that are objects, exception
-#: groups, outcomes other than passed
+#: answers that are objects, exception groups, outcomes other than passed
 PART = (
-    "welding_module_fixture",
-    "setupclass_cell",
-    "growing_log_file",
     "returns_objects",
     "taskgroup_cell",
     "strict_xfail_limits",
