@@ -17,14 +17,16 @@ PART = (
     "taskgroup_cell",
     "strict_xfail_limits",
 )
+#: mutants of each, drawn by a fixed seed
+MUTANTS = 6
 
 
 @pytest.mark.parametrize("name", PART)
 def test_every_verdict_is_that_of_plain_pytest(name: str) -> None:
-    found = compare(PROJECTS / name, jobs=len(os.sched_getaffinity(0)))
+    found = compare(PROJECTS / name, only={"robot": MUTANTS}, jobs=len(os.sched_getaffinity(0)))
     assert found.disagreements == []
-    assert {one.plain.state for one in found.compared} >= {"passes", "fails"}
-    assert sum(one.plain.state == "unwritable" for one in found.verdicts) <= len(found.verdicts) / 10
+    assert len(found.compared) >= 2 * MUTANTS - 2  # by two engines; the judge may not know how to write one
+    assert "fails" in {one.plain.state for one in found.compared}
 
 
 def test_the_corpus_has_at_least_forty_projects_that_can_be_read() -> None:
