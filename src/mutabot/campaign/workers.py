@@ -30,6 +30,7 @@ from mutabot.model import (
     TestStart,
     TextsSeen,
     TokensHeld,
+    Watched,
 )
 from mutabot.model.job import Line
 
@@ -79,6 +80,7 @@ class Result:
         in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
         held: tokens that it and its branches held when it was last heard of.
         running: test that was under way when it ended, or None.
+        watched: limits of the suite's own that would end it during that test.
         end: its orderly end; None if there was none.
         exit_code: its exit code, negative for a signal.
         overdue: which wall-clock limit it exceeded, in words, or None.
@@ -97,6 +99,7 @@ class Result:
     in_mutated_call: bool = False
     held: int = 0
     running: str | None = None
+    watched: list[Watched] = field(default_factory=list)
     end: SessionEnd | None = None
     exit_code: int = 0
     overdue: str | None = None
@@ -110,6 +113,9 @@ class Result:
                 self.sites.append(line)
             case TestStart():
                 self.running = line.test
+                self.watched.clear()
+            case Watched():
+                self.watched.append(line)
             case Acted() if line.mutant is None:
                 self.acted.append(line.test)
             case PlacesReached():
@@ -129,6 +135,11 @@ class Result:
                 self.problems.append(line)
             case SessionEnd():
                 self.end = line
+
+    def find_overdue(self, now: float) -> None:
+        """Say so if a limit of the suite's own ended the process, by ``now`` (``time.monotonic``)."""
+        if self.end is None and self.overdue is None and self.running is not None and self.exit_code == 1:
+            self.overdue = next((one.text for one in self.watched if now >= one.until), None)
 
 
 class Workers:
@@ -343,6 +354,7 @@ class _Worker:
         """Collect the rest of a process that has ended: its last lines, and what became of it."""
         self.result.exit_code = self._process.end()
         lines = self.read()
+        self.result.find_overdue(time.monotonic())
         self.result.wall = time.monotonic() - self._started + self._process.startup
         self.result.log = self._home.log_text()
         self.close(selector)

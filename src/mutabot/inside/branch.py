@@ -22,6 +22,7 @@ from .isolate import Foot, isolate_files
 from .lifeline import ALONE
 from .pipe import Pipe
 from .tokens import Tokens
+from .watchdogs import alarm_held
 
 #: exit code of a branch whose test decides about its mutant: no other test needs to run. These codes are
 #: unlike any that a program would leave with by itself
@@ -160,6 +161,10 @@ class Trunk:
     def _branch(self, key: Key, here: Sequence[Mutant]) -> Mutant | None:
         if not here or os.getpid() != self._pid:  # a copy that the test has forked for itself
             return None
+        with alarm_held():
+            return self._branch_due(key, here)
+
+    def _branch_due(self, key: Key, here: Sequence[Mutant]) -> Mutant | None:
         due = [mutant for mutant in here if self._is_due(mutant)]
         self._live[key] = [one for one in self._live[key] if one.id not in self._decided]
         if not due:
@@ -175,7 +180,8 @@ class Trunk:
         """Fork for every live mutant of the test that begins, if that is asked for. As ``branch``."""
         if not self.branching.at_start:
             return None
-        return self._fork_each([mutant for mutant in self.branching.mutants if self._is_due(mutant)])
+        with alarm_held():
+            return self._fork_each([mutant for mutant in self.branching.mutants if self._is_due(mutant)])
 
     def finish(self) -> None:
         """All tests are over: wait for the branches that still run, holding no token meanwhile."""

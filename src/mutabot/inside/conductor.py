@@ -32,6 +32,7 @@ from .pipe import Held, Pipe
 from .probes import Reading
 from .returns import Returns
 from .session import Session
+from .watchdogs import drop_idle_watchdog, watched, watched_by_faulthandler
 
 if TYPE_CHECKING:
     from .forkserver import Commission, ForkServer
@@ -229,6 +230,9 @@ class Conductor:
         """One test, its fixtures included."""
         self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
         self._pipe.send(TestStart(item.nodeid))
+        limit = watched_by_faulthandler(item)
+        if limit is not None:
+            self._pipe.send(limit)
         seeds.seed_all(self.seed_of(item.nodeid))
         self._item = item
         self._start_clocks()
@@ -245,6 +249,18 @@ class Conductor:
         if self.job.stop_at_kill and end.is_decided:
             item.session.shouldstop = "the mutant's verdict is known"
         return result
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_setup(self, item: pytest.Item) -> None:
+        """The fixtures of a test are next."""
+        if self.session.trunk is not None:
+            drop_idle_watchdog(item)
+
+    @pytest.hookimpl(optionalhook=True, tryfirst=True)
+    def pytest_timeout_set_timer(self, item: pytest.Item, settings: Any) -> None:
+        """Pytest-timeout is about to watch a test: its thread leaves the process without a word."""
+        if settings.method == "thread":
+            self._pipe.send(watched(item.nodeid, settings.timeout, "pytest-timeout"))
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_call(self) -> None:

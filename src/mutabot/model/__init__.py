@@ -36,6 +36,7 @@ from .job import TextsSeen as TextsSeen
 from .job import TokensHeld as TokensHeld
 from .job import Unbranched as Unbranched
 from .job import Undiverged as Undiverged
+from .job import Watched as Watched
 from .mutant import Mutant as Mutant
 from .operation import Case as Case
 from .operation import Clock as Clock

@@ -126,6 +126,21 @@ class TestStart:
 
 
 @dataclass(frozen=True, slots=True)
+class Watched:
+    """The suite itself ends this process with exit code 1 if a test takes too long.
+
+    Attributes:
+        test: the test.
+        until: from when on, by the clock of ``time.monotonic``, which all processes share.
+        text: the limit, in words.
+    """
+
+    test: str
+    until: float
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Acted:
     """The mutant changed something for the first time in this test: proof that mutated code ran.
 
@@ -407,6 +422,7 @@ class SessionEnd:
 Line = (
     SiteSeen
     | TestStart
+    | Watched
     | Acted
     | PlacesReached
     | TextsSeen
