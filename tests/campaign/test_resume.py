@@ -346,6 +346,22 @@ def test_data_that_the_tests_write_are_no_reason_to_run_again(project: Project) 
     assert project.run() == set()
 
 
+def test_a_new_file_that_nothing_has_to_do_with_is_no_reason_to_run_again(quick: Project) -> None:
+    quick.run()
+    for name in ("out.txt", "run.log", "docs/plan.pdf", "tests/notes.md"):
+        path = quick.folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("a note\n")
+    assert quick.run() == set()
+    (quick.folder / "out.txt").write_text("another\n")
+    assert quick.run() == set()
+    quick.edit("tests/test_right.py", lambda text: text + "# see out.txt\n")
+    assert quick.run()
+    (quick.folder / "out.txt").write_text("a third\n")
+    assert quick.run()
+    assert "out.txt changed" in quick.note
+
+
 def test_a_program_edited_while_mutants_run_is_never_mistaken_for_the_one_they_ran(
     quick: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:

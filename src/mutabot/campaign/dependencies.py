@@ -15,7 +15,7 @@ import re
 import stat
 import sys
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from importlib.metadata import distributions
 from itertools import islice
@@ -27,6 +27,7 @@ from mutabot.model import Mutant, Vocabulary, to_data
 from mutabot.model.idle import Idle
 
 from .baseline import Baseline
+from .counted import WRITTEN, counted
 from .request import Request
 
 #: what something is made of: names, and a digest or a plain value for each
@@ -40,13 +41,9 @@ _FOR_PEOPLE = re.compile(
     r"(README|CHANGELOG|CHANGES|CONTRIBUTING|LICEN[SC]E|AUTHORS)(\.(md|rst|txt|adoc))?", re.IGNORECASE
 )
 _FOR_TOOLS = {".gitignore", ".gitattributes", ".editorconfig", ".coverage", ".DS_Store"}
-_OWN_LINE = re.compile(r"\S+\.py:[^:]+:.+#\d+:.+")  # a mutant's id, as selection files hold them
 #: installed packages that have no say in how a test ends
 _TOOLS = {"black", "hatchling", "isort", "mypy", "pip", "pre-commit", "ruff", "setuptools", "uv", "wheel"}
 _CONFIGURATIONS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "setup.cfg", "conftest.py")
-#: what our own pictures hold near their beginning; see ``mutabot.report.picture``
-_PICTURES, _PICTURE = {".svg", ".png"}, b"written by mutabot compare"
-_WRITTEN = "written by the tests themselves"
 _REACHING = "which tests reach it"
 _HASH = "#"
 
@@ -80,9 +77,14 @@ class Snapshot:
                 found[name] = _File(status, digest)
         return cls(found)
 
+    @property
+    def folders(self) -> set[str]:
+        """The folders with files in them, relative to the root."""
+        return {PurePosixPath(name).parent.as_posix() for name in self.files} | {"."}
+
     def edited_since(self, before: Mapping[str, str]) -> list[str]:
         """Files that had another digest, or are gone."""
-        return [name for name, was in before.items() if was not in (_WRITTEN, self._digest(name))]
+        return [name for name, was in before.items() if was not in (WRITTEN, self._digest(name))]
 
     def edited_programs(self, before: Snapshot) -> list[str]:
         """Python files of ``before`` that have another content now, or are gone."""
@@ -154,6 +156,7 @@ class Dependencies:
         request, baseline: the campaign.
         tests: all tests that the baseline collected.
         before, after: the project's files before and after the baseline.
+        opened: the files that were opened meanwhile; None if that is not known.
 
     Attributes:
         files: the files that count, with their digests.
@@ -161,9 +164,20 @@ class Dependencies:
     """
 
     def __init__(
-        self, request: Request, baseline: Baseline, tests: Iterable[str], before: Snapshot, after: Snapshot
+        self,
+        request: Request,
+        baseline: Baseline,
+        tests: Iterable[str],
+        before: Snapshot,
+        after: Snapshot,
+        opened: Set[str] | None = None,
     ) -> None:
-        self.files = _counted(request, before, after)
+        self.files = counted(
+            request,
+            {name: file.digest for name, file in after.files.items()},
+            after.touched_since(before),
+            opened,
+        )
         self.parts: dict[str, Parts] = {}
         self._told = 0
         self._baseline = baseline
@@ -267,56 +281,6 @@ def changes(old: Parts, new: Parts) -> list[str]:
 
 def _is_setting(old: Parts, new: Parts, name: str) -> bool:
     return not any(parts.get(name, "").startswith(_HASH) for parts in (old, new))
-
-
-def _counted(request: Request, before: Snapshot, after: Snapshot) -> dict[str, str]:
-    """The files that outcomes depend on, with their digests.
-
-    Those that the configuration itself consists of count by what they say. Data that the unmutated tests
-    write are results, not causes.
-    """
-    configuration = request.configuration
-    named = (configuration.selection or "", *configuration.vocabulary)
-    own = {configuration.file, "pyproject.toml", *(PurePosixPath(name).as_posix() for name in named)}
-    if request.selection is not None:
-        own.add(_relative(request.selection, request.root))
-    written = after.touched_since(before)
-    counted = {}
-    for name, file in after.files.items():
-        if name in own or _is_ours(request.root / name):
-            continue
-        is_result = name in written and not name.endswith(".py")
-        counted[name] = _WRITTEN if is_result else file.digest
-    return counted
-
-
-def _relative(path: Path, root: Path) -> str:
-    return Path(os.path.relpath(path.resolve(), root)).as_posix()
-
-
-def _is_ours(path: Path) -> bool:
-    """Whether it is a file for or by mutabot, which no robot program reads."""
-    if path.suffix in _PICTURES:
-        return _is_picture(path)
-    return path.suffix == ".txt" and _is_selection(path)
-
-
-def _is_picture(path: Path) -> bool:
-    try:
-        with path.open("rb") as file:
-            return _PICTURE in file.read(1000)
-    except OSError:
-        return False
-
-
-def _is_selection(path: Path) -> bool:
-    try:
-        with path.open(encoding="utf-8") as file:
-            lines = [line for line in (file.readline(400) for _ in range(20)) if line.strip()]
-    except (OSError, UnicodeDecodeError):
-        return False
-    ids = [line for line in lines if not line.startswith("#")]
-    return bool(ids) and all(_OWN_LINE.match(line) for line in ids)
 
 
 @dataclass(frozen=True, slots=True)

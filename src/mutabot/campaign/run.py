@@ -25,6 +25,7 @@ from .engine import engine_of, repetitions_for, run_mutants, try_controls
 from .interruption import interruptions_kept
 from .journal import Journal
 from .lock import at_work
+from .opened import Watch
 from .pairs import pairs
 from .plan import Plan, make_plan
 from .program_text import family_of
@@ -67,7 +68,8 @@ def run_campaign(request: Request, progress: Progress) -> Path:
 
 def _run(request: Request, workers: Workers, progress: Progress, journal: Journal) -> None:
     before = Snapshot.take(request.root)
-    baseline, results = _baseline(request, workers, progress)
+    with Watch(request.root, before.folders) as watch:
+        baseline, results = _baseline(request, workers, progress)
     whole = make_plan(baseline, request.vocabulary, request.families)
     plan = selected(request, whole, baseline)
     _write_beginning(journal, request, results, plan, whole)
@@ -80,7 +82,7 @@ def _run(request: Request, workers: Workers, progress: Progress, journal: Journa
         run_mutants(request, baseline, workers, progress, plan.mutants, journal)
         look_again(request, baseline, workers, progress, plan.mutants, journal)
         return
-    dependencies = Dependencies(request, baseline, _collected(results), before, after)
+    dependencies = Dependencies(request, baseline, _collected(results), before, after, watch.opened)
     note_outdated(journal, request, dependencies)
     done = reuse(journal, dependencies, plan.mutants, request.rounds, progress)
     journal.key_of = _key_of(journal, dependencies, plan)
