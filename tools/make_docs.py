@@ -163,7 +163,9 @@ def _values(quantities: tuple[Quantity, ...], values: Mapping[str, Any]) -> str:
 
 def _value(quantity: Quantity, value: Any) -> str:
     if isinstance(value, list):
-        return f"[{', '.join(f'{item:g}' for item in value)}] {quantity.unit}".replace("-", "−")
+        return f"[{', '.join(f'{item:g}' for item in value)}] {quantity.unit or ''}".rstrip().replace(
+            "-", "−"
+        )
     if isinstance(value, str):
         return f'"{value}"'
     rounded = round(value, 3) if isinstance(value, float) else value

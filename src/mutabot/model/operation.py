@@ -166,11 +166,13 @@ class Probe:
         target: callable without arguments, or a value, as ``module:qualified.name``. A method, property or
             attribute of a class's objects is read from those that the program uses.
         tolerance: greatest difference between two equal worlds, in the reading's own units.
+        result: what parts of it mean, where that decides how they are compared: angles and orientations.
     """
 
     target: str
     tolerance: float = 1e-6
     source: str = ""
+    result: tuple[Quantity, ...] = ()
 
     @property
     def owner(self) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
 from .path import Path
+from .rotation import Quaternion, to_quaternion, to_values
 from .units import Dimension, convert
 
 #: digits that tell any two numbers apart
@@ -28,6 +30,9 @@ class Kind(StrEnum):
     ORIENTATION = "orientation"
     ANGLE = "angle"
     DISTANCE = "distance"
+    ROTATION_VECTOR = "rotation_vector"
+    QUATERNION = "quaternion"
+    EULER = "euler"
     LABEL = "label"
     FLAG = "flag"
 
@@ -39,10 +44,12 @@ class Mode(StrEnum):
     TO = "to"
 
 
+#: orientations as a whole: several numbers that mean something only together; written and read
+WHOLE = frozenset({Kind.ROTATION_VECTOR, Kind.QUATERNION, Kind.EULER})
 #: kinds that are written to the robot
-WRITTEN = frozenset({Kind.TRANSLATION, Kind.ROTATION, Kind.OPENING, Kind.OUTPUT, Kind.DURATION})
+WRITTEN = frozenset({Kind.TRANSLATION, Kind.ROTATION, Kind.OPENING, Kind.OUTPUT, Kind.DURATION, *WHOLE})
 #: kinds that are read from the robot
-READ = frozenset({Kind.POSITION, Kind.ORIENTATION, Kind.ANGLE, Kind.DISTANCE, Kind.LABEL, Kind.FLAG})
+READ = frozenset({Kind.POSITION, Kind.ORIENTATION, Kind.ANGLE, Kind.DISTANCE, Kind.LABEL, Kind.FLAG, *WHOLE})
 #: kinds whose values are numbers on a scale, with a unit
 MEASURED = frozenset(
     {
@@ -53,6 +60,7 @@ MEASURED = frozenset(
         Kind.ORIENTATION,
         Kind.ANGLE,
         Kind.DISTANCE,
+        *WHOLE,
     }
 )
 #: what each kind measures; kinds that are missing carry no unit
@@ -65,6 +73,8 @@ DIMENSIONS: dict[Kind, frozenset[Dimension]] = {
     Kind.ORIENTATION: frozenset({Dimension.ANGLE}),
     Kind.ANGLE: frozenset({Dimension.ANGLE}),
     Kind.DISTANCE: frozenset({Dimension.LENGTH}),
+    Kind.ROTATION_VECTOR: frozenset({Dimension.ANGLE}),
+    Kind.EULER: frozenset({Dimension.ANGLE}),
 }
 #: the reading that tells where a written kind is now
 READING_OF: dict[Kind, Kind] = {Kind.TRANSLATION: Kind.POSITION, Kind.ROTATION: Kind.ORIENTATION}
@@ -87,6 +97,7 @@ class Quantity:
         clip: what the robot or its environment limits a value to that is sent: values beyond are taken for
             the nearer end; None if it does not.
         noise: standard deviation of the sensor noise to plant, or None for the operator's default.
+        order: of the parts of a quaternion (``wxyz`` or ``xyzw``), or the axes of Euler angles; else None.
     """
 
     name: str
@@ -100,6 +111,7 @@ class Quantity:
     range: tuple[float, float] | None = None
     noise: float | None = None
     clip: tuple[float, float] | None = None
+    order: str | None = None
 
     @property
     def is_measured(self) -> bool:
@@ -122,12 +134,41 @@ class Quantity:
             return [self.clipped(item) for item in value]
         return min(max(value, self.clip[0]), self.clip[1])
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether its value is an orientation as a whole."""
+        return self.kind in WHOLE
+
+    @property
+    def full_turn(self) -> float | None:
+        """A full turn in its unit, where that makes no difference; None for all else, joints included."""
+        is_joint = self.axis is not None and self.axis.startswith("j")
+        is_target = self.kind is Kind.ROTATION and self.mode is Mode.TO
+        if is_joint or not (is_target or self.kind in (Kind.ORIENTATION, Kind.ANGLE)):
+            return None
+        return self.from_unit(2.0 * math.pi, "rad")
+
+    def orientation(self, value: Value) -> Quaternion | None:
+        """The orientation that a value means, as a unit quaternion; None if it means none."""
+        if not self.is_whole:
+            return None
+        return to_quaternion(
+            value, self.kind, self.order, lambda angle: convert(angle, self.unit or "rad", "rad")
+        )
+
+    def numbers(self, orientation: Quaternion) -> list[float]:
+        """An orientation as this quantity writes it."""
+        return to_values(orientation, self.kind, self.order, lambda angle: self.from_unit(angle, "rad"))
+
     def from_unit(self, value: float, unit: str) -> float:
         """``value`` in ``unit``, expressed in this quantity's own unit."""
         return convert(value, unit, self.unit) if self.unit is not None else value
 
     def text(self, value: Value, digits: int = 6) -> str:
         """A value as reports print it, with its unit."""
+        if self.is_whole and isinstance(value, list | tuple):
+            parts = [f"{part:.{digits}g}" if isinstance(part, int | float) else str(part) for part in value]
+            return f"({', '.join(parts)}){f' {self.unit}' if self.unit else ''}"
         if isinstance(value, bool) or not isinstance(value, int | float):
             return str(value)
         number = f"{value:.{digits}g}"

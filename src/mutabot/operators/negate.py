@@ -8,11 +8,14 @@ from typing import ClassVar
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.model.quantity import Value
 
-from ._values import ReadValueOperator
+from ._orientation import the_other_way
+from ._values import ReadValueOperator, quantity_of
 from .operator import Example, Subject, map_numbers
 
 _X = Quantity(".x", Path.parse(".x", rooted=False), Kind.POSITION, "x", "m", "world")
 _GAP = Quantity("result", Path(), Kind.DISTANCE, None, "mm")
+_TURNED = Quantity("result", Path(), Kind.QUATERNION, order="wxyz")
+_LOOK = Operation("camera:orientation", result=(_TURNED,), command=False)
 _LOCATE = Operation("camera:locate", result=(_X,), command=False)
 _MEASURE = Operation("laser:distance", result=(_GAP,), command=False)
 
@@ -36,6 +39,13 @@ class Negate(ReadValueOperator):
             performed=({},),
             received={"result": -12},
         ),
+        Example(
+            Subject(_LOOK, quantity=_TURNED),
+            replied={"result": [0.8, 0.6, 0.0, 0.0]},
+            performed=({},),
+            received={"result": [0.8, -0.6, 0.0, 0.0]},
+            note="an orientation as a whole: the inverse rotation",
+        ),
         Example(Subject(_LOCATE, quantity=_X), replied={".x": 0.0}, away="a zero has no sign"),
         Example(Subject(_LOCATE, quantity=_X), replied={}, away="the reading has no such part this time"),
     )
@@ -44,4 +54,7 @@ class Negate(ReadValueOperator):
         return quantity.is_measured
 
     def change(self, subject: Subject, value: Value, random: Random) -> Value | None:
+        quantity = quantity_of(subject)
+        if quantity.is_whole:
+            return the_other_way(quantity, value)
         return map_numbers(value, lambda number: -number)

@@ -8,6 +8,7 @@ from typing import ClassVar
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.model.quantity import Value
 
+from ._orientation import disturbed
 from ._values import ReadValueOperator, label, quantity_of
 from .operator import Example, Subject, map_numbers
 
@@ -17,6 +18,9 @@ DEFAULT_DEVIATION = {
     Kind.DISTANCE: (0.02, "m"),
     Kind.ORIENTATION: (0.05, "rad"),
     Kind.ANGLE: (0.05, "rad"),
+    Kind.ROTATION_VECTOR: (0.05, "rad"),
+    Kind.QUATERNION: (0.05, "rad"),
+    Kind.EULER: (0.05, "rad"),
 }
 
 _X = Quantity(".x", Path.parse(".x", rooted=False), Kind.POSITION, "x", "m", "world", noise=1.0)
@@ -46,18 +50,22 @@ class Noise(ReadValueOperator):
     def change(self, subject: Subject, value: Value, random: Random) -> Value | None:
         quantity = quantity_of(subject)
         deviation = deviation_of(quantity)
+        if quantity.is_whole:
+            return disturbed(quantity, value, random, deviation)
 
-        def disturbed(number: float) -> float:
+        def noisy_number(number: float) -> float:
             noisy = number + random.gauss(0.0, deviation)
             if quantity.range is not None:
                 noisy = min(max(noisy, quantity.range[0]), quantity.range[1])
             return round(noisy) if isinstance(number, int) else noisy
 
-        return map_numbers(value, disturbed)
+        return map_numbers(value, noisy_number)
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         quantity = quantity_of(subject)
         deviation = quantity.text(deviation_of(quantity))
+        if quantity.is_whole:
+            deviation = f"{deviation if quantity.unit else f'{deviation} rad'} about each axis"
         return f"reads {label(quantity)} {quantity.text(before)} + noise, σ = {deviation}"
 
 

@@ -9,6 +9,7 @@ from typing import ClassVar
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.quantity import Value
 
+from ._orientation import the_other_way
 from ._values import WrittenValueOperator
 from .operator import Example, Subject, map_numbers
 
@@ -22,6 +23,8 @@ _MOVE = Operation("robot:Arm.move_by", (_DY, _YAW))
 _TURN_TO = Operation("robot:Arm.turn_to", (_TURN,))
 _STEP = Operation("env:Env.step", (_PUSH,))
 _CLIPPED = Operation("env:Env.step", (_LIMITED,))
+_ROTVEC = Quantity("rotation", Path("rotation"), Kind.ROTATION_VECTOR, unit="rad")
+_ORIENT = Operation("robot:Arm.orient", (_ROTVEC,))
 _LIFT_TO = Operation("robot:Arm.lift_to", (_LIFT,))
 
 
@@ -52,21 +55,34 @@ class Reverse(WrittenValueOperator):
             note="an angle limited to a full turn stays within it",
         ),
         Example(
+            Subject(_ORIENT, quantity=_ROTVEC),
+            {"rotation": [0.0, 0.5, 0.0]},
+            performed=({"rotation": [0.0, -0.5, 0.0]},),
+            note="an orientation as a whole: the inverse rotation",
+        ),
+        Example(
             Subject(_CLIPPED, quantity=_LIMITED),
             {"push": 1.7},
             performed=({"push": -1.7},),
             note="the vocabulary says that the robot limits it: clip = [−1, 1]",
         ),
         Example(Subject(_STEP, quantity=_PUSH), {"push": 1.7}, away="−1.7 m is outside the range [−1, 1]"),
+        Example(
+            Subject(_ORIENT, quantity=_ROTVEC),
+            {"rotation": [0.0, math.pi, 0.0]},
+            away="half a turn the other way is the same orientation",
+        ),
         Example(Subject(_MOVE, quantity=_DY), {"dy": 0.0}, away="a zero has no other way"),
         Example(Subject(_MOVE, quantity=_DY), {"yaw": 80}, away="the call does not give this component"),
         Example(Subject(_LIFT_TO, quantity=_LIFT), {"z": 0.3}, away="−0.3 m is outside the allowed range"),
     )
 
     def fits(self, quantity: Quantity) -> bool:
-        return quantity.kind in (Kind.TRANSLATION, Kind.ROTATION)
+        return quantity.kind in (Kind.TRANSLATION, Kind.ROTATION) or quantity.is_whole
 
     def change(self, quantity: Quantity, value: Value) -> Value | None:
+        if quantity.is_whole:
+            return the_other_way(quantity, value)
         return map_numbers(value, lambda number: _within_turn(quantity, -number))
 
 

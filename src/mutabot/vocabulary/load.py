@@ -108,7 +108,7 @@ class _Merged:
 
     def _add_probe(self, check: Check, probe: Probe, index: int) -> None:
         known = self.probes.setdefault(probe.target, probe)
-        if known.tolerance != probe.tolerance:
+        if replace(known, source="") != replace(probe, source=""):
             check.error(
                 ("probe", index), f"is described twice, differently: also in {_file_of(known.source)}"
             )

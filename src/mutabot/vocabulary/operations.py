@@ -81,7 +81,8 @@ def read_probe(check: Check, raw: Any, place: Place) -> Probe | None:
     if table is None:
         return None
     check_target(check, table.call, (*place, "call"))
-    return Probe(table.call, table.tolerance, source_of(check, place, table.call))
+    result = read_result(check, table.result, (*place, "result"))
+    return Probe(table.call, table.tolerance, source_of(check, place, table.call), result)
 
 
 def check_targets(check: Check, targets: list[str], place: Place) -> None:

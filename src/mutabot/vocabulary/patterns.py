@@ -133,6 +133,8 @@ def _read_field(check: Check, raw: Any, place: Place, field: Field) -> tuple[Qua
 
 
 def _field_fault(field: Field, quantity: Quantity) -> str | None:
+    if quantity.is_whole:
+        return f"{{{field.name}}} is one number, and {quantity.kind} has several"
     named = [value for value in quantity.values or () if isinstance(value, str)]
     if field.kind != "s":
         return f"{{{field.name}}} takes numbers, not {named[0]!r}; write {{{field.name}}}" if named else None

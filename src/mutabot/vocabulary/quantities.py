@@ -143,5 +143,6 @@ def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | No
         values=default_values(table),
         range=(table.range[0], table.range[1]) if table.range is not None else None,
         noise=table.noise,
+        order=table.order,
         clip=(table.clip[0], table.clip[1]) if table.clip is not None else None,
     )

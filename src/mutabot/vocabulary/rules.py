@@ -8,7 +8,8 @@ from typing import Any
 
 from mutabot.errors import nearest_name
 from mutabot.model import Kind
-from mutabot.model.quantity import DIMENSIONS, MEASURED, READ, WRITTEN
+from mutabot.model.quantity import DIMENSIONS, MEASURED, READ, WHOLE, WRITTEN
+from mutabot.model.rotation import QUATERNION_ORDERS, is_euler_order
 from mutabot.model.units import UNITS, dimension_of
 
 from .axes import AXES, split_axes
@@ -17,7 +18,7 @@ from .schema import QuantityTable
 
 _MOVED = (Kind.TRANSLATION, Kind.ROTATION)
 _AXES_IN_SHORT = ("x", "y", "z", "j1 … j12")
-_WITH_AXIS = MEASURED - {Kind.DURATION}
+_WITH_AXIS = MEASURED - {Kind.DURATION} - WHOLE
 #: how a kind that stands on the wrong side would be written there
 _AS_ARGUMENT = {
     Kind.POSITION: '; a commanded position is kind = "translation" with mode = "to"',
@@ -60,6 +61,7 @@ def faults(table: QuantityTable, *, written: bool, vector: bool = False) -> Iter
     yield from _range(table)
     yield from _clip(table, written)
     yield from _noise(table)
+    yield from _whole(table)
 
 
 def default_unit(table: QuantityTable) -> str | None:
@@ -193,6 +195,22 @@ def _noise(table: QuantityTable) -> Iterator[Fault]:
         yield Fault("noise", f"{_a(table.kind)} has no noise; only a measured reading has")
     elif table.noise <= 0:
         yield Fault("noise", f"must be more than 0 (a standard deviation), got {table.noise}")
+
+
+def _whole(table: QuantityTable) -> Iterator[Fault]:
+    """Orientations as a whole: several numbers, of which none has limits of its own."""
+    kind, order = table.kind, table.order
+    if kind in WHOLE:
+        for key in ("values", "range", "clip"):
+            if getattr(table, key) is not None:
+                yield Fault(key, f"{_a(kind)} has no {key}: its numbers mean something only together")
+    if kind is Kind.QUATERNION and order not in QUATERNION_ORDERS:
+        yield Fault("order", f'{_a(kind)} needs order = "wxyz" or "xyzw": where its real part w stands')
+    elif kind is Kind.EULER and not is_euler_order(order or ""):
+        example = 'such as "xyz" for axes that stay, or "ZYX" for axes that turn along'
+        yield Fault("order", f"{kind} angles need order = three axes in the order of the angles, {example}")
+    elif order is not None and kind not in (Kind.QUATERNION, Kind.EULER):
+        yield Fault("order", f"{_a(kind)} has no order")
 
 
 def _fits(kind: Kind, value: Any) -> bool:

@@ -30,6 +30,7 @@ class QuantityTable(Table):
     range: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
     clip: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
     noise: float | None = None
+    order: str | None = None
 
 
 class PatternTable(Table):
@@ -82,6 +83,7 @@ class ProbeTable(Table):
 
     call: str
     tolerance: Annotated[float, Field(ge=0)] = 1e-6
+    result: dict[str, Any] | None = None
 
 
 class VocabularyTable(Table):

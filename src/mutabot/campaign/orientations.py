@@ -1,0 +1,112 @@
+"""Comparing orientations by the angle between them, and single angles modulo a full turn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mutabot.model import Path, Probe, Quantity
+from mutabot.model.rotation import apart, distance
+
+_PARTS = (("w", "x", "y", "z"), ("x", "y", "z"))
+
+
+@dataclass(frozen=True, slots=True)
+class Turned:
+    """Two values of one orientation or angle.
+
+    Attributes:
+        name: the part of the probe.
+        keys: the values it consists of.
+        before, after: as they were read.
+        angle: how far they are apart, in the quantity's unit (radians for a quaternion).
+        unit: that unit.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    before: Any
+    after: Any
+    angle: float
+    unit: str
+
+
+def angle_between(quantity: Quantity, before: Any, after: Any) -> float | None:
+    """How far two values of a quantity are apart as orientations or angles; None if they are none."""
+    if quantity.is_whole:
+        first, second = quantity.orientation(before), quantity.orientation(after)
+        return quantity.from_unit(distance(first, second), "rad") if first and second else None
+    turn = quantity.full_turn
+    if turn is None or not (_is_number(before) and _is_number(after)):
+        return None
+    return apart(before, after, turn)
+
+
+def values_apart(
+    before: Any, after: Any, quantities: Mapping[str, Quantity], other: Callable[[Any, Any], float]
+) -> float:
+    """The greatest distance of two sets of values by quantity; ``other`` is that of all other values."""
+    if not quantities or not isinstance(before, Mapping) or not isinstance(after, Mapping):
+        return other(before, after)
+    distances = []
+    for name in {*before, *after}:
+        angle = None
+        if name in quantities:
+            angle = angle_between(quantities[name], before.get(name), after.get(name))
+        distances.append(other(before.get(name), after.get(name)) if angle is None else angle)
+    return max(distances, default=0.0)
+
+
+def turned_parts(
+    original: Mapping[str, Any], mutant: Mapping[str, Any], probes: Sequence[Probe]
+) -> Iterator[Turned]:
+    """The orientations and angles in two readings of the probes, as far as both have them."""
+    for probe in probes:
+        for name in _objects(probe, original) if probe.result else ():
+            for quantity in probe.result:
+                keys = _keys(name, quantity, original)
+                if not keys or not all(key in original and key in mutant for key in keys):
+                    continue
+                before, after = ([values[key] for key in keys] for values in (original, mutant))
+                one = (before, after) if quantity.is_whole else (before[0], after[0])
+                angle = angle_between(quantity, *one)
+                if angle is not None:
+                    yield Turned(f"{name}{quantity.path}", keys, *one, angle, quantity.unit or "rad")
+
+
+def _objects(probe: Probe, values: Mapping[str, Any]) -> list[str]:
+    """The probe's names in the readings: one for each object."""
+    tails = (key[len(probe.target) :] for key in values if key.startswith(probe.target))
+    numbers = dict.fromkeys(tail[1:].partition(".")[0].partition("[")[0] for tail in tails if tail[:1] == "#")
+    return [probe.target, *(f"{probe.target}#{number}" for number in numbers)]
+
+
+def _keys(name: str, quantity: Quantity, values: Mapping[str, Any]) -> tuple[str, ...]:
+    """The flat values that a quantity consists of, in its order; none if they are not there."""
+    path: Path = quantity.path
+    bounds = path.steps[-1].bounds if path.steps else None
+    steps = path.steps[:-1] if bounds is not None else path.steps
+    base = name + "".join(
+        _step(step.attribute if step.attribute is not None else step.item) for step in steps
+    )
+    if bounds is None and not quantity.is_whole:
+        return (base,)
+    count = 0
+    while f"{base}[{count}]" in values:
+        count += 1
+    if count:
+        indexes = range(count)[slice(*bounds)] if bounds is not None else range(count)
+        return tuple(f"{base}[{index}]" for index in indexes)
+    named = next((parts for parts in _PARTS if all(f"{base}.{part}" in values for part in parts)), ())
+    if len(named) == 4 and quantity.order is not None:
+        named = tuple(quantity.order)
+    return tuple(f"{base}.{part}" for part in named)
+
+
+def _step(item: Any) -> str:
+    return f"[{item}]" if isinstance(item, int) else f".{item}"
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
