@@ -309,6 +309,42 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
         "arguments.o = { kind = 'output', values = [1, 9], clip = [0, 5] }",
         ["o.clip", "values are all that can be sent"],
     ),
+    "quaternion_without_order": (
+        "result = { kind = 'quaternion' }",
+        ["result.order", 'a quaternion needs order = "wxyz" or "xyzw"'],
+    ),
+    "order_of_no_quaternion": (
+        "result = { kind = 'quaternion', order = 'wzyx' }",
+        ["robot.toml:3", "result.order", '"wxyz" or "xyzw"'],
+    ),
+    "euler_without_order": (
+        "result = { kind = 'euler', unit = 'deg' }",
+        ["result.order", "three axes in the order of the angles"],
+    ),
+    "euler_about_the_same_axis_twice": (
+        "result = { kind = 'euler', unit = 'deg', order = 'xxy' }",
+        ["result.order", '"ZYX"'],
+    ),
+    "order_of_a_rotation_vector": (
+        "result = { kind = 'rotation_vector', unit = 'rad', order = 'xyz' }",
+        ["result.order", "a rotation_vector has no order"],
+    ),
+    "rotation_vector_without_unit": (
+        "result = { kind = 'rotation_vector' }",
+        ["result", "needs a unit", "rad or deg"],
+    ),
+    "quaternion_with_unit": (
+        "result = { kind = 'quaternion', order = 'wxyz', unit = 'rad' }",
+        ["result.unit", "a quaternion has no unit"],
+    ),
+    "rotation_vector_with_axes": (
+        "result.'[3:6]' = { kind = 'rotation_vector', unit = 'rad', axis = 'xyz' }",
+        ["axis", "a rotation_vector has no axis"],
+    ),
+    "range_of_a_rotation_vector": (
+        "arguments.o = { kind = 'rotation_vector', unit = 'rad', range = [-1, 1] }",
+        ["o.range", "mean something only together"],
+    ),
     "range_of_three": ("arguments.dx = { " + _BY + ", range = [1, 2, 3] }", ["range", "at most 2", "got 3"]),
     "infinite_range": ("arguments.dx = { " + _BY + ", range = [0, inf] }", ["finite number"]),
     "value_outside_range": (

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.errors import BaselineError, NothingToDoError
-from mutabot.model import Budget, Instrumentation, Mutant, Probe, ProgramText, Remark, SiteSeen, TestEnd
+from mutabot.model import Budget, Instrumentation, Mutant, ProgramText, Remark, SiteSeen, TestEnd, Vocabulary
 from mutabot.model.job import Line
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
@@ -142,9 +142,10 @@ class Baseline:
             for found in (self.reaching, self.flaky_reaching)
         )
 
-    def observe_again(self, round: int, test: str, found: Observation, probes: Sequence[Probe]) -> None:
+    def observe_again(self, round: int, test: str, found: Observation, vocabulary: Vocabulary) -> None:
         """An equal run of the original: only what both have alike can be compared with a mutant's."""
-        steady = as_steady(self.observations[round, test], found, probes)
+        known = (vocabulary.probes, vocabulary.operations)
+        steady = as_steady(self.observations[round, test], found, *known)
         if steady is None:
             self.restless.add((round, test))
         else:
@@ -322,7 +323,7 @@ def _add_round(
             baseline.ends[round, test] = replace(end, wall=max([end.wall, *(o.wall for o in others if o)]))
             baseline.observations[round, test] = observed[0][test]
             for run in observed[1:]:
-                baseline.observe_again(round, test, run[test], request.vocabulary.probes)
+                baseline.observe_again(round, test, run[test], request.vocabulary)
     baseline.tests.append(good)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])
@@ -397,6 +398,9 @@ def _observations(result: Result, sources: Sources) -> dict[str, Observation]:
 
 def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     """What is compared of a test."""
-    events = [Event(places[index].key, written, read) for index, written, read, _ in end.trace]
+    events = []
+    for index, written, read, _ in end.trace:
+        place = places[index]
+        events.append(Event(place.key, written, read, (place.operation, place.pattern)))
     prepared, called = end.returned[: end.prepared], end.returned[end.prepared :]
     return Observation(events, end.probes, end.truncated, end.unread, end.outcome, prepared, called)

@@ -265,7 +265,7 @@ class _Trunk:
             branches.observations[end.test] = found
 
     def _compare_with_baseline(self, test: str, found: Observation) -> None:
-        self._baseline.observe_again(self._round, test, found, self._request.vocabulary.probes)
+        self._baseline.observe_again(self._round, test, found, self._request.vocabulary)
 
     def _settle(self, mutant: str) -> Iterator[Outcome]:
         """Yield the mutant's outcome if all that it depends on is known."""

@@ -7,8 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.model import Compared, Probe
+from mutabot.model import Compared, Operation, Probe
 from mutabot.model.quantity import told_apart
+
+from .orientations import Angles, Command, Turned, turned_parts, values_apart
 
 #: greatest difference of two equal numbers where the vocabulary names no probe
 DEFAULT_TOLERANCE = 1e-6
@@ -24,11 +26,13 @@ class Event:
         key: where and what, such as ``mission.py:12 Arm.move_by``.
         written: values it wrote, by quantity or in a fixed order.
         read: values it read, likewise.
+        what: the operation and command.
     """
 
     key: str
     written: Any = None
     read: Any = None
+    what: Command = ("", None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,11 +78,17 @@ class Comparison:
     compared: Compared = field(default=Compared(), compare=False)
 
 
-def compare(original: Observation, mutant: Observation, probes: Sequence[Probe] = ()) -> Comparison:
+def compare(
+    original: Observation,
+    mutant: Observation,
+    probes: Sequence[Probe] = (),
+    operations: Sequence[Operation] = (),
+) -> Comparison:
     """Compare a mutant's test with the original's.
 
     Numbers are equal when they differ by no more than their probe's tolerance; values in the trace, when
-    they differ by no more than the greatest tolerance of any probe. All else is compared by equality.
+    they differ by no more than the greatest tolerance of any probe. Orientations are compared by the angle
+    between them, angles modulo a full turn. All else is compared by equality.
     Two cut-off traces are compared as far as they go. What the program returned is compared by the finest of
     these tolerances if it is a fraction, and exactly if not.
     """
@@ -91,7 +101,7 @@ def compare(original: Observation, mutant: Observation, probes: Sequence[Probe] 
     if probes and not (original.probes or mutant.probes or original.unread or mutant.unread):
         gaps = ("no probe reads anything",)
     tolerance = max((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
-    trace_line = _first_difference(original, mutant, tolerance)
+    trace_line = _first_difference(original, mutant, tolerance, Angles(operations))
     returned_line = _returned_difference(original, mutant, probes)
     distances = [distance for distance, _ in probe_lines]
     different = [line for distance, line in probe_lines if distance > 1.0]
@@ -102,15 +112,20 @@ def compare(original: Observation, mutant: Observation, probes: Sequence[Probe] 
     return Comparison(not lines, distance, tuple(lines), gaps, _compared(original, mutant))
 
 
-def as_steady(first: Observation, second: Observation, probes: Sequence[Probe]) -> Observation | None:
+def as_steady(
+    first: Observation,
+    second: Observation,
+    probes: Sequence[Probe],
+    operations: Sequence[Operation] = (),
+) -> Observation | None:
     """The observation of the original that mutants are compared with, after a second run of it.
 
     Without what the program returned if only that differs; None if more does.
     """
-    if compare(first, second, probes).indistinguishable:
+    if compare(first, second, probes, operations).indistinguishable:
         return first
     bare = replace(first, prepared=None, returned=None)
-    return bare if compare(bare, second, probes).indistinguishable else None
+    return bare if compare(bare, second, probes, operations).indistinguishable else None
 
 
 def farthest(comparisons: Sequence[Comparison]) -> Comparison:
@@ -145,8 +160,13 @@ def _probe_differences(
         (OTHER_WORLD, f"{_short(target)}: {_readable(original, mutant, target)}")
         for target in sorted(original.unread.keys() ^ mutant.unread.keys())
     ]
+    turned = list(turned_parts(original.probes, mutant.probes, probes))
+    for one in turned:
+        distance = one.angle / _tolerance(one.name, probes)
+        found.append((min(distance, OTHER_WORLD), f"{_short(one.name)}: {_turn(one)}"))
+    done = {key for one in turned for key in one.keys}
     for key in dict.fromkeys([*original.probes, *mutant.probes]):
-        if any(key == target or _lies_below(key, target) for target in unread):
+        if key in done or any(key == target or _lies_below(key, target) for target in unread):
             continue
         before, after = original.probes.get(key), mutant.probes.get(key)
         distance = _distance(before, after) / _tolerance(key, probes)
@@ -192,13 +212,16 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _first_difference(original: Observation, mutant: Observation, tolerance: float) -> str | None:
+def _first_difference(
+    original: Observation, mutant: Observation, tolerance: float, angles: Angles
+) -> str | None:
     for index, (before, after) in enumerate(zip(original.events, mutant.events, strict=False), start=1):
         if before.key != after.key:
             return f"call {index}: {after.key} instead of {before.key}"
-        if _distance(before.written, after.written) > tolerance:
+        known = angles.of(before.what)
+        if values_apart(before.written, after.written, known, _distance) > tolerance:
             return f"call {index}, {after.key}: wrote {_change(before.written, after.written)}"
-        if _distance(before.read, after.read) > tolerance:
+        if values_apart(before.read, after.read, known, _distance) > tolerance:
             return f"call {index}, {after.key}: read {_change(before.read, after.read)}"
     more = len(mutant.events) - len(original.events)
     if more == 0 or original.truncated or mutant.truncated:
@@ -286,6 +309,11 @@ def _change(before: Any, after: Any) -> str:
     if _is_number(before) and _is_number(after):
         return f"{text} (off by {abs(float(after) - float(before)):.3g})"
     return text
+
+
+def _turn(one: Turned) -> str:
+    text = " instead of ".join(told_apart(one.after, one.before, value_text, 4))
+    return f"{text} (turned by {one.angle:.3g} {one.unit})"
 
 
 def value_text(value: Any, digits: int = 4) -> str:

@@ -189,7 +189,8 @@ def _compared(outcome: Outcome, run: Run, request: Request, baseline: Baseline) 
         if key in baseline.restless:
             return replace(outcome, gaps=(f"equal runs of the original differ in {test}",))
         if key in baseline.observations:
-            comparisons.append(compare(baseline.observations[key], found, request.vocabulary.probes))
+            known = (request.vocabulary.probes, request.vocabulary.operations)
+            comparisons.append(compare(baseline.observations[key], found, *known))
     worst = farthest(comparisons)
     # Without a probe, equal traces say only that the program did the same, not that the world ended so.
     is_claimed = worst.divergence or (worst.distance is not None and not worst.gaps)

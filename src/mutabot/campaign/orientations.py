@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from mutabot.model import Path, Probe, Quantity
+from mutabot.model import Operation, Path, Probe, Quantity
 from mutabot.model.rotation import apart, distance
 
+#: an operation and the notation of its command
+Command = tuple[str, str | None]
 _PARTS = (("w", "x", "y", "z"), ("x", "y", "z"))
 
 
@@ -30,6 +32,26 @@ class Turned:
     after: Any
     angle: float
     unit: str
+
+
+class Angles:
+    """The orientations and angles among the values of operations."""
+
+    def __init__(self, operations: Sequence[Operation]) -> None:
+        self._known: dict[Command, dict[str, Quantity]] = {}
+        for operation in operations:
+            self._add((operation.target, None), (*operation.arguments, *operation.result))
+            for pattern in operation.patterns:
+                self._add((operation.target, pattern.text), (*pattern.arguments, *pattern.result))
+
+    def of(self, command: Command) -> Mapping[str, Quantity]:
+        """Those of one command, by name."""
+        return self._known.get(command, {})
+
+    def _add(self, command: Command, quantities: Sequence[Quantity]) -> None:
+        found = {one.name: one for one in quantities if one.is_whole or one.full_turn is not None}
+        if found:
+            self._known[command] = found
 
 
 def angle_between(quantity: Quantity, before: Any, after: Any) -> float | None:
@@ -68,11 +90,14 @@ def turned_parts(
                 keys = _keys(name, quantity, original)
                 if not keys or not all(key in original and key in mutant for key in keys):
                     continue
-                before, after = ([values[key] for key in keys] for values in (original, mutant))
-                one = (before, after) if quantity.is_whole else (before[0], after[0])
-                angle = angle_between(quantity, *one)
+                before, after = (_value(quantity, keys, values) for values in (original, mutant))
+                angle = angle_between(quantity, before, after)
                 if angle is not None:
-                    yield Turned(f"{name}{quantity.path}", keys, *one, angle, quantity.unit or "rad")
+                    yield Turned(f"{name}{quantity.path}", keys, before, after, angle, quantity.unit or "rad")
+
+
+def _value(quantity: Quantity, keys: Sequence[str], values: Mapping[str, Any]) -> Any:
+    return [values[key] for key in keys] if quantity.is_whole else values[keys[0]]
 
 
 def _objects(probe: Probe, values: Mapping[str, Any]) -> list[str]:
@@ -98,7 +123,9 @@ def _keys(name: str, quantity: Quantity, values: Mapping[str, Any]) -> tuple[str
     if count:
         indexes = range(count)[slice(*bounds)] if bounds is not None else range(count)
         return tuple(f"{base}[{index}]" for index in indexes)
-    named = next((parts for parts in _PARTS if all(f"{base}.{part}" in values for part in parts)), ())
+    named: tuple[str, ...] = next(
+        (parts for parts in _PARTS if all(f"{base}.{part}" in values for part in parts)), ()
+    )
     if len(named) == 4 and quantity.order is not None:
         named = tuple(quantity.order)
     return tuple(f"{base}.{part}" for part in named)
