@@ -301,7 +301,7 @@ def _event_text(name: str, value: Any) -> str:
 
 
 def _short(key: str) -> str:
-    return key.rpartition(":")[2]
+    return key.partition(":")[2]
 
 
 def _change(before: Any, after: Any) -> str:

@@ -85,7 +85,7 @@ def turned_parts(
 ) -> Iterator[Turned]:
     """The orientations and angles in two readings of the probes, as far as both have them."""
     for probe in probes:
-        for name in _objects(probe, original) if probe.result else ():
+        for name in readings_of(probe, original) if probe.result else ():
             for quantity in probe.result:
                 keys = _keys(name, quantity, original)
                 if not keys or not all(key in original and key in mutant for key in keys):
@@ -100,11 +100,22 @@ def _value(quantity: Quantity, keys: Sequence[str], values: Mapping[str, Any]) -
     return [values[key] for key in keys] if quantity.is_whole else values[keys[0]]
 
 
-def _objects(probe: Probe, values: Mapping[str, Any]) -> list[str]:
-    """The probe's names in the readings: one for each object."""
-    tails = (key[len(probe.target) :] for key in values if key.startswith(probe.target))
-    numbers = dict.fromkeys(tail[1:].partition(".")[0].partition("[")[0] for tail in tails if tail[:1] == "#")
-    return [probe.target, *(f"{probe.target}#{number}" for number in numbers)]
+def parts_of(name: str, quantity: Quantity, values: Mapping[str, Any]) -> Iterator[Any]:
+    """The value of a quantity in a reading of a probe, if it is there."""
+    keys = _keys(name, quantity, values)
+    if keys and all(key in values for key in keys):
+        yield _value(quantity, keys, values)
+
+
+def readings_of(probe: Probe, values: Mapping[str, Any]) -> list[str]:
+    """The probe's names among its values: one for each object."""
+    found: dict[str, None] = {}
+    for key in values:
+        tail = key[len(probe.target) :] if key.startswith(probe.target) else None
+        if tail is not None and (not tail or tail[0] in ".[#"):
+            number = tail[1:].partition(".")[0].partition("[")[0] if tail[:1] == "#" else ""
+            found[f"{probe.target}#{number}" if number else probe.target] = None
+    return list(found)
 
 
 def _keys(name: str, quantity: Quantity, values: Mapping[str, Any]) -> tuple[str, ...]:

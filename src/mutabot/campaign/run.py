@@ -34,6 +34,7 @@ from .request import CheckReport, Progress, Request
 from .reuse import reuse
 from .sampling import DRAWING, draw
 from .selection import numbered, select
+from .unfit import refuse_unfit
 from .verify import look_again, refuse_flaky
 from .workers import Result, Workers
 
@@ -175,6 +176,7 @@ def _baseline(request: Request, workers: Workers, progress: Progress) -> tuple[B
     )
     repetitions = repetitions_for(request)
     baseline, results = take_baseline(request, workers, progress, repetitions=repetitions, may_share=branches)
+    refuse_unfit(baseline, request.vocabulary)
     note_ranges(baseline, request.vocabulary, progress)
     return baseline, results
 
