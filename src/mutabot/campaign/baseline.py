@@ -6,7 +6,7 @@ relied on. What differs between the two runs of a round is flaky, and is set asi
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -24,6 +24,7 @@ from .program_text import ProgramTexts, read_texts
 from .readability import note_readability, refuse_unreadable
 from .request import Progress, Request
 from .said import ABNORMAL, last_line, said_in
+from .sharing import Sharing
 from .sites import Sources
 from .workers import Result, Task, Workers
 
@@ -68,6 +69,9 @@ class Baseline:
         startup: seconds from a worker's start to the end, less the tests; the longest.
         program: the program text, if a family of mutants needs it.
         remarks: what is to be known about the vocabulary.
+        sharing: per round, what its tests share.
+        widened: mutants, by id and round, that left something behind in a test which leaves nothing behind
+            in the original: judged by the whole suite.
     """
 
     tests: list[list[str]] = field(default_factory=list)
@@ -84,6 +88,8 @@ class Baseline:
     startup: float = 0.0
     program: ProgramTexts = field(default_factory=ProgramTexts)
     remarks: tuple[Remark, ...] = ()
+    sharing: list[Sharing] = field(default_factory=list)
+    widened: set[tuple[str, int]] = field(default_factory=set)
 
     @property
     def places(self) -> list[Place]:
@@ -93,19 +99,59 @@ class Baseline:
     def selection(self, round: int, place: Place) -> tuple[str, ...]:
         """The tests that judge a mutant at this place, in the order in which to run them.
 
-        Those that reach it, quickest first; the whole suite in its own order where these do not pass alone.
+        Those that reach it, quickest first. Where these do not pass alone, the whole suite in its own order;
+        where they share anything with others, these as well, in the same order.
         """
-        tests = tuple(self.reaching.get((round, place), ()))
-        return tuple(self.tests[round]) if tests in self.dependent else tests
+        return self._together(round, tuple(self.reaching.get((round, place), ())))
 
     def judges(self, round: int, mutant: Mutant) -> tuple[str, ...]:
-        """The tests that judge a mutant: those that reach all that it consists of."""
+        """The tests that judge a mutant: those that reach all it consists of, and what goes with them."""
+        tests = self._reaching_all(round, mutant)
+        if tests and (mutant.id, round) in self.widened:
+            return tuple(self.tests[round])
         selections = [self.selection(round, Place.of(single)) for single in mutant.singles]
-        first, *others = selections
-        tests = tuple(test for test in first if all(test in other for other in others))
-        if others and any(tuple(self.tests[round]) == other for other in selections):
-            return tuple(self.tests[round]) if tests else ()
-        return tests
+        if tests and len(selections) > 1 and tuple(self.tests[round]) in selections:
+            return tuple(self.tests[round])
+        return self._together(round, tests)
+
+    def _reaching_all(self, round: int, mutant: Mutant) -> tuple[str, ...]:
+        first, *others = (self.reaching.get((round, Place.of(single)), ()) for single in mutant.singles)
+        return tuple(test for test in first if all(test in other for other in others))
+
+    def _together(self, round: int, tests: tuple[str, ...]) -> tuple[str, ...]:
+        if tests in self.dependent:
+            return tuple(self.tests[round])
+        if not tests or self.sharing[round].why_together(tests) is None:
+            return tests
+        together = set(self.sharing[round].closure(tests))
+        return tuple(test for test in self.tests[round] if test in together)
+
+    def why_not_branch(self, round: int, tests: Collection[str]) -> tuple[str, str] | None:
+        """One of these tests that forbids to fork for a mutant that they judge, and why; else None."""
+        return self.sharing[round].why_together(tests) or self.sharing[round].why_alone(tests)
+
+    def in_order(self, round: int, tests: Collection[str]) -> tuple[str, ...]:
+        """These tests as one process may run them: quickest first, unless they share anything."""
+        is_shared = self.sharing[round].why_together(tests) is not None
+        order = self.tests[round] if is_shared else self.by_cost(round)
+        return tuple(test for test in order if test in tests)
+
+    def must_widen(self, mutant: Mutant, round: int, ends: Iterable[TestEnd]) -> bool:
+        """Whether tests that do not reach a mutant might notice what it left behind in those that do.
+
+        From then on the whole suite judges it in this round.
+        """
+        whole = set(self.tests[round]) <= {end.test for end in ends}
+        left = any(self._left_behind(round, end) for end in ends)
+        if left and not whole:
+            self.widened.add((mutant.id, round))
+        return left and not whole
+
+    def _left_behind(self, round: int, end: TestEnd) -> bool:
+        """Whether a test left something behind that does not do so in the original."""
+        if end.footprint is None or end.test in self.sharing[round].reasons:
+            return False
+        return bool(end.footprint.left)
 
     def judge_by_whole_suite(self, round: int, test: str) -> None:
         """A test passes only after others: no selection with it can be relied on by itself."""
@@ -327,6 +373,7 @@ def _add_round(
     baseline.tests.append(good)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])
+    baseline.sharing.append(Sharing.of([(end.test, end.footprint) for end in repetitions[0].ends]))
     _add_hits(baseline, sources, round, repetitions[0], good)
     return failed
 

@@ -22,6 +22,7 @@ from mutabot.model import (
     TestEnd,
     Unbranched,
     Undiverged,
+    Verdict,
 )
 from mutabot.model.job import Line
 
@@ -56,6 +57,11 @@ class Remainder:
     suspects: list[tuple[int, str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
+    def leave(self, mutant: Mutant, round: int, test: str, reason: str) -> None:
+        """Leave a mutant to replay because of a test."""
+        self.pairs.append((mutant, round))
+        self.reasons.setdefault(test, reason)
+
 
 def branch(
     request: Request,
@@ -84,7 +90,12 @@ def branch(
             continue
         if round not in trunks:
             trunks[round] = _Trunk(request, baseline, round)
-        trunks[round].add(mutant, tests)
+        forbidding = baseline.why_not_branch(round, tests)
+        if forbidding is not None:
+            remainder.leave(mutant, round, *forbidding)
+            trunks[round].run_too(tests)
+        else:
+            trunks[round].add(mutant, tests)
     # the text of all rounds alike, so that one fork server can serve them
     text = baseline.program.instrumentation(
         {one.id: one for trunk in trunks.values() for one in trunk.mutants}.values()
@@ -146,6 +157,10 @@ class _Trunk:
         self._open[mutant.id] = _Branches(mutant, tests)
         self._needed.update(tests)
 
+    def run_too(self, tests: tuple[str, ...]) -> None:
+        """Tests to run although nothing is branched in them: the trunk is their second run."""
+        self._needed.update(tests)
+
     @property
     def mutants(self) -> tuple[Mutant, ...]:
         """The mutants whose outcomes are not known yet."""
@@ -154,7 +169,7 @@ class _Trunk:
     def task(self, tokens: tuple[int, int], text: Instrumentation | None, *, at_start: bool = False) -> Task:
         """The task that runs the trunk."""
         request, baseline, round = self._request, self._baseline, self._round
-        in_order = tuple(test for test in baseline.by_cost(round) if test in self._needed)
+        in_order = baseline.in_order(round, self._needed)
         walls = {test: wall_limit(request, baseline, round, test) for test in in_order}
         longest = max(walls.values(), default=0.0)
         mutants = self.mutants
@@ -288,5 +303,9 @@ class _Trunk:
                 break
         run.observations = branches.observations
         run.wall = sum(end.wall for end in run.ends)
+        outcome = judge(run, self._request, self._baseline)
+        survived = outcome.verdict is Verdict.SURVIVED
+        if survived and self._baseline.must_widen(run.mutant, run.round, run.ends):
+            return  # to replay
         del self._open[mutant]
-        yield judge(run, self._request, self._baseline)
+        yield outcome

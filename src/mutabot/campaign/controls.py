@@ -133,10 +133,12 @@ def controls_in_branches(baseline: Baseline, mutants: Iterable[Mutant]) -> list[
     found: list[Control] = []
     for (round, place), tests in baseline.reaching.items():
         here = tuple(test for test in tests if test in uncovered[place.is_text])
+        here = tuple(test for test in here if baseline.why_not_branch(round, [test]) is None)
         if round == 0 and here and place in planned and place not in early:
             uncovered[place.is_text] -= set(here)
             found.append(Control(IDENTITY, place, 0, here, _subject(here)))
-    return [*found, *_fatals(baseline, mutants)]
+    fatals = _fatals(baseline, mutants)
+    return [*found, *(one for one in fatals if baseline.why_not_branch(one.round, one.tests) is None)]
 
 
 def _replayed(

@@ -153,7 +153,7 @@ def _controls(
 
 def _note(progress: Progress, remainder: Remainder) -> None:
     for test, reason in remainder.reasons.items():
-        progress.note(f"not safe to fork in {test}: {reason}; its mutants run in processes of their own")
+        progress.note(f"no branches in {test}: {reason}; its mutants run in processes of their own")
     if remainder.early:
         number = len({mutant.id for mutant, _ in remainder.early})
         progress.note(

@@ -25,10 +25,18 @@ def replay(
     """Outcomes of mutants in rounds, as they come."""
     sources = Sources(request.root)
     uncovered: list[Outcome] = []
+    widened: list[Pair] = []
     for result in workers.run(_tasks(request, baseline, pairs, uncovered)):
         yield from _drain(uncovered)
-        yield judge(run_of(result, sources), request, baseline)
+        run = run_of(result, sources)
+        outcome = judge(run, request, baseline)
+        if outcome.verdict is Verdict.SURVIVED and baseline.must_widen(run.mutant, run.round, run.ends):
+            widened.append((run.mutant, run.round))
+        else:
+            yield outcome
     yield from _drain(uncovered)
+    if widened:
+        yield from replay(request, baseline, workers, widened)
 
 
 def _drain(outcomes: list[Outcome]) -> Iterator[Outcome]:

@@ -31,6 +31,8 @@ DECIDED = 113
 FAILED = ALONE
 #: exit code of a branch whose test leaves its mutant alive
 ALIVE = 114
+#: exit code of a branch that stopped before it did what others would have noticed
+STOPPED = 116
 
 #: where a mutant is branched: a site with its operation and pattern, or a place of the program text
 Key = tuple[Span, str, str | None] | int
@@ -273,6 +275,6 @@ class Trunk:
         code = os.waitstatus_to_exitcode(status)
         if code != ALIVE and not self.branching.every_test:
             self._decided.add(child.mutant)
-        if code not in (ALIVE, DECIDED):
+        if code not in (ALIVE, DECIDED, STOPPED):
             overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None
             self.pipe.send(BranchDied(child.mutant, child.test, code, overdue))

@@ -15,14 +15,26 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from mutabot.model import BranchEnd, Branching, Job, SessionEnd, TestEnd, TestStart, from_data
+from mutabot.model import (
+    BranchEnd,
+    Branching,
+    Footprint,
+    Job,
+    SessionEnd,
+    TestEnd,
+    TestStart,
+    Unbranched,
+    from_data,
+)
 from mutabot.operators.registry import BUILT_IN, CONTROLS, preload
 
 from . import seeds
 from .activate import Evidence
-from .branch import ALIVE, DECIDED, Trunk
+from .branch import ALIVE, DECIDED, STOPPED, Trunk
 from .branch import FAILED as BRANCH_FAILED
 from .classify import Ending, classify, unexpected_pass
+from .file_watch import Deed
+from .footprints import Footprints
 from .lifeline import die_with_parent, nobody_listens
 from .limits import limit_memory
 from .locate import Locator
@@ -62,6 +74,7 @@ class Conductor:
         self._shared: float | None = None
         self._item: pytest.Item | None = None
         self._no_oracle: NoOracle | None = None
+        self.footprints = Footprints(job, self.locator)
 
     @classmethod
     def from_files(cls, job_file: str, descriptor: int) -> Conductor:
@@ -235,6 +248,7 @@ class Conductor:
             self._pipe.send(limit)
         seeds.seed_all(self.seed_of(item.nodeid))
         self._item = item
+        self.footprints.start_test()
         self._start_clocks()
         self.session.start_test(item.nodeid)
         try:
@@ -272,6 +286,8 @@ class Conductor:
     def pytest_runtest_teardown(self) -> Generator[None, Any, Any]:
         """Before fixtures take the world down: take the probes."""
         self._reading = self.session.take_probes()
+        if self._item is not None:
+            self.footprints.take_fixtures(self._item)
         return (yield)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -331,9 +347,18 @@ class Conductor:
         self._shared = meter.simulated if meter is not None else None
         assert self._item is not None
         keep_shared_fixtures(self._item)
+        self.footprints.files.on_deed = self._leave_before
         gc.freeze()  # what is never looked at stays shared with the trunk
         # nobody reads a branch's traceback, and to lay one out takes longer than most branches
         self._item.config.option.tbstyle = "value"
+
+    def _leave_before(self, deed: Deed) -> None:
+        """A branch is about to do what the original does not, and what others would notice: it leaves."""
+        test, mutant = self.session.test, self.session.branch
+        try:
+            self._pipe.send(Unbranched(test, (mutant or "",), f"with a mutant, it {deed}"))
+        finally:
+            os._exit(STOPPED)
 
     def _leave_if_branch(self, error: BaseException | None) -> None:
         """A branch has finished its test: report and go, without running anything of the trunk's."""
@@ -395,7 +420,14 @@ class Conductor:
             prepared=returns.prepared if returns is not None else 0,
             probes=self._reading.values,
             unread=self._reading.unread,
+            footprint=self._footprint(),
         )
+
+    def _footprint(self) -> Footprint | None:
+        """What the test leaves; a branch that has failed has nothing to leave it to."""
+        if not self.job.record or (self.session.branch is not None and self._outcome == "failed"):
+            return None
+        return self.footprints.of_test()
 
 
 def read_job(file_name: str) -> Job:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Generator
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -113,5 +114,6 @@ def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, 
         return (yield)
     from .seeds import seeded_apart  # noqa: PLC0415
 
-    with seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
+    watched = _conductor.footprints.setting_up(fixturedef) if _conductor is not None else nullcontext()
+    with seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")), watched:
         return (yield)

@@ -14,6 +14,8 @@ from .call import Proceed as Proceed
 from .call import Reply as Reply
 from .codec import from_data as from_data
 from .codec import to_data as to_data
+from .footprint import Footprint as Footprint
+from .footprint import SharedFixture as SharedFixture
 from .job import Acted as Acted
 from .job import BranchDied as BranchDied
 from .job import BranchEnd as BranchEnd

@@ -12,6 +12,7 @@ from typing import Any, get_args
 
 from .alternative import Choice, Instrumentation, Sighting
 from .codec import from_data, to_data
+from .footprint import Footprint
 from .mutant import Mutant
 from .operation import Vocabulary
 from .site import Span
@@ -292,6 +293,7 @@ class TestEnd:
         probes: values of each probe by ``target.part``; those of the second object of a class by
             ``target#2.part``.
         unread: why a probe could not be read, by target.
+        footprint: what of the test can be noticed outside of it; None if that was not looked at.
     """
 
     __test__ = False  # not a test class, whatever pytest may think of the name
@@ -324,6 +326,7 @@ class TestEnd:
     prepared: int = 0
     probes: Mapping[str, Any] = field(default_factory=dict)
     unread: Mapping[str, str] = field(default_factory=dict)
+    footprint: Footprint | None = None
 
     @property
     def lasting(self) -> str:

@@ -1,0 +1,317 @@
+"""What a test leaves behind in the process: state of modules and classes that was otherwise before it.
+
+The state of a module is the digest of all that its names lead to: containers, objects with their attributes,
+arrays, classes and closures of the project's own. Objects that tell their state only to ``pickle`` are asked
+that way. What nobody can look into is named, so that the tests which may have changed it are known.
+"""
+
+from __future__ import annotations
+
+import gc
+import hashlib
+import io
+import os
+import sys
+import types
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+#: objects looked at before a module counts as too large to look at
+LIMIT = 200_000
+_ATOMS = (type(None), bool, int, float, complex, str, bytes, type(...), type(NotImplemented), range)
+#: what tells nothing about the world, or is looked at elsewhere
+_IGNORED = (
+    types.ModuleType,
+    types.BuiltinFunctionType,
+    types.CodeType,
+    types.FrameType,
+    types.TracebackType,
+    types.GetSetDescriptorType,
+    types.MemberDescriptorType,
+    types.MethodDescriptorType,
+    types.WrapperDescriptorType,
+    types.GenericAlias,
+)
+#: packages whose objects are part of the machinery, not of the world
+_MACHINERY = (
+    "_pytest", "pytest", "pluggy", "logging", "typing", "abc", "_abc", "_thread", "threading", "_weakref",
+    "weakref", "importlib", "_frozen_importlib", "ctypes", "_ctypes", "unittest.mock", "warnings", "re",
+    "mutabot.inside", "mutabot.model", "mutabot.operators", "_asyncio", "_contextvars",
+)  # fmt: skip
+_OF_CLASS = {"__dict__", "__weakref__", "__doc__", "__module__", "__abstractmethods__", "_abc_impl"}
+#: variables of the environment that pytest itself changes in every test
+_PYTESTS_OWN = "PYTEST_CURRENT_TEST"
+
+
+@dataclass(slots=True)
+class Leftovers:
+    """State of the process from test to test.
+
+    Args:
+        is_project: whether a file belongs to the project.
+        targets: modules of the robot API, wherever they lie.
+    """
+
+    is_project: Callable[[str], bool]
+    targets: frozenset[str]
+    _state: dict[str, str] = field(default_factory=dict)
+    _unseen: dict[str, str] = field(default_factory=dict)
+
+    def start(self) -> None:
+        """Note the state before the first test."""
+        self._state, self._unseen = self._look()
+
+    def since(self) -> tuple[dict[str, str], tuple[str, ...]]:
+        """What has changed since the last look, with digests of what it is now; and what cannot be seen.
+
+        State of modules that were imported since then is new and no change, but told too.
+        """
+        before = self._state
+        self._state, self._unseen = self._look()
+        left = {name: digest for name, digest in self._state.items() if before.get(name) != digest}
+        left.update(dict.fromkeys(before.keys() - self._state.keys(), "gone"))
+        return left, tuple(self._unseen)
+
+    def _look(self) -> tuple[dict[str, str], dict[str, str]]:
+        state = {"the working directory": _folder(), "os.environ": _digest_of_environment()}
+        unseen: dict[str, str] = {}
+        for name, module in list(sys.modules.items()):
+            file = getattr(module, "__file__", None)
+            if not isinstance(file, str):
+                if name in self.targets:
+                    unseen[name] = "built in"
+                continue
+            if not file.endswith(".py"):
+                if name in self.targets:
+                    unseen[name] = "native"
+                continue
+            if name in self.targets or self.is_project(file):
+                look = _Look(self._owns)
+                state[name] = look.digest(_names(module))
+                unseen.update({f"{name} ({what})": what for what in look.unseen})
+        return state, unseen
+
+    def _owns(self, module: str) -> bool:
+        """Whether classes of this module are the project's, so that their attributes count."""
+        if module in self.targets:
+            return True
+        file = getattr(sys.modules.get(module), "__file__", None)
+        return isinstance(file, str) and self.is_project(file)
+
+
+def _folder() -> str:
+    try:
+        return os.getcwd()
+    except OSError:  # it was deleted
+        return "gone"
+
+
+def _digest_of_environment() -> str:
+    items = sorted((name, value) for name, value in os.environ.items() if name != _PYTESTS_OWN)
+    return hashlib.blake2b(repr(items).encode("utf-8", "surrogateescape"), digest_size=8).hexdigest()
+
+
+def _names(module: Any) -> dict[str, Any]:
+    """The names of a module that are the user's: Python's and pytest's own are left out."""
+    return {
+        name: value
+        for name, value in vars(module).items()
+        if not (name.startswith(("__", "@")) and name != "__all__")
+    }
+
+
+class _Look:
+    """One walk over all that a module's names lead to.
+
+    Args:
+        owns: whether classes and functions of a module count, by the module's name.
+
+    Attributes:
+        unseen: types of objects that cannot be looked into.
+    """
+
+    def __init__(self, owns: Callable[[str], bool]) -> None:
+        self._owns = owns
+        self._owned: dict[str, bool] = {}
+        self._hash = hashlib.blake2b(digest_size=8)
+        self._seen: dict[int, int] = {}
+        self._kept: list[Any] = []
+        self.unseen: dict[str, None] = {}
+
+    def digest(self, names: Mapping[str, Any]) -> str:
+        """The digest of everything below these names."""
+        stack: list[Any] = [names]
+        feed, seen = self._hash.update, self._seen
+        while stack:
+            value = stack.pop()
+            kind = type(value)
+            if kind in _ATOM_TYPES:
+                feed(repr(value).encode("utf-8", "surrogatepass"))
+                continue
+            number = seen.get(id(value))
+            if number is not None:
+                feed(b"@%d" % number)
+                continue
+            if len(seen) >= LIMIT:
+                self.unseen["more objects than can be looked at"] = None
+                break
+            seen[id(value)] = len(seen)
+            self._kept.append(value)  # what is made on the way must keep its id
+            feed(b"(" + kind.__qualname__.encode("utf-8", "replace"))
+            stack.extend(self._parts(value, kind))
+        return self._hash.hexdigest()
+
+    def _parts(self, value: Any, kind: type) -> Iterator[Any]:
+        """What an object consists of."""
+        if kind is dict or kind is types.MappingProxyType:
+            for key, item in value.items():
+                yield item
+                yield key
+        elif kind in _SEQUENCES:
+            yield len(value)
+            yield from value
+        elif kind in (set, frozenset):
+            yield len(value)
+            yield from sorted(value, key=lambda item: repr(item) if type(item) in _ATOM_TYPES else "")
+        elif isinstance(value, type):
+            yield from self._of_class(value)
+        elif isinstance(value, types.FunctionType):
+            yield from self._of_function(value)
+        elif isinstance(value, types.MethodType):
+            yield value.__self__
+            yield value.__func__.__qualname__
+        elif isinstance(value, _IGNORED) or self._is_machinery(kind):
+            yield getattr(value, "__name__", None) if isinstance(value, types.ModuleType) else None
+        elif isinstance(value, staticmethod | classmethod):
+            yield value.__func__
+        elif isinstance(value, property):
+            yield from (value.fget, value.fset, value.fdel)
+        else:
+            yield from self._of_object(value, kind)
+
+    def _of_class(self, cls: type) -> Iterator[Any]:
+        yield f"{cls.__module__}.{cls.__qualname__}"
+        if self._is_owned(cls.__module__):
+            for name, item in list(vars(cls).items()):
+                if name not in _OF_CLASS:
+                    yield item
+                    yield name
+
+    def _of_function(self, function: types.FunctionType) -> Iterator[Any]:
+        yield f"{function.__module__}.{function.__qualname__}"
+        if self._is_owned(function.__module__ or ""):
+            yield function.__defaults__
+            yield function.__kwdefaults__
+            yield function.__dict__
+            for cell in function.__closure__ or ():
+                try:
+                    yield cell.cell_contents
+                except ValueError:  # it is empty
+                    yield None
+
+    def _of_object(self, value: Any, kind: type) -> Iterator[Any]:
+        yield kind
+        if hasattr(kind, "__array_interface__") or hasattr(kind, "tobytes"):
+            yield from self._of_array(value)
+            return
+        for name, item in _attributes(value, kind):
+            yield item
+            yield name
+        if isinstance(value, dict | list | tuple | set | frozenset):
+            yield from (value.items() if isinstance(value, dict) else value)
+        elif isinstance(value, io.IOBase) and not isinstance(value, io.BytesIO | io.StringIO):
+            yield from _of_file(value)
+        elif _is_native(kind):
+            yield from self._of_opaque(value, kind)
+        else:  # a part that C code of a Python class holds, such as what a cache remembers
+            own = getattr(value, "__dict__", None)
+            yield from (part for part in gc.get_referents(value) if part is not kind and part is not own)
+
+    def _of_array(self, value: Any) -> Iterator[Any]:
+        try:
+            yield getattr(value, "shape", None)
+            if getattr(getattr(value, "dtype", None), "hasobject", False):
+                yield value.tolist()
+            else:
+                yield bytes(value.tobytes())
+        except Exception as error:  # whatever array-like it is: what it does not tell is not known
+            yield from self._unknown(type(value), error)
+
+    def _of_opaque(self, value: Any, kind: type) -> Iterator[Any]:
+        """A type written in C: what it tells to pickle and to the garbage collector."""
+        try:
+            reduced = value.__reduce_ex__(4)
+        except Exception as error:  # many refuse
+            children = gc.get_referents(value)
+            if not children:
+                yield from self._unknown(kind, error)
+            if isinstance(value, types.GeneratorType):
+                yield value.gi_frame.f_lasti if value.gi_frame is not None else -1
+            yield from (child for child in children if child is not kind)
+            return
+        if isinstance(reduced, tuple):
+            yield from reduced[1:3]
+            yield from (list(part) for part in reduced[3:5] if part is not None)
+
+    def _unknown(self, kind: type, error: Exception) -> Iterator[Any]:
+        self.unseen[f"{kind.__module__}.{kind.__qualname__}"] = None
+        yield None
+
+    def _is_owned(self, module: str) -> bool:
+        found = self._owned.get(module)
+        if found is None:
+            found = self._owned[module] = self._owns(module)
+        return found
+
+    def _is_machinery(self, kind: type) -> bool:
+        module = kind.__module__
+        return isinstance(module, str) and any(
+            module == name or module.startswith(f"{name}.") for name in _MACHINERY
+        )
+
+
+_ATOM_TYPES = frozenset(_ATOMS)
+_SEQUENCES = frozenset({list, tuple})
+
+
+def _of_file(file: Any) -> Iterator[Any]:
+    """How far an open file has been read or written."""
+    yield getattr(file, "name", None)
+    try:
+        yield file.tell()
+    except Exception:  # it is closed, or has no position
+        yield None
+
+
+@cache
+def _is_native(kind: type) -> bool:
+    """Whether a part of such an object lies in memory of C code."""
+    return any(_is_of_native_module(cls.__module__) for cls in kind.__mro__[:-1])
+
+
+def _is_of_native_module(name: str) -> bool:
+    module = sys.modules.get(name)
+    file = getattr(module, "__file__", None)
+    return module is not None and name != "__main__" and not (isinstance(file, str) and file.endswith(".py"))
+
+
+def _attributes(value: Any, kind: type) -> Iterator[tuple[str, Any]]:
+    """Attributes of an object: of its dictionary and its slots. No code of its class runs."""
+    try:
+        own = object.__getattribute__(value, "__dict__")
+    except AttributeError:
+        own = None
+    if isinstance(own, dict):
+        yield "__dict__", len(own)
+        yield from list(own.items())
+    for cls in kind.__mro__:
+        slots = cls.__dict__.get("__slots__", ())
+        for name in (slots,) if isinstance(slots, str) else slots:
+            descriptor = cls.__dict__.get(name)
+            if isinstance(descriptor, types.MemberDescriptorType):
+                try:
+                    yield name, descriptor.__get__(value, kind)
+                except AttributeError:  # it was never set
+                    yield name, None

@@ -1,0 +1,44 @@
+"""Footprints: what a test shares with others, and what it leaves behind when it is over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class SharedFixture:
+    """A fixture, set up once, that a test used and others may use as well.
+
+    Attributes:
+        name: the fixture's name.
+        scope: ``class``, ``module``, ``package`` or ``session``.
+        instance: which set-up of it, the same in every test that used this one.
+        has_teardown: whether something of the user's runs when it is taken down.
+    """
+
+    name: str
+    scope: str
+    instance: int
+    has_teardown: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Footprint:
+    """What of a test can be noticed outside of it.
+
+    Attributes:
+        fixtures: the shared fixtures it used whose value, or whose set-up, another test may depend on.
+        left: state of the process that was otherwise after the test than before it, such as
+            ``robot.ARM``, with a digest of what it was then.
+        unseen: state that nobody can look into, and that the test may have changed.
+        files: what it did to files and to other things that a fork would share, in words; those that
+            outlive the test first.
+        outlives: whether a later test may find something of these.
+    """
+
+    fixtures: tuple[SharedFixture, ...] = ()
+    left: Mapping[str, str] = field(default_factory=dict)
+    unseen: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
+    outlives: bool = False
