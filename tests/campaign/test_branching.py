@@ -237,7 +237,7 @@ UNSAFE = {
         "thread = threading.Thread(target=time.sleep, args=(0.4,)); thread.start()",
         "thread.join()",
     ),
-    "subprocess": ("import subprocess", "child = subprocess.Popen(['sleep', '0.5'])", "child.wait()"),
+    "starts a process": ("import subprocess", "child = subprocess.Popen(['sleep', '0.5'])", "child.wait()"),
     "open socket": ("import socket", "ends = socket.socketpair()", "[end.close() for end in ends]"),
 }
 

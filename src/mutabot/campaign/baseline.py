@@ -25,6 +25,7 @@ from .readability import note_readability, refuse_unreadable
 from .request import Progress, Request
 from .said import ABNORMAL, last_line, said_in
 from .sharing import Sharing
+from .sharing import remarks as sharing_remarks
 from .sites import Sources
 from .workers import Result, Task, Workers
 
@@ -148,10 +149,11 @@ class Baseline:
         return left and not whole
 
     def _left_behind(self, round: int, end: TestEnd) -> bool:
-        """Whether a test left something behind that does not do so in the original."""
+        """Whether a test left something behind that it leaves as it was in the original."""
         if end.footprint is None or end.test in self.sharing[round].reasons:
             return False
-        return bool(end.footprint.left)
+        original = self.ends[round, end.test].footprint
+        return not set(end.footprint.left) <= set(original.left if original is not None else ())
 
     def judge_by_whole_suite(self, round: int, test: str) -> None:
         """A test passes only after others: no selection with it can be relied on by itself."""
@@ -265,7 +267,14 @@ def take_baseline(
         raise NothingToDoError(_no_tests(baseline))
     refuse_unreadable(request.vocabulary, list(baseline.ends.values()))
     note_readability(request.vocabulary, list(baseline.ends.values()), progress)
+    for remark in sharing_remarks(baseline.sharing, _not_private(results.values())):
+        progress.note(remark)
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
+
+
+def _not_private(results: Iterable[Result]) -> str | None:
+    """Why a run could not keep its files to itself."""
+    return next((one.end.not_private for one in results if one.end and one.end.not_private), None)
 
 
 def _told_as_they_come(

@@ -62,7 +62,7 @@ class Control:
     def task(self, request: Request, baseline: Baseline) -> Task:
         """The task that runs it by replay."""
         made = task(request, baseline, self.mutant, self.round, self.tests, stop=self.name == FATAL)
-        return Task(self, made.job, made.deadlines, made.deadline, made.startup)
+        return replace(made, key=self)
 
     def end(self, outcome: Outcome) -> ControlEnd:
         """How it ended, judged by its outcome."""

@@ -6,6 +6,7 @@ import contextlib
 import errno
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -14,6 +15,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from shutil import disk_usage
+from types import TracebackType
+from typing import Any
 
 from mutabot.model import Job, to_data
 from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE, Line, line_from_data
@@ -54,9 +57,19 @@ class Home:
 
     def remove(self) -> None:
         """Remove it with all that is in it."""
-        for file in sorted(self.folder.rglob("*"), reverse=True):
-            file.rmdir() if file.is_dir() else file.unlink()
-        self.folder.rmdir()
+        shutil.rmtree(self.folder, onerror=_let_in)
+
+
+def _let_in(
+    function: Any, path: str, error: tuple[type[BaseException], BaseException, TracebackType]
+) -> None:
+    """A folder that its owner may not enter, as the layers of private files have them: enter and go on."""
+    if not isinstance(error[1], PermissionError):
+        raise error[1]
+    Path(path).parent.chmod(0o700)
+    if Path(path).is_dir():
+        Path(path).chmod(0o700)
+    shutil.rmtree(path, onerror=None) if Path(path).is_dir() else Path(path).unlink()
 
 
 def refuse_full_disk(folder: Path) -> None:

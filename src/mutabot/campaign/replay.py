@@ -77,7 +77,10 @@ def task(
         instrumentation=baseline.program.instrumentation([mutant], active=True),
     )
     least = request.configuration.timeout_seconds
-    return Task((mutant, round), job, walls, least, max(least, WALL_FACTOR * baseline.startup))
+    startup = max(least, WALL_FACTOR * baseline.startup)
+    return Task(
+        (mutant, round), job, walls, least, startup, alone=baseline.sharing[round].is_exclusive(tests)
+    )
 
 
 def wall_limit(request: Request, baseline: Baseline, round: int, test: str) -> float:

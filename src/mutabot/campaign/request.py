@@ -88,6 +88,7 @@ class Request:
             round=round,
             memory=self.configuration.memory,
             no_oracle=self.no_oracle,
+            private_files=self.configuration.private_files,
             **details,
         )
 

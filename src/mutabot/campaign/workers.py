@@ -55,6 +55,7 @@ class Task:
         startup: wall-clock seconds until the first test begins.
         is_trunk: whether it branches: it then runs on a token of the pool.
         may_share: whether it may begin as a copy of a fork server instead of in a fresh process.
+        alone: whether nothing may run beside it.
     """
 
     key: Any
@@ -64,6 +65,7 @@ class Task:
     startup: float = STARTUP_SECONDS
     is_trunk: bool = False
     may_share: bool = False
+    alone: bool = False
 
 
 @dataclass(slots=True)
@@ -212,13 +214,16 @@ class Workers:
             yield from self._wait(for_token=next_task is not None and next_task.is_trunk)
 
     def _has_place(self, task: Task) -> bool:
-        if len(self._workers) >= self._jobs:
+        if len(self._workers) >= self._jobs or (self._workers and self._is_alone(task)):
             return False
         if not task.is_trunk:
             return True
         if not self._workers:
             self.pool.refill()  # nobody is left who could hold one
         return self.pool.take()
+
+    def _is_alone(self, task: Task) -> bool:
+        return task.alone or any(worker.task.alone for worker in self._workers)
 
     def _start(self, task: Task) -> None:
         home = Home.make(Path(self._folder.name), task.job)

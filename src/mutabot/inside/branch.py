@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from mutabot.model import BranchDied, Branching, Mutant, Span, TokensHeld, Unbranched, Undiverged
 from mutabot.model.alternative import AT_ONCE
 
-from .forkable import open_sockets, why_not
+from .forkable import open_now, why_not
 from .isolate import Foot, isolate_files
 from .lifeline import ALONE
 from .pipe import Pipe
@@ -80,7 +80,7 @@ class Trunk:
     _decided: set[str] = field(default_factory=set)
     _branched: set[str] = field(default_factory=set)
     _children: dict[int, Child] = field(default_factory=dict)
-    _sockets: frozenset[int] = frozenset()
+    _known: frozenset[int] = frozenset()
     _test: str = ""
     _pid: int = field(default_factory=os.getpid)
     _forking: bool = False
@@ -91,7 +91,7 @@ class Trunk:
         reading, writing = self.branching.tokens
         self._tokens = Tokens(reading, writing, lambda held: self.pipe.send(TokensHeld(held)))
         self._tests = {mutant: frozenset(tests) for mutant, tests in self.branching.tests.items()}
-        self._sockets = open_sockets()
+        self._known = open_now()
         for mutant in self.branching.mutants:
             for key in self._keys(mutant):
                 self._live.setdefault(key, []).append(mutant)
@@ -171,7 +171,7 @@ class Trunk:
         self._live[key] = [one for one in self._live[key] if one.id not in self._decided]
         if not due:
             return None
-        reason = why_not((child.pid for child in self._children.values()), self._sockets)
+        reason = why_not((child.pid for child in self._children.values()), self._known)
         if reason is not None:
             self._branched.update(mutant.id for mutant in due)
             self.pipe.send(Unbranched(self._test, tuple(mutant.id for mutant in due), reason))

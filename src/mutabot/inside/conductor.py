@@ -75,6 +75,7 @@ class Conductor:
         self._item: pytest.Item | None = None
         self._no_oracle: NoOracle | None = None
         self.footprints = Footprints(job, self.locator)
+        self._not_private: str | None = None
 
     @classmethod
     def from_files(cls, job_file: str, descriptor: int) -> Conductor:
@@ -96,6 +97,7 @@ class Conductor:
             conductor = cls(job, pipe, ForkServer(job.serving, pipe, os.path.join(home, LOG)))
         else:
             conductor = cls(job, pipe_of(job, home, descriptor))
+            conductor._make_private(home)
         conductor.session.returns = Returns(conductor.locator)
         conductor.session.returns.install()
         conductor.session.install()
@@ -103,6 +105,11 @@ class Conductor:
             conductor.switch_off_checks()
         conductor._begin(home)
         return conductor
+
+    def _make_private(self, home: str) -> None:
+        if self.job.private_files:
+            self._not_private = self.footprints.make_private(home)
+            die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
         if self.job.branching is not None:
@@ -217,6 +224,7 @@ class Conductor:
         """Become the session of a job."""
         job = read_job(os.path.join(commission.home, "job.json"))
         self.job, self._server, self._pid = job, None, os.getpid()
+        self._make_private(commission.home)
         self._pipe = pipe_of(job, commission.home, commission.descriptor)
         self.session.take_on(job, self._pipe)
         for line in self._held.lines:
@@ -334,7 +342,7 @@ class Conductor:
     def _say_goodbye(self, status: int) -> None:
         """Say what is left to say, and goodbye."""
         self.session.finish()
-        self._pipe.send(SessionEnd(status, self._collected, tuple(self._errors)))
+        self._pipe.send(SessionEnd(status, self._collected, tuple(self._errors), self._not_private))
 
     def _start_clocks(self) -> None:
         self._started = (time.perf_counter(), time.process_time())

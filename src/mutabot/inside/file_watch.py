@@ -14,6 +14,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from .private_files import is_below
+
 _WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _NAMELESS = getattr(os, "O_TMPFILE", 0)
 #: events about a path, and what is done to it
@@ -36,6 +38,7 @@ _PROCESSES = {"subprocess.Popen", "os.posix_spawn", "os.system", "os.fork", "os.
 _WATCHED = {
     "open", *_ON_PATHS, *_OWN_NAMES, *_PROCESSES, "sqlite3.connect", "socket.bind", "mmap.__new__",
 }  # fmt: skip
+_OURS = os.path.dirname(os.path.abspath(__file__))
 #: what is no file of anybody's
 _NOWHERE = ("/dev/", "/proc/", "/sys/")
 #: words kept per test; the first tell enough
@@ -51,6 +54,9 @@ class Deed:
 
     def __str__(self) -> str:
         return f"{self.verb} {self.path}" if self.path else self.verb
+
+
+_STARTS = Deed("starts a process")
 
 
 @dataclass(slots=True)
@@ -87,7 +93,12 @@ class FileWatch:
         self._is_on = False
         if own is not None:
             for deed in self.done:
-                self.done[deed] = self.done[deed] and not _is_below(deed.path, own)
+                self.done[deed] = self.done[deed] and not is_below(deed.path, own)
+
+    @property
+    def has_started_processes(self) -> bool:
+        """Whether the running test has started any."""
+        return _STARTS in self.done
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if not self._is_on or event not in _WATCHED:
@@ -107,12 +118,12 @@ class FileWatch:
         if self.on_deed is not None:
             self.on_deed(deed)
         if deed in self.done or len(self.done) < _KEPT:
-            is_own = any(_is_below(deed.path, own) for own in self._own)
+            is_own = not deed.path or any(is_below(deed.path, own) for own in self._own)
             self.done[deed] = self.done.get(deed, False) or not is_own
 
     def _is_nobodys(self, path: str) -> bool:
         """Whether it is no file, our own, or one of the folders that pytest makes for each test."""
-        if path.startswith(_NOWHERE) or any(_is_below(path, folder) for folder in self.ignored):
+        if path.startswith(_NOWHERE) or any(is_below(path, folder) for folder in self.ignored):
             return True
         return path.startswith(self._pytests) and path.removeprefix(self._pytests).count("/") <= 2
 
@@ -122,18 +133,27 @@ def _deed(event: str, arguments: tuple[Any, ...]) -> Deed | None:
     if event == "open":
         path, _, flags = arguments
         is_write = isinstance(flags, int) and flags & _WRITES and (flags & _NAMELESS) != _NAMELESS
-        return Deed("writes", _absolute(path)) if is_write and not isinstance(path, int) else None
+        if not is_write or isinstance(path, int) or os.path.isdir(path):  # a folder: a nameless file in it
+            return None
+        return Deed("writes", _absolute(path))
     if event in _ON_PATHS:
         return Deed(_ON_PATHS[event], _absolute(arguments[0]))
     if event == "sqlite3.connect":
         name = os.fsdecode(arguments[0]) if isinstance(arguments[0], str | bytes | os.PathLike) else ""
         is_private = name in ("", ":memory:") or ("mode=memory" in name and "cache=shared" not in name)
         return None if is_private else Deed("opens the database", _absolute(name))
+    if event == "os.fork" and sys._getframe(3).f_code.co_filename.startswith(_OURS):
+        return None  # a branch of our own
     if event == "socket.bind":
-        return Deed(f"waits at the address {arguments[1]!r}")
+        return None if _is_any_port(arguments[1]) else Deed(f"waits at the address {arguments[1]!r}")
     if event == "mmap.__new__":
         return Deed("maps shared memory") if arguments[0] != -1 else None
-    return Deed("starts a process")
+    return _STARTS
+
+
+def _is_any_port(address: Any) -> bool:
+    """Whether the system chooses an address that nobody else has."""
+    return isinstance(address, tuple) and len(address) > 1 and address[1] == 0
 
 
 def _absolute(path: Any) -> str:
@@ -141,7 +161,3 @@ def _absolute(path: Any) -> str:
         return os.path.abspath(os.fsdecode(path))
     except (TypeError, ValueError, OSError):  # a descriptor, or a folder that is gone
         return str(path)
-
-
-def _is_below(path: str, folder: str) -> bool:
-    return path == folder or path.startswith(folder + os.sep)

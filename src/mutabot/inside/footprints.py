@@ -12,9 +12,11 @@ import pytest
 
 from mutabot.model import Footprint, Job, SharedFixture
 
-from .file_watch import FileWatch
+from .file_watch import Deed, FileWatch
+from .forkable import subprocesses
 from .leftovers import Leftovers
 from .locate import Locator
+from .private_files import is_below, make_private, private_folders
 from .shared_fixtures import SharedFixtures
 
 #: folders of a project in which no code of the user's lies
@@ -35,6 +37,7 @@ class Footprints:
     files: FileWatch = field(init=False)
     _leftovers: Leftovers = field(init=False)
     _fixtures: SharedFixtures = field(init=False)
+    _private: tuple[str, ...] = ()
     _used: tuple[SharedFixture, ...] = ()
     _folder: str | None = None
     _begun: bool = False
@@ -45,6 +48,13 @@ class Footprints:
         self._leftovers = Leftovers(self._is_project, frozenset(targets))
         self._fixtures = SharedFixtures(lambda file: self.locator.role(file) is not None)
         self.files = FileWatch((os.path.join(os.path.realpath(self.job.root), ".mutabot"),))
+
+    def make_private(self, home: str) -> str | None:
+        """Keep to this process what it does to files; why that is not possible, in words, if it is not."""
+        root = os.path.realpath(self.job.root)
+        reason = make_private(root, os.path.realpath(home), os.path.join(root, ".mutabot"))
+        self._private = private_folders(root) if reason is None else ()
+        return reason
 
     def start_test(self) -> None:
         """A test begins, before its fixtures."""
@@ -70,15 +80,30 @@ class Footprints:
     def of_test(self) -> Footprint:
         """The footprint of the test that has just ended, its fixtures taken down."""
         self.files.stop(self._folder)
-        left, unseen = self._leftovers.since()
+        left, replaced, unseen = self._leftovers.since()
         done = sorted(self.files.done.items(), key=lambda item: not item[1])
         return Footprint(
             fixtures=self._used,
-            left=left,
-            unseen=unseen,
+            left=tuple(left),
+            replaced=tuple(replaced),
+            unseen=tuple(unseen),
             files=tuple(str(deed) for deed, _ in done),
-            outlives=any(outlives for _, outlives in done),
+            outlives=any(outlives for _, outlives in done) or self._runs_on(),
+            exclusive=next((str(deed) for deed, _ in done if self._is_exposed(deed)), None),
         )
+
+    def _runs_on(self) -> bool:
+        """Whether a process that the test started is still there."""
+        return (
+            self.files.has_started_processes and self.job.branching is None and subprocesses(()) is not None
+        )
+
+    def _is_exposed(self, deed: Deed) -> bool:
+        """Whether processes that do this at the same time get in each other's way."""
+        if not deed.path:
+            return deed.verb.startswith("waits")
+        own = self._folder is not None and is_below(deed.path, self._folder)
+        return not own and not any(is_below(deed.path, folder) for folder in self._private)
 
     def _is_project(self, file: str) -> bool:
         relative = self.locator.relative(file)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import fcntl
 import os
 import select
 import stat
@@ -17,18 +18,18 @@ _SELF = "/proc/self"
 _TRIES, _PAUSE = 10, 0.002
 
 
-def why_not(own_children: Iterable[int], known_sockets: frozenset[int]) -> str | None:
+def why_not(own_children: Iterable[int], known: frozenset[int]) -> str | None:
     """Why forking is not safe, in words; None if it is.
 
     Args:
         own_children: processes that this one forked as branches.
-        known_sockets: inodes of sockets that were open before any test ran.
+        known: inodes of what was open before the user's code ran, as ``open_now`` gives them.
     """
     checks: tuple[Callable[[], str | None], ...] = (
         _threads,
         _event_loop,
-        lambda: _subprocesses(set(own_children)),
-        lambda: _sockets(known_sockets),
+        lambda: subprocesses(own_children),
+        lambda: _open_since(known),
         _graphics,
     )
     return next((reason for check in checks if (reason := check()) is not None), None)
@@ -58,32 +59,48 @@ def _event_loop() -> str | None:
     return "an asyncio event loop is running" if running else None
 
 
-def _subprocesses(own: set[int]) -> str | None:
+def subprocesses(own: Iterable[int]) -> str | None:
+    """How many processes this one has started, in words, bar those of its ``own``; None if there are none."""
     try:
         with open(f"{_SELF}/task/{os.getpid()}/children", encoding="ascii") as file:
             children = {int(pid) for pid in file.read().split()}
     except OSError:  # a kernel that does not list them
         return None
-    others = children - own
+    others = children.difference(own)
     return f"{len(others)} subprocess{'es' if len(others) > 1 else ''} in flight" if others else None
 
 
-def _sockets(known: frozenset[int]) -> str | None:
-    opened = open_sockets() - known
-    return f"{len(opened)} open socket{'s' if len(opened) > 1 else ''}" if opened else None
+def _open_since(known: frozenset[int]) -> str | None:
+    found = _open()
+    sockets = {inode for inode, name in found.items() if name is None} - known
+    if sockets:
+        return f"{len(sockets)} open socket{'s' if len(sockets) > 1 else ''}"
+    written = next((name for inode, name in found.items() if name is not None and inode not in known), None)
+    return f"{written} is open for writing" if written is not None else None
 
 
-def open_sockets() -> frozenset[int]:
-    """Inodes of all sockets this process has open."""
-    inodes = set()
+def open_now() -> frozenset[int]:
+    """Inodes of the sockets, and of the files open for writing, that this process has."""
+    return frozenset(_open())
+
+
+def _open() -> dict[int, str | None]:
+    """The same with the files' names; sockets have none. Files that were deleted are nobody else's."""
+    found: dict[int, str | None] = {}
     for name in os.listdir(f"{_SELF}/fd"):
         try:
             status = os.fstat(int(name))
         except OSError:  # the descriptor of the listing itself
             continue
         if stat.S_ISSOCK(status.st_mode):
-            inodes.add(status.st_ino)
-    return frozenset(inodes)
+            found[status.st_ino] = None
+        elif stat.S_ISREG(status.st_mode) and status.st_nlink and _is_written(int(name)):
+            found[status.st_ino] = os.readlink(f"{_SELF}/fd/{name}")
+    return found
+
+
+def _is_written(descriptor: int) -> bool:
+    return fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE != os.O_RDONLY
 
 
 def _graphics() -> str | None:

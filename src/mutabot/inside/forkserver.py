@@ -21,7 +21,7 @@ from typing import Any
 
 from mutabot.model import Copied, CopyEnded, Serving
 
-from .forkable import open_sockets, why_not
+from .forkable import open_now, why_not
 from .isolate import isolate_files
 from .lifeline import die_with_parent
 from .pipe import Pipe
@@ -55,7 +55,7 @@ class ForkServer:
     descriptor: int
     pipe: Pipe
     log_file: str
-    _known_sockets: frozenset[int] = field(default_factory=open_sockets)
+    _known: frozenset[int] = field(default_factory=open_now)
     _copies: dict[int, int] = field(default_factory=dict)
 
     def serve(self) -> Commission | None:
@@ -63,7 +63,7 @@ class ForkServer:
 
         Returns what to do in a copy; None in the server when it is done.
         """
-        reason = why_not((), self._known_sockets)
+        reason = why_not((), self._known)
         if reason is not None:
             self.pipe.send(Serving(reason))
             return None

@@ -13,10 +13,14 @@ import io
 import os
 import sys
 import types
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from enum import Enum
 from functools import cache
+from pathlib import PurePath
 from typing import Any
+
+from .shared_fixtures import is_plain
 
 #: objects looked at before a module counts as too large to look at
 LIMIT = 200_000
@@ -57,41 +61,44 @@ class Leftovers:
     is_project: Callable[[str], bool]
     targets: frozenset[str]
     _state: dict[str, str] = field(default_factory=dict)
-    _unseen: dict[str, str] = field(default_factory=dict)
+    _objects: dict[str, Any] = field(default_factory=dict)
+    _unseen: list[str] = field(default_factory=list)
 
     def start(self) -> None:
         """Note the state before the first test."""
-        self._state, self._unseen = self._look()
+        self._look()
 
-    def since(self) -> tuple[dict[str, str], tuple[str, ...]]:
-        """What has changed since the last look, with digests of what it is now; and what cannot be seen.
+    def since(self) -> tuple[list[str], list[str], list[str]]:
+        """What has changed since the last look: names; those that stand for another object; unseen ones."""
+        state, objects = self._state, self._objects
+        self._look()
+        left = [name for name, digest in self._state.items() if state.get(name) != digest]
+        left += state.keys() - self._state.keys()
+        replaced = [name for name in left if self._is_new(name, objects)]
+        return left, replaced, self._unseen
 
-        State of modules that were imported since then is new and no change, but told too.
-        """
-        before = self._state
-        self._state, self._unseen = self._look()
-        left = {name: digest for name, digest in self._state.items() if before.get(name) != digest}
-        left.update(dict.fromkeys(before.keys() - self._state.keys(), "gone"))
-        return left, tuple(self._unseen)
+    def _is_new(self, name: str, before: dict[str, Any]) -> bool:
+        """Whether a name stands for an object that was made since; a value that was counted on is none."""
+        now = self._objects.get(name)
+        return now is not None and now is not before.get(name) and not is_plain(now)
 
-    def _look(self) -> tuple[dict[str, str], dict[str, str]]:
-        state = {"the working directory": _folder(), "os.environ": _digest_of_environment()}
-        unseen: dict[str, str] = {}
+    def _look(self) -> None:
+        self._state = {"the working directory": _folder(), "os.environ": _digest_of_environment()}
+        self._objects, self._unseen = {}, []
         for name, module in list(sys.modules.items()):
             file = getattr(module, "__file__", None)
-            if not isinstance(file, str):
-                if name in self.targets:
-                    unseen[name] = "built in"
-                continue
-            if not file.endswith(".py"):
-                if name in self.targets:
-                    unseen[name] = "native"
-                continue
-            if name in self.targets or self.is_project(file):
-                look = _Look(self._owns)
-                state[name] = look.digest(_names(module))
-                unseen.update({f"{name} ({what})": what for what in look.unseen})
-        return state, unseen
+            if isinstance(file, str) and file.endswith(".py"):
+                if name in self.targets or self.is_project(file):
+                    self._look_at(name, module)
+            elif name in self.targets:
+                self._unseen.append(name)
+
+    def _look_at(self, module: str, names: Any) -> None:
+        for variable, value in _names(names).items():
+            look = _Look(self._owns)
+            name = f"{module}.{variable}"
+            self._state[name], self._objects[name] = look.digest(value), value
+            self._unseen += [f"{name} ({what})" for what in look.unseen]
 
     def _owns(self, module: str) -> bool:
         """Whether classes of this module are the project's, so that their attributes count."""
@@ -140,9 +147,9 @@ class _Look:
         self._kept: list[Any] = []
         self.unseen: dict[str, None] = {}
 
-    def digest(self, names: Mapping[str, Any]) -> str:
-        """The digest of everything below these names."""
-        stack: list[Any] = [names]
+    def digest(self, top: Any) -> str:
+        """The digest of everything that an object leads to."""
+        stack: list[Any] = [top]
         feed, seen = self._hash.update, self._seen
         while stack:
             value = stack.pop()
@@ -175,6 +182,8 @@ class _Look:
         elif kind in (set, frozenset):
             yield len(value)
             yield from sorted(value, key=lambda item: repr(item) if type(item) in _ATOM_TYPES else "")
+        elif isinstance(value, PurePath | Enum):  # they remember what they have been asked
+            yield str(value)
         elif isinstance(value, type):
             yield from self._of_class(value)
         elif isinstance(value, types.FunctionType):

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,15 +29,20 @@ class Footprint:
     Attributes:
         fixtures: the shared fixtures it used whose value, or whose set-up, another test may depend on.
         left: state of the process that was otherwise after the test than before it, such as
-            ``robot.ARM``, with a digest of what it was then.
+            ``robot.ARM``.
+        replaced: those of these names that stand for a new object, made in this test: a robot that every
+            test makes for itself.
         unseen: state that nobody can look into, and that the test may have changed.
         files: what it did to files and to other things that a fork would share, in words; those that
             outlive the test first.
         outlives: whether a later test may find something of these.
+        exclusive: the first of these that other processes would get in the way of, or None.
     """
 
     fixtures: tuple[SharedFixture, ...] = ()
-    left: Mapping[str, str] = field(default_factory=dict)
+    left: tuple[str, ...] = ()
+    replaced: tuple[str, ...] = ()
     unseen: tuple[str, ...] = ()
     files: tuple[str, ...] = ()
     outlives: bool = False
+    exclusive: str | None = None

@@ -85,6 +85,7 @@ class Job:
         serving: set for a fork server: the socket over which jobs come. It runs no test itself.
         instrumentation: what to put into the program text; None to leave it alone.
         no_oracle: whether all checks are switched off.
+        private_files: whether the process is to keep to itself what it does to files.
     """
 
     root: str
@@ -104,6 +105,7 @@ class Job:
     serving: int | None = None
     instrumentation: Instrumentation | None = None
     no_oracle: bool = False
+    private_files: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -415,11 +417,13 @@ class SessionEnd:
         exit_status: pytest's exit status.
         collected: node ids of the tests collected, in order.
         errors: texts of collection errors.
+        not_private: why its files were not its own, though that was asked for; None if they were.
     """
 
     exit_status: int
     collected: tuple[str, ...] = ()
     errors: tuple[str, ...] = ()
+    not_private: str | None = None
 
 
 Line = (
