@@ -13,8 +13,8 @@ import pytest
 from mutabot.inside.forkable import loaded_libraries, why_not
 
 ASK = """
-from mutabot.inside.forkable import open_sockets, why_not
-known = open_sockets()
+from mutabot.inside.forkable import open_now, why_not
+known = open_now()
 {}
 print(why_not((), known))
 """
