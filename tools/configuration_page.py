@@ -81,6 +81,8 @@ def values_of(schema: Mapping[str, Any], whole: Mapping[str, Any]) -> str:
             return f"list of {values_of(items, whole)}" if "enum" in items else "list of texts"
         case "string":
             return "text"
+        case "boolean":
+            return "`true` or `false`"
         case "integer":
             return f"whole number{_bounds(schema)}"
         case "number":

@@ -179,28 +179,6 @@ class Configuration(Settings):
     """What a campaign is to do: the settings, with paths expanded and sorted.
 
     Attributes:
-<<<<<<< HEAD
-=======
-        program: files and folders with the robot program, relative to ``root``, sorted, globs expanded.
-        oracle: the same for readings that the tests' own checks take.
-        tests: pytest arguments that say which tests there are.
-        vocabulary: vocabulary files, or names of shipped vocabularies.
-        rounds: repetitions, each with its own seeds.
-        seed: the campaign's seed.
-        jobs: processes at a time; None for one per core.
-        selection: file with the ids of the mutants to run, relative to ``root``; None for all.
-        timeout_factor: how many times the baseline's operations and simulated time a mutant may use.
-        timeout_seconds: wall-clock time in seconds that every test gets at least.
-        private_files: whether each run sees the project's and the temporary files as they were before any
-            run, and keeps to itself what it does to them, where the system allows that.
-        memory: address space of a worker, in bytes.
-        unstable_limit, timeout_limit, error_limit: share of outcomes above which a run fails.
-        min_score: score in percent below which a run fails; None for no limit.
-        pytest_args: further pytest arguments.
-        families: families of the mutants to plant: ``robot``, ``classical``, ``text``.
-        order: how many mutants are one: 1 or 2.
-        pairs: how many mutants of the second order to plant, chosen by the seed.
->>>>>>> 0637d80 (Each run keeps its files to itself, and branches stop before they write; what tests do to files, processes and addresses is seen)
         root: absolute path of the project.
         file: the file it was read from, relative to ``root``.
     """
