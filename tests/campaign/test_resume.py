@@ -322,6 +322,10 @@ def test_an_interrupted_campaign_shows_what_was_there_before(
     shown = quick.all_results()
     assert (shown.state, shown.done) == ("interrupted", len(first))
     assert all(one.outdated for one in shown.mutants)
+    quick.edit("scene.json", lambda text: text.removesuffix("\n# edited\n"))
+    with pytest.raises(KeyboardInterrupt):
+        quick.run(fresh=True)
+    assert not any(one.outdated for one in quick.all_results().mutants)
 
 
 def test_errors_and_unstable_outcomes_are_never_reused(quick: Project) -> None:

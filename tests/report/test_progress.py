@@ -80,7 +80,7 @@ def test_every_stage_is_one_line_with_a_whole_bar_count_and_time(width: int) -> 
         for _ in range(100):
             progress.advance("#123 mission.py:33 reverse arm.move_by: killed\nby a check in a test")
     last = [line for line in _ESCAPES.sub("", out.getvalue()).splitlines() if line.strip()][-1]
-    assert cell_len(last) <= width
+    assert cell_len(last) <= width - 3  # a ^C has its place there
     assert last.count("━") >= 10
     assert "100/100" in last
     assert re.search(r"0:00:\d\d", last)

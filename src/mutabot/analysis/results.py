@@ -247,8 +247,9 @@ class _Earlier:
         ]
         ids = {outcome.mutant for outcome in found}
         mutants = tuple(mutant for mutant, _ in known.values() if mutant.id in ids)
-        # what was planned and would still hold has been taken over
-        outdated = {name for name in ids if name not in known or known[name][1]}
+        # what was planned and would still hold has been taken over, unless everything is to be run again
+        planned_may_hold = bool(journal.meta().get("fresh"))
+        outdated = {name for name in ids if (known[name][1] if name in known else not planned_may_hold)}
         return cls(mutants, tuple(found), frozenset(outdated))
 
 

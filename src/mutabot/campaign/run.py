@@ -271,6 +271,7 @@ def _meta(request: Request) -> dict[str, Any]:
         "pairs": request.pairs,
         "every_test": request.every_test,
         "no_oracle": request.no_oracle,
+        "fresh": request.fresh,
         "started": time.time(),
         "vocabulary": to_data(request.vocabulary),
     }

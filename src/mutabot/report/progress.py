@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterable
 from types import TracebackType
 from typing import Protocol, Self
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.console import Console, RenderableType
+from rich.constrain import Constrain
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    TaskID,
+    TextColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Column
 
 from .console import plain
@@ -24,6 +34,8 @@ _BARS = ((120, 40), (80, 20), (0, 10))
 _COUNT, _TIME = 9, 7
 #: what lies between the columns, and the least for the last of them
 _GAPS = 6
+#: columns that stay free
+_SPARE = 3
 
 
 def _column(width: int | None = None, *, at_most: int | None = None, ratio: int | None = None) -> Column:
@@ -54,21 +66,31 @@ def make_progress(console: Console) -> Reporter:
     return Bar(console) if console.is_terminal else Lines(console)
 
 
+class _Progress(Progress):
+    """Leaves room at the right: a ^C that the terminal prints there must not begin another line."""
+
+    def __init__(self, *columns: ProgressColumn, console: Console) -> None:
+        self._on = console
+        super().__init__(*columns, console=console, expand=True)
+
+    def get_renderables(self) -> Iterable[RenderableType]:
+        yield Constrain(self.make_tasks_table(self.tasks), self._on.width - _SPARE)
+
+
 class Bar:
     """A bar per stage on a terminal."""
 
     def __init__(self, console: Console) -> None:
         # every stage keeps to one line, whatever is told beside it: texts are cut before the bar is
         bar = next(width for columns, width in _BARS if console.width >= columns)
-        room = max(10, console.width - bar - _COUNT - _TIME - _GAPS)
-        self._progress = Progress(
+        room = max(10, console.width - _SPARE - bar - _COUNT - _TIME - _GAPS)
+        self._progress = _Progress(
             TextColumn("{task.description}", markup=False, table_column=_column(at_most=room)),
             BarColumn(bar_width=bar, table_column=_column(bar)),
             MofNCompleteColumn(table_column=_column(_COUNT)),
             TimeRemainingColumn(elapsed_when_finished=True, table_column=_column(_TIME)),
             TextColumn("{task.fields[line]}", markup=False, table_column=_column(ratio=1)),
             console=console,
-            expand=True,
         )
         self._task: TaskID | None = None
 

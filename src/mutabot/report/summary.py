@@ -9,12 +9,11 @@ from rich.console import Console, RenderableType
 from rich.text import Text
 
 from mutabot.analysis.results import Results
-from mutabot.analysis.score import Group
 from mutabot.model import Verdict
 
 from .console import between, heading, make_table, percent
 from .errors import error_lines
-from .terminal import group_name, sample_lines, survivor_lines, title, trust_lines
+from .terminal import RATES, group_name, sample_lines, survivor_lines, title, trust_lines
 
 #: survivors that are shown
 _SURVIVORS = 10
@@ -32,7 +31,7 @@ def _parts(results: Results, width: int) -> Iterator[RenderableType]:
     yield Text(title(results), style="bold")
     yield from error_lines(results)
     if results.done:
-        yield _scores(results)
+        yield _scores(results, with_interval=width >= RATES)
         yield from sample_lines(results)
     yield from survivor_lines(results, width, at_most=_SURVIVORS)
     yield from _outside(results)
@@ -40,7 +39,7 @@ def _parts(results: Results, width: int) -> Iterator[RenderableType]:
     yield Text("\n`mutabot results` shows every mutant, `mutabot show N` all about one.", style="dim")
 
 
-def _scores(results: Results) -> RenderableType:
+def _scores(results: Results, *, with_interval: bool) -> RenderableType:
     """A line for each family and role."""
     table = make_table()
     table.add_column("family · role", no_wrap=True)
@@ -49,13 +48,10 @@ def _scores(results: Results) -> RenderableType:
     for group in results.groups:
         total = group.scores.total
         killed = f"{total.killed} of {total.valid}"
-        table.add_row(group_name(group), _score(group), percent(group.scores.mean_check), killed)
+        interval = group.scores.interval if with_interval else None
+        score = percent(group.scores.mean) + (f" ({between(interval)})" if interval is not None else "")
+        table.add_row(group_name(group), score, percent(group.scores.mean_check), killed)
     return table
-
-
-def _score(group: Group) -> str:
-    interval = group.scores.interval
-    return percent(group.scores.mean) + (f" ({between(interval)})" if interval is not None else "")
 
 
 def _outside(results: Results) -> Iterator[RenderableType]:

@@ -38,7 +38,7 @@ _MANY_ROUNDS = 12
 #: columns from which on every fact of a mutant has a column of its own
 WIDE = 110
 #: columns from which on there is room for kill rates
-_RATES = 72
+RATES = 72
 _INTERVALS = (
     "Intervals hold the true value in 95 % of campaigns: of a score over other rounds and mutants like "
     "these, of a kill rate over other rounds (docs/statistics.md)."
@@ -111,9 +111,7 @@ def earlier_lines(results: Results) -> Iterator[RenderableType]:
     outdated = sum(result.outdated for result in earlier)
     if outdated:
         what = "all" if outdated == len(earlier) else str(outdated)
-        text += (
-            f"; {what} of them (*) as of before something that they depend on changed: `mutabot run` tells"
-        )
+        text += f"; {what} of them (*) from before something changed that they depend on"
     yield Text(f"{text}.", overflow="fold")
 
 
@@ -122,7 +120,7 @@ def mutant_table(results: Results, width: int) -> Table:
     narrow = width < WIDE
     table = make_mutant_table(("role", "place", "operator"), "what it does", narrow=narrow)
     many = results.rounds > _MANY_ROUNDS
-    with_rates = results.rounds > 1 and width >= _RATES
+    with_rates = results.rounds > 1 and width >= RATES
     if with_rates:
         table.add_column("killed", justify="right", no_wrap=True)
     table.add_column("rounds" if many else _round_numbers(results.rounds), no_wrap=not many)
