@@ -22,6 +22,7 @@ from mutabot.model.watch import WATCH_VARIABLE
 
 from .callee import Callee, exception_name, facts, function_of, method_of
 from .described import Leaves
+from .told_apart import ToldApart
 from .watched_text import METHOD, NAME, READ, watch_imports
 
 #: calls of one callable whose values are looked at; more are only counted
@@ -50,6 +51,7 @@ class _Seen:
     result: Leaves = field(default_factory=Leaves)
     given: dict[str, int] = field(default_factory=dict)
     raised: dict[str, None] = field(default_factory=dict)
+    told_apart: ToldApart = field(default_factory=ToldApart)
     looked_at: int = 0
     answered: int = 0
     is_coroutine: bool = False
@@ -138,8 +140,12 @@ class Watch:
         if seen is None or not self._counts(seen, place):
             return function
 
+        instance = getattr(function, "__self__", None)
+        of_program = not self._is_of_tests(place)
+
         def watched(*args: Any, **kwargs: Any) -> Any:
-            self._arguments(seen, args, kwargs)
+            values = self._arguments(seen, args, kwargs)
+            which = seen.told_apart.see(instance, seen.callee.target, values) if of_program else None
             try:
                 result = function(*args, **kwargs)
             except Exception as error:
@@ -147,31 +153,34 @@ class Watch:
                 raise
             if inspect.iscoroutine(result):
                 seen.returns_coroutine = not seen.is_coroutine
-                return self._awaited(seen, result)
-            self._answer(seen, result)
+                return self._awaited(seen, which, result)
+            self._answer(seen, result, which)
             return result
 
         return watched
 
-    async def _awaited(self, seen: _Seen, waiting: Any) -> Any:
+    async def _awaited(self, seen: _Seen, which: str | None, waiting: Any) -> Any:
         try:
             result = await waiting
         except Exception as error:
             seen.raised[exception_name(type(error))] = None
             raise
-        self._answer(seen, result)
+        self._answer(seen, result, which)
         return result
 
     def _counts(self, seen: _Seen, place: int) -> bool:
         """Count a call; whether its values are to be looked at."""
-        in_tests = self._places[place][0] in self._tests.values()
-        if in_tests and (seen.own or seen.callee.file in self._tests):
+        if self._is_of_tests(place) and (seen.own or seen.callee.file in self._tests):
             return False
         seen.sites[place] = seen.sites.get(place, 0) + 1
         seen.looked_at += 1
         return seen.looked_at <= MOST_CALLS
 
-    def _arguments(self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any]) -> None:
+    def _is_of_tests(self, place: int) -> bool:
+        return self._places[place][0] in self._tests.values()
+
+    def _arguments(self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any]) -> dict[str, Any]:
+        """Look at the arguments of a call, and return those whose names are known."""
         values = dict(kwargs)
         if seen.signature is None:
             for index, value in enumerate(args):
@@ -180,7 +189,7 @@ class Watch:
             try:
                 bound = seen.signature.bind(*args, **kwargs)
             except TypeError:
-                return
+                return {}
             bound.apply_defaults()
             values = dict(bound.arguments)
             for name, parameter in seen.signature.parameters.items():
@@ -189,10 +198,12 @@ class Watch:
         for name, value in values.items():
             seen.given[name] = seen.given.get(name, 0) + 1
             seen.arguments.setdefault(name, Leaves()).see(value, name)
+        return values
 
-    def _answer(self, seen: _Seen, result: Any) -> None:
+    def _answer(self, seen: _Seen, result: Any, which: str | None = None) -> None:
         seen.answered += 1
         seen.result.see(result)
+        seen.told_apart.answer(which, result)
 
     def _data(self, seen: _Seen) -> dict[str, Any]:
         found = facts(seen.callee)
@@ -208,6 +219,7 @@ class Watch:
             "result": seen.result.data(),
             "answered": seen.answered,
             "raised": list(seen.raised),
+            "told_apart": seen.told_apart.data(),
         }
 
 

@@ -56,10 +56,12 @@ class Guess:
     Attributes:
         table: the quantity; empty if nothing could be guessed.
         checks: what the user should look at.
+        seen: values that were seen, in words; empty if they are shown elsewhere.
     """
 
     table: Table = field(default_factory=dict)
     checks: list[str] = field(default_factory=list)
+    seen: str = ""
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,22 @@ class Part:
 
 
 @dataclass(frozen=True)
+class SeenCommand:
+    """What was seen of one of the commands of a callable.
+
+    Attributes:
+        text: what tells it from the others, such as the id of a node.
+        calls: how often it was called.
+        arguments, result: parts, as in a call.
+    """
+
+    text: str
+    calls: int
+    arguments: Mapping[str, tuple[Part, ...]]
+    result: tuple[Part, ...]
+
+
+@dataclass(frozen=True)
 class SeenCall:
     """A callable that the program or the tests use, as the running program knows it.
 
@@ -59,6 +75,8 @@ class SeenCall:
         arguments: parts by argument, in the order of the signature.
         positional: parts of arguments whose names nothing tells.
         result: parts of what it answered.
+        told_by: path to what tells its commands apart; empty if nothing does.
+        commands: these commands.
     """
 
     target: str
@@ -67,6 +85,8 @@ class SeenCall:
     arguments: Mapping[str, tuple[Part, ...]]
     positional: tuple[Part, ...]
     result: tuple[Part, ...]
+    told_by: str = ""
+    commands: tuple[SeenCommand, ...] = ()
 
     @property
     def name(self) -> str:
@@ -169,15 +189,23 @@ def _read(output: Path) -> Observed:
 
 
 def _call(raw: dict[str, Any]) -> SeenCall:
-    arguments = {
-        name: _parts(leaves, raw["given"].get(name, 0)) for name, leaves in raw.pop("arguments").items()
-    }
+    arguments = _arguments(raw)
     ordered = [name for name in raw["annotations"] if name in arguments]
     arguments = {name: arguments[name] for name in [*ordered, *(set(arguments) - set(ordered))]}
     positional = _parts(raw.pop("positional"), 0)
     result = _parts(raw.pop("result"), raw["answered"])
     sites = tuple((file, line, count) for file, line, count in raw.pop("sites"))
-    return SeenCall(raw["target"], raw, sites, arguments, positional, result)
+    apart = raw.pop("told_apart")
+    commands = tuple(
+        SeenCommand(text, one["calls"], _arguments(one), _parts(one["result"], one["answered"]))
+        for text, one in apart["commands"].items()
+    )
+    return SeenCall(raw["target"], raw, sites, arguments, positional, result, apart["by"], commands)
+
+
+def _arguments(raw: dict[str, Any]) -> dict[str, tuple[Part, ...]]:
+    found = raw.pop("arguments")
+    return {name: _parts(leaves, raw["given"].get(name, 0)) for name, leaves in found.items()}
 
 
 def _parts(leaves: Sequence[Mapping[str, Any]], times: int) -> tuple[Part, ...]:

@@ -10,6 +10,7 @@ from typing import Any
 from .commands import MESSAGES, patterns_of
 from .compared import with_compared
 from .guess import Guess, Setting, guess_argument, guess_reading
+from .nodes import commands_of, is_read, tells_commands
 from .observed import Part, SeenCall, part_of
 from .sequences import guess_elements
 
@@ -71,6 +72,8 @@ class Proposal:
         """Whether it can be proposed as it is."""
         if self.call.facts["problem"]:
             return False
+        if self.call.told_by and self.message == self.call.told_by and self.reads_by_name:
+            return any(guess.table for _, guess in self.patterns)  # else nothing can be misread
         complete = any(is_complete(guess) for guess in [*self.arguments.values(), *self.result.values()])
         return complete or bool(self.patterns) or self.is_plain or _is_command(self.call)
 
@@ -109,6 +112,9 @@ def _proposal(call: SeenCall, groups: Sequence[Sequence[Any]]) -> Proposal:
     if proposal.message is not None:
         texts = [value for part in call.arguments[proposal.message] for value in part.values]
         proposal.patterns = patterns_of([str(text) for text in texts])
+    elif not proposal.arguments and tells_commands(call):
+        proposal.message, proposal.patterns = call.told_by, commands_of(call)
+        proposal.reads_by_name = is_read(call)
     else:
         proposal.result = _result(call, groups)
         if (proposal.arguments or _is_command(call)) and call.name != "step":

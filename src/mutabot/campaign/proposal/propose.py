@@ -13,6 +13,7 @@ from mutabot.vocabulary import load
 from .compared import Unreached, compared_with, unreached
 from .known import Known, known_vocabularies
 from .layout import look
+from .nodes import commands_of, tells_commands
 from .observed import LIMIT, Observed, SeenCall, observe
 from .operations import proposals
 from .text import vocabulary_text
@@ -65,7 +66,9 @@ class _Look:
         return bool(self.found or self.others or self.unreached or not self.known)
 
     def _new(self, calls: Sequence[SeenCall]) -> list[SeenCall]:
-        return [call for call in calls if not any(one.describes(call) for one in self.known)]
+        """Calls to be described here: those of shipped vocabularies only where nodes tell more."""
+        shipped = [call for call in calls if any(one.describes(call) for one in self.known)]
+        return [call for call in calls if call not in shipped or _says_more(call)]
 
     def _add_readings(self, rest: Sequence[SeenCall], groups: Sequence[Sequence[object]]) -> None:
         """Readings that only the tests take, and the files where they take any."""
@@ -110,6 +113,10 @@ def propose(root: Path, program: Sequence[Path] = (), *, limit: float = LIMIT) -
         _write(root / VOCABULARY, text)
     _write(root / CONFIGURATION, _configuration(found))
     return _told(found)
+
+
+def _says_more(call: SeenCall) -> bool:
+    return tells_commands(call) and any(guess.table for _, guess in commands_of(call))
 
 
 def _by_role(calls: Sequence[SeenCall], program: Sequence[str]) -> tuple[list[SeenCall], list[SeenCall]]:

@@ -81,6 +81,8 @@ def _references(proposal: Proposal) -> list[tuple[str, Any]]:
 
 
 def _arguments(proposal: Proposal) -> Iterator[str]:
+    if proposal.message is not None and proposal.message == proposal.call.told_by:
+        return  # each command says what is beside it
     for name, parts in proposal.call.arguments.items():
         if name == proposal.message:
             continue
@@ -158,8 +160,11 @@ def _pattern_lines(proposal: Proposal) -> list[str]:
     rows = []
     for text, guess in proposal.patterns:
         checks = f"  # check the {' and the '.join(guess.checks)}" if guess.checks else ""
+        checks += f"  # seen: {guess.seen}" if guess.seen else ""
         rows.append(f"  {_toml({'text': text, **guess.table})},{checks}")
     lines = ["patterns = [", *rows, "]"]
+    if proposal.reads_by_name and all(guess.table for _, guess in proposal.patterns):
+        return ["command = false  # guess: it only reads", *lines]
     if proposal.reads_by_name:
         hint = (
             'what it reads, as in: { text = "color", result = { kind = "label", values = ["red", "blue"] } }'
@@ -174,7 +179,7 @@ def _key(path: str) -> str:
 
 def _toml(value: Any) -> str:
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + " }"
+        return "{ " + ", ".join(f"{_key(key)} = {_toml(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(_toml(item) for item in value) + "]"
     if isinstance(value, str):
