@@ -68,7 +68,7 @@ def _value(command: SeenCommand, name: str, part: Part) -> dict[str, Any]:
 
 def _read(command: SeenCommand) -> dict[str, Any]:
     part = next((part for part in command.result if part.path == "" and part.always), None)
-    if part is None or part.length is not None:
+    if part is None or part.length is not None or not part.values:
         return {}
     if part.type == "bool":
         return {"result": {"kind": "flag"}}
