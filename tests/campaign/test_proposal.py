@@ -258,7 +258,8 @@ def test_text_commands_become_patterns(tmp_path: Path) -> None:
                 import link
                 def run(h):
                     link.send('pick'); link.send('lift/5'); link.send('lift/7')
-                    link.send(f'drop/{h}'); link.send('turn/90.5'); link.send('release'); link.read('color')
+                    link.send(f'drop/{h}'); link.send('turn/90.5'); link.send('release')
+                    return link.read('color') in ('red', 'blue')
             """,
             "test_sorter.py": "import sorter\ndef test_it(): sorter.run(3)\n",
         },
@@ -272,6 +273,7 @@ def test_text_commands_become_patterns(tmp_path: Path) -> None:
     assert patterns["lift/{height:g}"].opposite == "drop/{height:g}"
     assert patterns["lift/{height:g}"].arguments[0].axis == "z"
     assert not found["link:read"].command
+    assert [one.values for one in found["link:read"].patterns[0].result] == [("red", "blue")]
 
 
 VENDOR = """

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
+from .compared import with_compared
 from .guess import Guess, Setting, guess_argument, guess_reading
 from .observed import Part, SeenCall, SeenCommand
 
@@ -28,11 +30,14 @@ def is_read(call: SeenCall) -> bool:
     return _READS.search(call.name) is not None
 
 
-def commands_of(call: SeenCall) -> list[tuple[str, Guess]]:
-    """Each command as a notation, with what is written beside it or read."""
+def commands_of(call: SeenCall, groups: Sequence[Sequence[Any]] = ()) -> list[tuple[str, Guess]]:
+    """Each command as a notation, with what is written beside it or read.
+
+    ``groups``: constants that the program compares one and the same thing with.
+    """
     found = []
     for command in call.commands:
-        table = _read(command) if is_read(call) else _written(command)
+        table = _read(command, groups) if is_read(call) else _written(command)
         notation = command.text.replace("{", "{{").replace("}", "}}")
         found.append((notation, Guess(table, [], _seen(command, is_read(call)))))
     return found
@@ -66,13 +71,14 @@ def _value(command: SeenCommand, name: str, part: Part) -> dict[str, Any]:
     return {}
 
 
-def _read(command: SeenCommand) -> dict[str, Any]:
+def _read(command: SeenCommand, groups: Sequence[Sequence[Any]]) -> dict[str, Any]:
     part = next((part for part in command.result if part.path == "" and part.always), None)
     if part is None or part.length is not None or not part.values:
         return {}
     if part.type == "bool":
         return {"result": {"kind": "flag"}}
-    guess = guess_reading(_last_word(command.text), _setting(command, part))
+    setting = replace(_setting(command, part), constants=with_compared(part.values, groups))
+    guess = guess_reading(_last_word(command.text), setting)
     is_complete = guess.table.get("kind") != "label" or "values" in guess.table
     return {"result": guess.table} if guess.table and is_complete else {}
 

@@ -109,12 +109,13 @@ def _proposal(call: SeenCall, groups: Sequence[Sequence[Any]]) -> Proposal:
         if name != proposal.message:
             for part in parts:
                 proposal.arguments.update(_argument(name, part, call))
-    if proposal.message is not None:
+    by_name = proposal.message is None or proposal.reads_by_name
+    if by_name and not proposal.arguments and tells_commands(call):
+        proposal.message, proposal.reads_by_name = call.told_by, is_read(call)
+        proposal.patterns = commands_of(call, groups)
+    elif proposal.message is not None:
         texts = [value for part in call.arguments[proposal.message] for value in part.values]
         proposal.patterns = patterns_of([str(text) for text in texts])
-    elif not proposal.arguments and tells_commands(call):
-        proposal.message, proposal.patterns = call.told_by, commands_of(call)
-        proposal.reads_by_name = is_read(call)
     else:
         proposal.result = _result(call, groups)
         if (proposal.arguments or _is_command(call)) and call.name != "step":
