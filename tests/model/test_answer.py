@@ -10,7 +10,7 @@ from collections import OrderedDict, deque, namedtuple
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -76,6 +76,16 @@ class Poses(list[Pose]):
 class Guarded:
     def __copy__(self) -> Guarded:
         return self
+
+
+class Proxy:
+    """Answers to every name, as clients of remote calls do."""
+
+    asked: ClassVar[list[str]] = []
+
+    def __getattr__(self, name: str) -> Any:
+        self.asked.append(name)
+        return lambda *_: self
 
 
 OK = Point(0.0)
@@ -202,6 +212,12 @@ def test_a_part_of_the_robot_api_is_never_copied() -> None:
     with pytest.raises(NotKeptError, match="Arm"):
         keep({"arm": Arm()}, {}, handles)
     assert copied(Arm()).x == 0.0
+
+
+def test_a_proxy_is_asked_nothing() -> None:
+    with pytest.raises(NotKeptError, match="Proxy"):
+        keep(Proxy(), {})
+    assert Proxy.asked == []
 
 
 def test_a_class_that_is_gone_is_told() -> None:

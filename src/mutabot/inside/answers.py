@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mutabot.model import Vocabulary
-from mutabot.model.answer import NotKeptError, is_plain, keep
+from mutabot.model.answer import NotKeptError, is_of_numpy, is_plain, keep
 
 #: containers that a program may change after it got them
-_CHANGEABLE = (list, dict, set, bytearray)
+_CHANGEABLE = frozenset({list, dict, set, bytearray})
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +82,6 @@ def handles_of(vocabulary: Vocabulary) -> frozenset[str]:
 
 def snapshot(value: Any) -> Any:
     """An answer as it is now: a program may change the list or array it got."""
-    if isinstance(value, _CHANGEABLE) or hasattr(value, "dtype"):
+    if type(value) in _CHANGEABLE or is_of_numpy(value):
         return copy.copy(value)
     return tuple(map(snapshot, value)) if type(value) is tuple else value

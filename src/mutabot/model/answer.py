@@ -30,15 +30,21 @@ _SEQUENCES: dict[type[Any], str] = {
 _MAPPINGS: dict[type[Any], str] = {dict: "dict", OrderedDict: "OrderedDict"}
 _MADE_BY: dict[str, type[Any]] = {name: kind for kind, name in {**_SEQUENCES, **_MAPPINGS}.items()}
 _IMMUTABLE = (tuple, frozenset)
-#: who has one of these copies itself in a way of its own, or notices being thrown away
+#: who has one of these copies itself in a way of its own, notices being thrown away, or answers any question
 _OWN_WAYS = (
     "__new__", "__reduce__", "__reduce_ex__", "__getstate__", "__setstate__", "__getnewargs__",
-    "__getnewargs_ex__", "__copy__", "__deepcopy__", "__del__",
+    "__getnewargs_ex__", "__copy__", "__deepcopy__", "__del__", "__getattr__", "__getattribute__",
 )  # fmt: skip
 
 
 class NotKeptError(ValueError):
     """An answer that cannot be kept by value; the text says what it is."""
+
+
+def is_of_numpy(value: Any) -> bool:
+    """Whether it is an array or a scalar of numpy, which may not be there at all."""
+    numpy = sys.modules.get("numpy")
+    return numpy is not None and (type(value) is numpy.ndarray or isinstance(value, numpy.generic))
 
 
 def is_plain(value: Any) -> bool:
@@ -115,7 +121,7 @@ class _Keeper:
         if kind in (bytes, bytearray):
             self._spend(len(value) * 4 // 3)
             return {kind.__name__: base64.b64encode(value).decode()}
-        if _is_of_numpy(value):
+        if is_of_numpy(value):
             return self._numpy(value)
         if isinstance(value, Enum):
             return {"member": [_name_of(kind), value.name]}
@@ -149,12 +155,6 @@ class _Keeper:
         self._left -= size
         if self._left < 0:
             raise NotKeptError(f"more than {LIMIT} characters")
-
-
-def _is_of_numpy(value: Any) -> bool:
-    """Whether it is an array or a scalar of numpy, which may not be there at all."""
-    numpy = sys.modules.get("numpy")
-    return numpy is not None and (type(value) is numpy.ndarray or isinstance(value, numpy.generic))
 
 
 def _array(kind: str, shape: list[int], content: str) -> Any:
