@@ -272,6 +272,22 @@ def test_an_exception_that_does_not_exist_is_reported(make_stage: Make, name: st
     assert any(isinstance(line, Problem) and words in line.text for line in stage.pipe.lines)
 
 
+@pytest.mark.parametrize(
+    ("name", "words"), [("robot:nowhere", "'nowhere'"), ("robot:LIMIT", "robot:LIMIT is int, not a function")]
+)
+def test_a_function_that_is_to_make_an_answer_must_be_one(make_stage: Make, name: str, words: str) -> None:
+    vocabulary = f"""
+        [[operation]]
+        call = "robot:move"
+        idle = {{ call = "{name}" }}
+        """
+    stage = make_stage("LIMIT = 3\n\ndef move():\n    pass\n", "X = 1\n", vocabulary)
+    stage.session().inspect_targets()
+    (problem,) = [line for line in stage.pipe.lines if isinstance(line, Problem)]
+    assert problem.key == "idle"
+    assert words.rpartition(":")[2] in problem.text
+
+
 RE_EXPORTING = """
     from decimal import InvalidOperation as Refused
 
