@@ -212,7 +212,7 @@ def test_a_picture_in_the_project_does_not_make_everything_run_again(
     if name.endswith("png"):
         pytest.importorskip("PIL")
     mission = "def run(arm):\n    arm.move_by(0.5)\n"
-    test = "from mission import run\nfrom robot import Arm\n\ndef test_it():\n    run(Arm())\n"
+    test = "from mission import run\nfrom robot import Arm\n\ndef test_it():\n    run(Arm())  # 'ends'\n"
     folder = write_project(tmp_path, mission, test)
     run_campaign(request_for(folder, engine="replay"), Quiet())
     write_picture(comparison, folder / name)
