@@ -18,10 +18,15 @@ _LINES = 20
 def said_in(log: str) -> str:
     """The last lines of what a process printed, in their own layout, as an appendix to a message."""
     lines = [line.rstrip() for line in _ESCAPES.sub("", log).splitlines() if line.strip()]
-    lines = [line for line in lines if not _OF_NO_USE.match(line)] or lines
+    lines = [_without_frame(line) for line in lines if not _OF_NO_USE.match(line)] or lines
     if not lines:
         return ""
     return "; pytest said:" + "".join(f"\n  {line}" for line in lines[-_LINES:])
+
+
+def _without_frame(line: str) -> str:
+    """A line without the exclamation marks that pytest fills it up with."""
+    return line.strip("! ") if line.startswith("!!!") else line
 
 
 def last_line(log: str) -> str:

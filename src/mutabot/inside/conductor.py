@@ -243,6 +243,8 @@ class Conductor:
         if not isinstance(error, pytest.exit.Exception | pytest.Session.Interrupted | pytest.Session.Failed):
             traceback.print_exception(error)
             status = int(pytest.ExitCode.INTERNAL_ERROR)
+        elif isinstance(error, pytest.exit.Exception):
+            print(f"\n!!! {type(error).__module__}.{type(error).__qualname__}: {error}")
         self._say_goodbye(status)
         return status
 
