@@ -245,6 +245,19 @@ SUITES = {
         def test_reads():
             assert FILE.read_text() == "0.75"
     """,
+    "the program runs while the tests are imported": """
+        import mission
+        from robot import Arm
+
+        ARM = Arm()
+        mission.run(ARM)
+
+        def test_a():
+            assert ARM is not None
+
+        def test_b():
+            assert ARM.x == 0.75
+    """,
     "the environment": """
         import os
         import mission

@@ -71,6 +71,8 @@ class Baseline:
         program: the program text, if a family of mutants needs it.
         remarks: what is to be known about the vocabulary.
         sharing: per round, what its tests share.
+        early: places that are reached before any test begins, while the program or a test file is imported:
+            a mutant there needs a process of its own.
         widened: mutants, by id and round, that left something behind in a test which leaves nothing behind
             in the original: judged by the whole suite.
     """
@@ -91,6 +93,7 @@ class Baseline:
     remarks: tuple[Remark, ...] = ()
     sharing: list[Sharing] = field(default_factory=list)
     widened: set[tuple[str, int]] = field(default_factory=set)
+    early: set[Place] = field(default_factory=set)
 
     @property
     def places(self) -> list[Place]:
@@ -130,6 +133,10 @@ class Baseline:
     def why_not_branch(self, round: int, tests: Collection[str]) -> tuple[str, str] | None:
         """One of these tests that forbids to fork for a mutant that they judge, and why; else None."""
         return self.sharing[round].why_together(tests) or self.sharing[round].why_alone(tests)
+
+    def is_early(self, mutant: Mutant) -> bool:
+        """Whether a mutant may act before any test begins."""
+        return self.program.is_early(mutant) or any(Place.of(one) in self.early for one in mutant.singles)
 
     def in_order(self, round: int, tests: Collection[str]) -> tuple[str, ...]:
         """These tests as one process may run them: quickest first, unless they share anything."""
@@ -408,6 +415,12 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
             tests = reaching.setdefault(place, [])
             if end.test not in tests:
                 tests.append(end.test)
+    for index, written, read, answer in result.called_at_import:
+        place = places[index]
+        baseline.hits.setdefault(place, []).append(Hit(written, read))
+        baseline.answers.setdefault(place, Answers()).add(round, "", answer)
+        baseline.early.add(place)
+        reaching[place] = list(good)
     for place, tests in reaching.items():
         baseline.reaching[round, place] = sorted(tests, key=lambda test: _cost(baseline.ends[round, test]))
 

@@ -85,7 +85,7 @@ def branch(
         if not tests:
             yield without_tests(baseline, mutant, round)
             continue
-        if baseline.program.is_early(mutant):
+        if baseline.is_early(mutant):
             remainder.early.append((mutant, round))
             continue
         if round not in trunks:

@@ -126,8 +126,8 @@ def run_controls(
 
 def controls_in_branches(baseline: Baseline, mutants: Iterable[Mutant]) -> list[Control]:
     """The controls to run as branches: identity in every test of the first round, fatal once per file."""
-    early = baseline.program.early
-    mutants = [mutant for mutant in mutants if not baseline.program.is_early(mutant)]
+    early = baseline.program.early | baseline.early
+    mutants = [mutant for mutant in mutants if not baseline.is_early(mutant)]
     planned = _places(mutants)
     uncovered = {is_text: set(baseline.tests[0]) for is_text in (False, True)}
     found: list[Control] = []
@@ -178,7 +178,7 @@ def _fatals(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
     What raises while the program is imported says little about what is reached in a test: that comes last.
     Only a test that passes on the original must fail by it; one that may fail, or skips itself, need not.
     """
-    planned, early = _places(mutants), baseline.program.early
+    planned, early = _places(mutants), baseline.program.early | baseline.early
     chosen: dict[tuple[bool, str], Control] = {}
     costs: dict[tuple[bool, str], tuple[bool, int, float]] = {}
     for (round, place), tests in baseline.reaching.items():

@@ -75,7 +75,7 @@ def try_controls(
         controls = controls_in_branches(baseline, mutants)
         progress.stage("controls", len(controls))
         ended = sum(1 for _ in _controls(request, baseline, workers, controls, remainder, progress))
-        mutants = [mutant for mutant in mutants if remainder.pairs or baseline.program.is_early(mutant)]
+        mutants = [mutant for mutant in mutants if remainder.pairs or baseline.is_early(mutant)]
     if mutants:
         ended += sum(1 for _ in run_controls(request, baseline, workers, progress, mutants))
     return ended, remainder

@@ -19,6 +19,7 @@ from typing import Any
 from mutabot.errors import JournalError
 from mutabot.model import (
     Acted,
+    CalledAtImport,
     Job,
     MutatedCall,
     NotInstrumented,
@@ -77,6 +78,7 @@ class Result:
         sites, ends, problems: what it reported.
         acted: tests in which its mutant did something; the empty one stands for before any test.
         reached: places of the program text by test, likewise.
+        called_at_import: trace of the operations that were called before any test.
         seen: what a recording saw of the program text.
         not_instrumented: files whose mutants cannot run, with the reason.
         in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
@@ -96,6 +98,7 @@ class Result:
     problems: list[Problem] = field(default_factory=list)
     acted: list[str] = field(default_factory=list)
     reached: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    called_at_import: tuple[Any, ...] = ()
     seen: TextsSeen | None = None
     not_instrumented: dict[str, str] = field(default_factory=dict)
     in_mutated_call: bool = False
@@ -122,6 +125,8 @@ class Result:
                 self.acted.append(line.test)
             case PlacesReached():
                 self.reached[line.test] = line.places
+            case CalledAtImport():
+                self.called_at_import = line.trace
             case TextsSeen():
                 self.seen = line
             case NotInstrumented():

@@ -103,10 +103,15 @@ class Activation:
     _middleware: Middleware | None = None
     _idle: Idle | None = None
     _test: tuple[int, str] = (0, "")
+    _early: Evidence = field(default_factory=Evidence)
+
+    def keep_early(self) -> None:
+        """What it did before the first test counts in every test."""
+        self._early = self.evidence
 
     def start(self, seed: int, round: int = 0, test: str = "") -> None:
         """A new test begins; the mutant's randomness follows from ``seed`` alone."""
-        self.evidence = Evidence()
+        self.evidence = replace(self._early, away=dict(self._early.away))
         self.rule = operator(self.mutant.operator)
         self._middleware = self.rule.middleware(self._subject(), Random(seed))
         self._idle = Idle.of(self.mutant.idle) if self.rule.asks_idle else None

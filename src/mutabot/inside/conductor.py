@@ -172,7 +172,7 @@ class Conductor:
             node: id of what could not be collected; empty for all there is.
         """
         evidence = self.session.evidence
-        if error is None or not evidence.is_of_text or not evidence.acted:
+        if error is None or not evidence.acted:
             return
         below = (f"{node}::", f"{node}/") if node not in ("", ".") else ("",)
         tests = [test for test in self.job.tests or () if test.startswith(below)]
@@ -181,7 +181,8 @@ class Conductor:
             ending = classify(error, "collect", file, self.locator, self.job.vocabulary, evidence)
             end = TestEnd(
                 test, "failed", ending.by, ending.phase, ending.exception, ending.message, ending.place,
-                failure=ending.failure, invalid=_is_no_program(evidence, ending),
+                failure=evidence.failure or ending.failure, refused=ending.refused,
+                invalid=evidence.invalid or _is_no_program(evidence, ending),
                 hits=evidence.hits, acted=evidence.acted, example=evidence.example,
             )  # fmt: skip
             self._pipe.send(end)

@@ -17,6 +17,7 @@ from mutabot.model import (
     Acted,
     Budget,
     Call,
+    CalledAtImport,
     Job,
     Mutant,
     MutatedCall,
@@ -111,6 +112,23 @@ class Session:
             self.interception.wrap(clock.tick, reader.handler())
         if self.job.mutant is not None:
             self.activate(self.job.mutant)
+        if self.job.record or self.job.serving is not None:
+            self._watch_imports()
+
+    def _watch_imports(self) -> None:
+        """What the program does while it is imported counts for every test that comes after."""
+        self.meter = Meter(Budget())
+        self.recorder.answers = Answers.of(self.job.vocabulary) if self.job.mutant is None else None
+        self._start_activations()
+
+    def _end_imports(self) -> None:
+        """The first test begins."""
+        if self.meter is None or self.test:
+            return
+        if self.recorder.trace:
+            self.pipe.send(CalledAtImport(tuple(self.recorder.trace)))
+        for activation in self.activations:
+            activation.keep_early()
 
     def _door(self, operation: Operation) -> Door:
         reading = self.job.vocabulary.operation(operation.current or "")
@@ -156,6 +174,7 @@ class Session:
 
     def start_test(self, test: str) -> None:
         """A test begins, before its fixtures."""
+        self._end_imports()
         self.test = test
         self._parts.clear()
         self._look_for_subclasses()

@@ -21,6 +21,7 @@ from .job import BranchDied as BranchDied
 from .job import BranchEnd as BranchEnd
 from .job import Branching as Branching
 from .job import Budget as Budget
+from .job import CalledAtImport as CalledAtImport
 from .job import Copied as Copied
 from .job import CopyEnded as CopyEnded
 from .job import Job as Job

@@ -164,6 +164,13 @@ class PlacesReached:
 
 
 @dataclass(frozen=True, slots=True)
+class CalledAtImport:
+    """Operations of the program that were called before any test began; the trace is like that of a test."""
+
+    trace: tuple[Any, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class TextsSeen:
     """What a recording saw of the program text, over all tests.
 
@@ -432,6 +439,7 @@ Line = (
     | Watched
     | Acted
     | PlacesReached
+    | CalledAtImport
     | TextsSeen
     | NotInstrumented
     | MutatedCall
