@@ -21,6 +21,7 @@ from mutabot.cli_options import (
     ENGINES,
     FAMILIES,
     All,
+    BaselineRuns,
     Confirm,
     Engine,
     Families,
@@ -35,6 +36,7 @@ from mutabot.cli_options import (
     Order,
     Pairs,
     Picture,
+    Repeats,
     Round,
     Rounds,
     Sample,
@@ -160,6 +162,8 @@ def run(
     fresh: Fresh = False,
     verify: Verify = 0,
     confirm: Confirm = False,
+    repeats: Repeats = True,
+    baseline: BaselineRuns = None,
     min_score: MinScore = None,
     table: Table = False,
     json: Json = False,
@@ -171,7 +175,7 @@ def run(
     request = _request(
         context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
         sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
-        fresh=fresh, verify=verify, confirm=confirm,
+        fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
     )  # fmt: skip
     with _progress() as progress:
         journal_path = run_campaign(request, progress)
@@ -376,6 +380,8 @@ def _request(
         fresh=bool(given.get("fresh")),
         verify=given.get("verify") or 0,
         confirm=bool(given.get("confirm")),
+        repeats=given.get("repeats", True),
+        baseline=given.get("baseline") or configuration.baseline_repetitions,
         families=_families(given.get("family")) or configuration.families,
         sample=size,
         one_per_site=bool(given.get("one_per_site")),

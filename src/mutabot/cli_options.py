@@ -105,7 +105,13 @@ Verify = Annotated[
 ]
 Confirm = Annotated[
     bool,
-    typer.Option("--confirm", help="Run survivors and time-outs once more; unstable where that disagrees."),
+    typer.Option("--confirm", help="Run every kill, survivor and time-out once more; else unstable."),
+]
+Repeats = Annotated[
+    bool, typer.Option("--repeats/--no-repeats", help="Run kills that may be chance once more.")
+]
+BaselineRuns = Annotated[
+    int | None, typer.Option("--baseline", metavar="N", min=1, help="Run the original N times per round.")
 ]
 Round = Annotated[int | None, typer.Option("--round", metavar="N", min=1, help="Only this round.")]
 MinScore = Annotated[

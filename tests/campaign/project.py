@@ -127,10 +127,16 @@ def write_project(
 
 
 def request_for(folder: Path, **changes: Any) -> Request:
-    """The request that ``mutabot run`` would make in this folder."""
+    """The request that ``mutabot run --no-repeats`` would make in this folder: repeats take time."""
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, configuration.root)
-    values = {"rounds": configuration.rounds, "seed": configuration.seed, "jobs": 2, **changes}
+    values = {
+        "rounds": configuration.rounds,
+        "seed": configuration.seed,
+        "jobs": 2,
+        "repeats": False,
+        **changes,
+    }
     return Request(configuration, vocabulary, **values)
 
 

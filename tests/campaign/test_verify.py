@@ -110,10 +110,11 @@ def test_confirm_leaves_survivors_that_survive_again_as_they_are(tmp_path: Path)
     write_project(tmp_path, MISSION, TESTS)
     only = ("*:skip", "*:negate")
     before, _ = campaign(tmp_path, only=only)
-    survivors = sum(one.verdict is Verdict.SURVIVED for one in outcomes(tmp_path / ".mutabot/journal.sqlite"))
+    found = [one.verdict for one in outcomes(tmp_path / ".mutabot/journal.sqlite")]
+    survivors, kills = found.count(Verdict.SURVIVED), found.count(Verdict.KILLED)
     results, _ = campaign(tmp_path, confirm=True, only=only)
     assert survivors > 0
-    assert results.confirmation == {"checked": survivors, "unstable": 0}
+    assert results.confirmation == {"checked": survivors + kills, "unstable": 0}
     assert [one.outcomes[0].verdict for one in results.mutants] == [
         one.outcomes[0].verdict for one in before.mutants
     ]

@@ -33,6 +33,7 @@ SECOND_LOOK: dict[str, Any] = {
     },
     "confirmation": {"checked": 3, "unstable": 1},
     "flaky": {"tests": ["test_a in round 1: failed and passed in equal runs"], "known": 4},
+    "repeats": {"doubted": {"outcomes": 4, "repeated": 4, "changed": 1}, "survivors": {"outcomes": 9}},
 }
 DRAWING = {
     "drawing": {
@@ -96,6 +97,10 @@ def test_a_second_look_is_in_it(tmp_path: Path) -> None:
     assert (wrong["id"], wrong["round"], wrong["first"]) == (samples.SKIP.id, 2, "survived")
     assert found["confirmation"] == {"checked": 3, "unstable": 1}
     assert found["flaky"] == ["test_a in round 1: failed and passed in equal runs"]
+    assert found["repeats"]["doubted"] == {"outcomes": 4, "repeated": 4, "changed": 1}
+    kills = found["repeats"]["false_kills"]
+    assert (kills["low"], kills["high"], kills["known"], kills["unknown"]) == (0, 3, 3, 0)
+    assert found["repeats"]["false_survivors"] is None
     assert not set(SECOND_LOOK) & set(found["meta"])
     without = data(tmp_path)
     assert (without["verification"], without["confirmation"], without["flaky"]) == (None, None, [])
@@ -152,6 +157,9 @@ def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
         found["verification"],
         *found["verification"]["disagreements"],
         found["confirmation"],
+        found["repeats"],
+        found["repeats"]["doubted"],
+        found["repeats"]["false_kills"],
         *found["baseline"],
         *(one for mutant in found["mutants"] for one in mutant["rounds"]),
         *(one["compared"] for mutant in found["mutants"] for one in mutant["rounds"] if one.get("compared")),

@@ -8,6 +8,7 @@ from typing import Any
 
 from mutabot.campaign.journal import BaselineTest, ControlEnd, Journal
 from mutabot.campaign.lock import is_written
+from mutabot.campaign.repeats import REPEATS, Repeats
 from mutabot.campaign.sampling import DRAWING, Drawing
 from mutabot.campaign.selection import fits
 from mutabot.campaign.verify import CONFIRMATION, FLAKY, VERIFICATION, Flaky, Verification
@@ -84,6 +85,7 @@ class Results:
         tests: the baseline.
         verification: what ``--verify`` found; None if it was not asked for.
         confirmation: ``checked`` and ``unstable`` outcomes of ``--confirm``; None if it was not asked for.
+        repeats: how many outcomes were run once more, and how many ended otherwise.
         flaky: tests that cannot be relied on.
         drawing: how the mutants were drawn from those selected; None if they are all.
         drawn: scores of those drawn, per family and role.
@@ -101,6 +103,7 @@ class Results:
     tests: tuple[BaselineTest, ...]
     verification: Verification | None = None
     confirmation: Mapping[str, int] | None = None
+    repeats: Repeats = field(default_factory=Repeats)
     flaky: Flaky = field(default_factory=Flaky)
     drawing: Drawing | None = None
     drawn: tuple[Group, ...] = ()
@@ -201,6 +204,7 @@ def read_results(journal: Journal, *, earlier: bool = False) -> Results:
         tests=tuple(journal.tests()),
         verification=from_data(Verification, meta[VERIFICATION]) if VERIFICATION in meta else None,
         confirmation=meta.get(CONFIRMATION),
+        repeats=from_data(Repeats, meta[REPEATS]) if REPEATS in meta else Repeats(),
         flaky=from_data(Flaky, meta[FLAKY]) if FLAKY in meta else Flaky(),
         drawing=drawing,
         drawn=drawn,

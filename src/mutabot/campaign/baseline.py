@@ -66,6 +66,8 @@ class Baseline:
         flaky_reaching: (round, place) to the tests that reach it but are set aside in this round.
         dependent: selections of tests that pass only together with others; filled in by the controls.
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
+        doubted: tests that have failed once where equal runs pass.
+        unequal: (round, test) that were not the same to the last bit in all runs of the original.
         skipped: number of tests that skipped themselves.
         startup: seconds from a worker's start to the end, less the tests; the longest.
         program: the program text, if a family of mutants needs it.
@@ -85,6 +87,8 @@ class Baseline:
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
     restless: set[tuple[int, str]] = field(default_factory=set)
+    unequal: set[tuple[int, str]] = field(default_factory=set)
+    doubted: set[str] = field(default_factory=set)
     flaky_reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     dependent: set[tuple[str, ...]] = field(default_factory=set)
     skipped: int = 0
@@ -167,6 +171,15 @@ class Baseline:
         for (where, _), tests in self.reaching.items():
             if where == round and test in tests:
                 self.dependent.add(tuple(tests))
+
+    def compare_runs(self, round: int, end: TestEnd, found: Observation, vocabulary: Vocabulary) -> None:
+        """Compare one more run of a test of the original with its first."""
+        key = (round, end.test)
+        first = self.observations[key]
+        if found == first and end.simulated == self.ends[key].simulated:
+            return
+        self.unequal.add(key)
+        self.observe_again(round, end.test, found, vocabulary)
 
     def set_aside(self, round: int, test: str, reason: str) -> None:
         """A test turned out to be flaky: from now on no mutant is judged by it in this round."""
@@ -314,7 +327,7 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
     if result.problems:
         raise _worst_problem(result)
     if result.end is None:
-        text = f"the tests cannot be run on the original: {death(result, said=False)}"
+        text = f"the tests cannot be run on the original: {death(result, said=False)}{at(result)}"
         raise BaselineError(f"{text}{said_in(result.log)}", tests=_running(result))
     if result.end.errors:
         raise BaselineError("the tests cannot be collected:\n" + "\n".join(result.end.errors))
@@ -354,6 +367,11 @@ def death(result: Result, *, said: bool = True) -> str:
     return f"{how}{during}{f'; it said last: {line}' if line else ''}"
 
 
+def at(result: Result) -> str:
+    """Where a worker was when its time was up, to be added to how it ended; empty if that is not known."""
+    return f"; it was at {result.where}" if result.where is not None else ""
+
+
 def _counts(result: Result) -> str:
     counts: dict[str, int] = {}
     for end in result.ends:
@@ -384,8 +402,9 @@ def _add_round(
             good.append(test)
             baseline.ends[round, test] = replace(end, wall=max([end.wall, *(o.wall for o in others if o)]))
             baseline.observations[round, test] = observed[0][test]
-            for run in observed[1:]:
-                baseline.observe_again(round, test, run[test], request.vocabulary)
+            for again, found in zip(others, observed[1:], strict=True):
+                if again is not None:
+                    baseline.compare_runs(round, again, found[test], request.vocabulary)
     baseline.tests.append(good)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])

@@ -26,7 +26,7 @@ from mutabot.model import (
 )
 from mutabot.model.job import Line
 
-from .baseline import Baseline, death, observation, place_of
+from .baseline import Baseline, at, death, observation, place_of
 from .comparison import Observation
 from .judge import Death, Run, judge
 from .places import Place
@@ -48,6 +48,7 @@ class Remainder:
         early: mutants that act while the program is imported, before a trunk could branch.
         reasons: test to why it was not safe to fork in it.
         suspects: (round, test) that ended otherwise in a trunk than in the baseline.
+        orders: per round, the tests of the trunk in its order.
         notes: what else went wrong, in words.
     """
 
@@ -55,6 +56,7 @@ class Remainder:
     early: list[Pair] = field(default_factory=list)
     reasons: dict[str, str] = field(default_factory=dict)
     suspects: list[tuple[int, str]] = field(default_factory=list)
+    orders: dict[int, tuple[str, ...]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
     def leave(self, mutant: Mutant, round: int, test: str, reason: str) -> None:
@@ -96,6 +98,7 @@ def branch(
             trunks[round].run_too(tests)
         else:
             trunks[round].add(mutant, tests)
+    remainder.orders.update((round, trunk.order) for round, trunk in trunks.items())
     # the text of all rounds alike, so that one fork server can serve them
     text = baseline.program.instrumentation(
         {one.id: one for trunk in trunks.values() for one in trunk.mutants}.values()
@@ -166,10 +169,15 @@ class _Trunk:
         """The mutants whose outcomes are not known yet."""
         return tuple(branches.mutant for branches in self._open.values())
 
+    @property
+    def order(self) -> tuple[str, ...]:
+        """The tests it runs, in their order."""
+        return self._baseline.in_order(self._round, self._needed)
+
     def task(self, tokens: tuple[int, int], text: Instrumentation | None, *, at_start: bool = False) -> Task:
         """The task that runs the trunk."""
         request, baseline, round = self._request, self._baseline, self._round
-        in_order = baseline.in_order(round, self._needed)
+        in_order = self.order
         walls = {test: wall_limit(request, baseline, round, test) for test in in_order}
         longest = max(walls.values(), default=0.0)
         mutants = self.mutants
@@ -218,7 +226,7 @@ class _Trunk:
     def finish(self, result: Result, remainder: Remainder) -> Iterator[Outcome]:
         """The trunk is gone: settle what can be settled, and leave the rest to replay."""
         if result.end is None:
-            remainder.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}")
+            remainder.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}{at(result)}")
         for mutant in list(self._open):
             yield from self._settle(mutant)
         remainder.pairs.extend((branches.mutant, self._round) for branches in self._open.values())
@@ -242,6 +250,7 @@ class _Trunk:
             overdue=line.overdue is not None,
             acted=line.test in branches.acted,
             in_mutated_call=line.test in branches.calling,
+            where=line.where,
         )
         yield from self._settle(line.mutant)
 
@@ -262,7 +271,7 @@ class _Trunk:
         if end.lasting == self._baseline.ends[self._round, end.test].lasting:
             self._passed.add(end.test)
             found = observation(end, self._trunk_places)
-            self._compare_with_baseline(end.test, found)
+            self._baseline.compare_runs(self._round, end, found, self._request.vocabulary)
             self._take_undiverged(end, found, undiverged)
         else:
             self._failed.add(end.test)
@@ -278,9 +287,6 @@ class _Trunk:
             own = replace(end, hits=hits[mutant], acted=0, wall=0.0, cpu=0.0, trace=())
             branches.take(BranchEnd(mutant, own, (), end.simulated))
             branches.observations[end.test] = found
-
-    def _compare_with_baseline(self, test: str, found: Observation) -> None:
-        self._baseline.observe_again(self._round, test, found, self._request.vocabulary)
 
     def _settle(self, mutant: str) -> Iterator[Outcome]:
         """Yield the mutant's outcome if all that it depends on is known."""

@@ -173,6 +173,12 @@ class Settings(BaseModel):
 
         pairs = 1000
     """
+    baseline_repetitions: Annotated[int, Field(ge=1)] | None = None
+    """How often the original is run per round; without it, as often as the engine
+    needs. More runs find more of the tests that fail at random. `--baseline` goes before it.
+
+        baseline_repetitions = 10
+    """
 
 
 class Configuration(Settings):

@@ -2,7 +2,8 @@
 
 The identity mutant goes through all the machinery and changes nothing, so it must survive. The fatal mutant
 raises, so it must die; it is run once per test file and proves that turning a mutant on changes anything at
-all. A control that ends wrongly stops the campaign: its verdicts could not be believed.
+all. A control that ends wrongly is tried again in a fresh process; one that ends wrongly there too stops the
+campaign: its verdicts could not be believed.
 
 Mutants of calls and mutants of the program text have controls of their own, as they take different ways
 into the program. Those of the text ask at their place like any alternative: the identity proves by its hits
@@ -76,7 +77,8 @@ class Control:
         if self.name == FATAL and outcome.verdict is Verdict.SURVIVED:
             what = "program text" if self.place.is_text else "operation"
             return f"the test passes although the {what} raises"
-        return f"{outcome.verdict}: {outcome.message or 'it changed something'}"
+        where = f"; it was at {outcome.stuck}" if outcome.stuck is not None else ""
+        return f"{outcome.verdict}: {outcome.message or 'it changed something'}{where}"
 
     def error(self, wrong: str) -> ControlError:
         """The error that stops the campaign."""
@@ -100,7 +102,7 @@ def run_controls(
     progress.stage("controls", len(identities) + len(_fatals(baseline, mutants)))
     together: list[Control] = []
     for control, outcome in _replayed(request, baseline, workers, identities):
-        end = control.end(outcome)
+        end = end_of(control, outcome, request, baseline, progress)
         progress.advance(f"identity, {control.subject}: {'survives, as it must' if end.ok else end.detail}")
         if end.ok:
             yield end
@@ -117,7 +119,7 @@ def run_controls(
         for fatal in _fatals(baseline, mutants)
     ]
     for control, outcome in _replayed(request, baseline, workers, [*together, *fatals]):
-        end = control.end(outcome)
+        end = end_of(control, outcome, request, baseline, progress)
         progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
         yield end
         if not end.ok:
@@ -139,6 +141,27 @@ def controls_in_branches(baseline: Baseline, mutants: Iterable[Mutant]) -> list[
             found.append(Control(IDENTITY, place, 0, here, _subject(here)))
     fatals = _fatals(baseline, mutants)
     return [*found, *(one for one in fatals if baseline.why_not_branch(one.round, one.tests) is None)]
+
+
+def end_of(
+    control: Control, outcome: Outcome, request: Request, baseline: Baseline, progress: Progress
+) -> ControlEnd:
+    """How a control ended. One that ended wrongly is tried again in a process that shares nothing."""
+    end = control.end(outcome)
+    if end.ok:
+        return end
+    with Workers(request.root, request.arguments, jobs=1) as workers:  # the others are at work meanwhile
+        ((_, again),) = _replayed(request, baseline, workers, [control])
+    second = control.end(again)
+    if not second.ok:
+        return second
+    if outcome.test is not None:
+        baseline.doubted.add(outcome.test)
+    progress.note(
+        f"the {control.name} control of {control.subject} ended wrongly once ({end.detail}), but as it must "
+        "when it was tried again"
+    )
+    return second
 
 
 def _replayed(

@@ -8,7 +8,7 @@ from mutabot.model import Mutant, Outcome, Verdict
 
 from .baseline import REPETITIONS, Baseline
 from .branching import Remainder, branch
-from .controls import Control, controls_in_branches, run_controls
+from .controls import Control, controls_in_branches, end_of, run_controls
 from .journal import ControlEnd, Journal
 from .replay import Pair, replay
 from .request import Progress, Request
@@ -22,8 +22,12 @@ def engine_of(request: Request) -> str:
 
 
 def repetitions_for(request: Request) -> int:
-    """How often the baseline runs each round; the trunks of the branch engine are its second run."""
-    return REPETITIONS if engine_of(request) == "replay" else REPETITIONS - 1
+    """How often the baseline runs each round; the trunks of the branch engine are its second run.
+
+    More than that, if it was asked for: a test that fails at random shows itself the sooner.
+    """
+    least = REPETITIONS if engine_of(request) == "replay" else REPETITIONS - 1
+    return max(least, request.baseline or 0)
 
 
 def run_mutants(
@@ -109,11 +113,15 @@ def _branched(
     report.progress.stage("mutants", len(pairs))
     for outcome in branch(request, baseline, workers, [*first, *pairs], remainder, only=only):
         if outcome.mutant in by_id:
-            report.control(_checked(by_id[outcome.mutant], outcome, report))
+            control = by_id[outcome.mutant]
+            end = end_of(control, outcome, request, baseline, report.progress)
+            report.control(end)
+            if not end.ok:
+                raise control.error(end.detail)
         else:
             report.outcome(outcome)
     _note(report.progress, remainder)
-    clear_up(request, baseline, workers, report.progress, remainder.suspects)
+    clear_up(request, baseline, workers, report.progress, remainder.suspects, remainder.orders)
     rest = [(mutant, round) for mutant, round in remainder.pairs if mutant.id not in by_id]
     rest += remainder.early
     if request.engine == "branch":
@@ -121,14 +129,6 @@ def _branched(
             report.outcome(outcome)
         return []
     return rest
-
-
-def _checked(control: Control, outcome: Outcome, report: _Report) -> ControlEnd:
-    end = control.end(outcome)
-    if not end.ok:
-        report.control(end)
-        raise control.error(end.detail)
-    return end
 
 
 def _controls(
@@ -144,7 +144,7 @@ def _controls(
     pairs = [(control.mutant, control.round) for control in controls]
     for outcome in branch(request, baseline, workers, pairs, remainder, only=only):
         control = by_id[outcome.mutant]
-        end = control.end(outcome)
+        end = end_of(control, outcome, request, baseline, progress)
         progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
         if not end.ok:
             raise control.error(end.detail)

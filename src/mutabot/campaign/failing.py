@@ -14,6 +14,8 @@ from mutabot.model.seed import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIA
 
 from .request import Request
 
+#: how the reason begins why such a test is set aside: its seed makes it fail, not chance
+FAILS = "fails on the unmutated program"
 #: the tests that fail in all runs of a round, by (round, test)
 Failing = Mapping[tuple[int, str], TestEnd]
 
@@ -40,7 +42,7 @@ def repeat_command(request: Request, round: int, test: str) -> str:
 def why_set_aside(request: Request, round: int, end: TestEnd) -> str:
     """Why a test that fails on the original in this round is set aside in it."""
     seed = derive(request.seed, round, end.test)
-    text = f"fails on the unmutated program with seed {seed}: {_first_line(end)}"
+    text = f"{FAILS} with seed {seed}: {_first_line(end)}"
     return f"{text}; repeat it by {repeat_command(request, round, end.test)}"
 
 

@@ -30,6 +30,7 @@ class Death:
         overdue: whether its wall-clock time was up.
         acted: whether its mutant had changed anything by then.
         in_mutated_call: whether it was in the midst of a mutated call.
+        where: where it was when its time was up, if that is known.
     """
 
     text: str
@@ -38,6 +39,7 @@ class Death:
     overdue: bool = False
     acted: bool = False
     in_mutated_call: bool = False
+    where: str | None = None
 
 
 @dataclass(slots=True)
@@ -100,6 +102,7 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
         complete=request.every_test and {end.test for end in run.ends} == set(run.tests),
         kills=_kills(run, message)[: None if request.every_test else 1] if verdict.is_killed else (),
         commands=end.commands if end is not None else None,
+        stuck=run.death.where if run.death is not None else None,
     )
     return _compared(outcome, run, request, baseline) if verdict is Verdict.SURVIVED else outcome
 

@@ -140,4 +140,5 @@ def _death(result: Result) -> Death | None:
         overdue=result.overdue is not None and (result.running is not None or "" in result.acted),
         acted=not {result.running, ""}.isdisjoint(result.acted),
         in_mutated_call=result.in_mutated_call,
+        where=result.where,
     )

@@ -30,7 +30,9 @@ class Request:
         engine: ``auto``, ``branch`` or ``replay``.
         fresh: whether to run everything, also what an earlier campaign has found.
         verify: how many outcomes to run once more in fresh processes, and compare.
-        confirm: whether to run survivors and time-outs once more.
+        confirm: whether to run kills, survivors and time-outs once more.
+        repeats: whether to run once more the kills that may be chance.
+        baseline: how often the baseline runs each round; None for as often as the engine needs.
         families: the families of operators whose mutants are made.
         every_test: whether a mutant runs every test that reaches it, also after one has noticed it.
         no_oracle: whether every assertion of the tests is switched off.
@@ -53,6 +55,8 @@ class Request:
     fresh: bool = False
     verify: int = 0
     confirm: bool = False
+    repeats: bool = True
+    baseline: int | None = None
     families: tuple[str, ...] = ("robot",)
     every_test: bool = False
     no_oracle: bool = False

@@ -30,12 +30,13 @@ from .pairs import pairs
 from .plan import Plan, make_plan
 from .program_text import family_of
 from .ranges import note_ranges
+from .repeats import look_again
 from .request import CheckReport, Progress, Request
 from .reuse import reuse
 from .sampling import DRAWING, draw
 from .selection import numbered, select
 from .unfit import refuse_unfit
-from .verify import look_again, refuse_flaky
+from .verify import refuse_flaky
 from .workers import Result, Workers
 
 #: what else decides how a campaign ends, beside the user's own files
@@ -68,6 +69,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
 
 
 def _run(request: Request, workers: Workers, progress: Progress, journal: Journal) -> None:
+    started = time.monotonic()
     before = Snapshot.take(request.root)
     with Watch(request.root, before.folders) as watch:
         baseline, results = _baseline(request, workers, progress)
@@ -81,7 +83,7 @@ def _run(request: Request, workers: Workers, progress: Progress, journal: Journa
     if edited:
         progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
         run_mutants(request, baseline, workers, progress, plan.mutants, journal)
-        look_again(request, baseline, workers, progress, plan.mutants, journal)
+        look_again(request, baseline, workers, progress, plan.mutants, journal, time.monotonic() - started)
         return
     dependencies = Dependencies(request, baseline, _collected(results), before, after, watch.opened)
     note_outdated(journal, request, dependencies)
@@ -89,7 +91,7 @@ def _run(request: Request, workers: Workers, progress: Progress, journal: Journa
     journal.key_of = _key_of(journal, dependencies, plan)
     try:
         run_mutants(request, baseline, workers, progress, plan.mutants, journal, done)
-        look_again(request, baseline, workers, progress, plan.mutants, journal)
+        look_again(request, baseline, workers, progress, plan.mutants, journal, time.monotonic() - started)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
     _tidy(request, journal, whole)

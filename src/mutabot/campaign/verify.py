@@ -1,19 +1,21 @@
 """A second look: do outcomes come out the same in fresh processes, and can the tests be relied on?
 
 ``--verify N`` runs outcomes chosen at random once more by replay, the reference, and compares how they end.
-``--confirm`` does so with all survivors and time-outs; one that ends otherwise becomes ``unstable``.
+``--confirm`` does so with all kills, survivors and time-outs, see ``repeats``.
 """
 
 from __future__ import annotations
 
 import random
 import re
+import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import takewhile
 from typing import Any
 
 from mutabot.errors import ControlError, SelectionError, UnstableError
-from mutabot.model import Mutant, Outcome, Verdict, to_data
+from mutabot.model import Mutant, Outcome, Verdict
 
 from .baseline import Baseline, take_baseline
 from .controls import run_controls
@@ -27,7 +29,6 @@ from .workers import Workers
 
 #: keys of the journal's meta
 VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
-_CONFIRMED = (Verdict.SURVIVED, Verdict.TIMEOUT)
 #: parts of a message that differ between equal runs in different processes: addresses, temporary folders,
 #: and the last words of a process that died, which only a process of its own can have
 _ACCIDENTAL = (
@@ -127,7 +128,7 @@ class Replayed:
 
 
 @dataclass(slots=True)
-class _Looker:
+class Looker:
     """What is needed to run a mutant again."""
 
     request: Request
@@ -136,13 +137,19 @@ class _Looker:
     progress: Progress
     found: dict[tuple[str, int], Outcome] = field(default_factory=dict)
 
-    def look(self, pairs: Sequence[Pair], first: Mapping[tuple[str, int], Outcome]) -> None:
-        """Run these again in fresh processes."""
-        if not pairs:
+    def look(
+        self,
+        pairs: Sequence[Pair],
+        first: Mapping[tuple[str, int], Outcome],
+        until: float | None = None,
+    ) -> None:
+        """Run these again in fresh processes; none begins after ``until`` (``time.monotonic``)."""
+        if not pairs or (until is not None and time.monotonic() >= until):
             return
         self.progress.stage("second look", len(pairs))
-        self.run(pairs)
-        doubtful = [pair for pair in pairs if not same_end(first[_key(pair)], self.found[_key(pair)])]
+        self.run(takewhile(lambda _: until is None or time.monotonic() < until, pairs))
+        found = [pair for pair in pairs if _key(pair) in self.found]
+        doubtful = [pair for pair in found if not same_end(first[_key(pair)], self.found[_key(pair)])]
         if doubtful and self._learn_dependent(mutant for mutant, _ in doubtful):
             self.progress.stage("second look, with the whole suite", len(doubtful))
             self.run(doubtful)
@@ -172,38 +179,6 @@ def refuse_flaky(request: Request, baseline: Baseline) -> None:
         raise UnstableError(flaky.text(limit), tests=[test for _, test in baseline.unstable])
 
 
-def look_again(
-    request: Request,
-    baseline: Baseline,
-    workers: Workers,
-    progress: Progress,
-    mutants: Sequence[Mutant],
-    journal: Journal,
-) -> None:
-    """Verify and confirm what was asked for, and write down what came of it, flaky tests included."""
-    flaky = Flaky.of(baseline)
-    journal.set_meta(FLAKY, to_data(flaky))
-    if not (request.verify or request.confirm):
-        return
-    by_id = {mutant.id: mutant for mutant in mutants}
-    outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
-    chosen = choose(outcomes.values(), request.verify, request.seed)
-    doubted = [key for key, one in outcomes.items() if request.confirm and one.verdict in _CONFIRMED]
-    looker = _Looker(request, baseline, workers, progress)
-    looker.look([(by_id[mutant], round) for mutant, round in dict.fromkeys([*chosen, *doubted])], outcomes)
-    if request.verify:
-        found = [_disagreement(by_id[key[0]], outcomes[key], looker.found[key]) for key in chosen]
-        verification = Verification(request.verify, len(chosen), tuple(one for one in found if one))
-        journal.set_meta(VERIFICATION, to_data(verification))
-        progress.note(f"verify: {verification.agreed} of {verification.checked} outcomes agree")
-    if request.confirm:
-        changed = [key for key in doubted if looker.found[key].verdict is not outcomes[key].verdict]
-        for key in changed:
-            journal.add_outcome(unconfirmed(outcomes[key], looker.found[key]))
-        journal.set_meta(CONFIRMATION, {"checked": len(doubted), "unstable": len(changed)})
-        progress.note(f"confirm: {len(doubted) - len(changed)} of {len(doubted)} outcomes are confirmed")
-
-
 def replay_one(
     request: Request, journal: Journal, mutant: Mutant, rounds: Iterable[int], progress: Progress
 ) -> list[Replayed]:
@@ -217,7 +192,7 @@ def replay_one(
     with Workers(request.root, request.arguments, request.jobs) as workers:
         baseline, _ = take_baseline(request, workers, progress, repetitions=1)
         mutant = _as_it_is_now(request, baseline, mutant)
-        looker = _Looker(request, baseline, workers, progress)
+        looker = Looker(request, baseline, workers, progress)
         for _ in run_controls(request, baseline, workers, progress, [mutant]):
             pass
         pairs = [(mutant, round) for round in rounds]
@@ -279,7 +254,8 @@ def _end(outcome: Outcome) -> tuple[Any, ...]:
     return outcome.verdict, outcome.by, outcome.test, without_accidents(outcome.message)
 
 
-def _disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> Disagreement | None:
+def disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> Disagreement | None:
+    """How two outcomes of a mutant differ; None if they end alike."""
     if same_end(first, second):
         return None
     words = in_words(first), in_words(second)

@@ -32,6 +32,7 @@ from mutabot.model import (
     TextsSeen,
     TokensHeld,
     Watched,
+    stack,
 )
 from mutabot.model.job import Line
 
@@ -88,6 +89,7 @@ class Result:
         end: its orderly end; None if there was none.
         exit_code: its exit code, negative for a signal.
         overdue: which wall-clock limit it exceeded, in words, or None.
+        where: where it was then: its innermost calls; None if that is not known.
         wall: seconds from its start to its end.
         log: the last lines it printed.
     """
@@ -108,6 +110,7 @@ class Result:
     end: SessionEnd | None = None
     exit_code: int = 0
     overdue: str | None = None
+    where: str | None = None
     wall: float = 0.0
     log: str = ""
 
@@ -355,6 +358,9 @@ class _Worker:
             self.result.overdue = f"no end after {limit:.0f} s of wall clock"
         else:
             self.result.overdue = f"no test begun or finished within {self.task.startup:.0f} s"
+        self.result.where = stack.ask(
+            self._process.pid, str(self._home.folder / stack.FILE), self.task.job.root
+        )
         self._process.end()
 
     def kill(self) -> None:

@@ -48,6 +48,7 @@ class Child:
         pid, pidfd: its process.
         until: moment (``time.monotonic``) at which its time is up.
         limit: the seconds it was given.
+        overdue, where: whether its time was up, and where it was then.
     """
 
     mutant: str
@@ -57,6 +58,7 @@ class Child:
     until: float
     limit: float
     overdue: bool = False
+    where: str | None = None
 
 
 @dataclass(slots=True)
@@ -68,12 +70,14 @@ class Trunk:
         pipe: where reports go.
         log: device and inode of this process's log.
         on_child: called first of all in every branch.
+        where_is: tells where a process is, in words, or None.
     """
 
     branching: Branching
     pipe: Pipe
     log: tuple[int, int] | None
     on_child: Callable[[], None]
+    where_is: Callable[[int], str | None] = lambda _: None
     _tokens: Tokens = field(init=False)
     _live: dict[Key, list[Mutant]] = field(default_factory=dict)
     _tests: dict[str, frozenset[str]] = field(default_factory=dict)
@@ -261,6 +265,7 @@ class Trunk:
         for child in self._children.values():
             if now >= child.until and not child.overdue:
                 child.overdue = True
+                child.where = self.where_is(child.pid)
                 os.kill(child.pid, signal.SIGKILL)
         for descriptor in ready:
             child_ended = self._children.pop(descriptor, None)
@@ -277,4 +282,4 @@ class Trunk:
             self._decided.add(child.mutant)
         if code not in (ALIVE, DECIDED, STOPPED):
             overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None
-            self.pipe.send(BranchDied(child.mutant, child.test, code, overdue))
+            self.pipe.send(BranchDied(child.mutant, child.test, code, overdue, child.where))

@@ -25,6 +25,7 @@ from mutabot.model import (
     TestStart,
     Unbranched,
     from_data,
+    stack,
 )
 from mutabot.operators.registry import BUILT_IN, CONTROLS, preload
 
@@ -44,6 +45,7 @@ from .pipe import Held, Pipe
 from .probes import Reading
 from .returns import Returns
 from .session import Session
+from .stacks import say_where_on_signal
 from .watchdogs import drop_idle_watchdog, watched, watched_by_faulthandler
 
 if TYPE_CHECKING:
@@ -112,6 +114,7 @@ class Conductor:
             die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
+        say_where_on_signal(home)
         if self.job.branching is not None:
             preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
             self.grow(self.job.branching, os.path.join(home, LOG))
@@ -119,7 +122,15 @@ class Conductor:
     def grow(self, branching: Branching, log_file: str) -> None:
         """Be a trunk: fork a branch for every live mutant."""
         log = os.stat(log_file)
-        self.session.trunk = Trunk(branching, self._pipe, (log.st_dev, log.st_ino), self._become_branch)
+        identity = (log.st_dev, log.st_ino)
+        file = os.path.join(os.path.dirname(log_file), stack.FILE)
+        self.session.trunk = Trunk(
+            branching,
+            self._pipe,
+            identity,
+            self._become_branch,
+            lambda pid: stack.ask(pid, file, self.job.root),
+        )
 
     def switch_off_checks(self) -> None:
         """Let tests check nothing."""

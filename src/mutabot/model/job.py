@@ -226,12 +226,14 @@ class BranchDied:
         test: the test it was in.
         exit_code: its exit code, negative for a signal.
         overdue: which wall-clock limit it exceeded, in words, or None.
+        where: where it was then, if that is known.
     """
 
     mutant: str
     test: str
     exit_code: int
     overdue: str | None = None
+    where: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

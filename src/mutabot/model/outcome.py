@@ -97,6 +97,8 @@ class Outcome:
             the first at most.
         commands: operations with which the deciding test had commanded the robot until it ended; None if
             that is not known.
+        stuck: where it was when its wall-clock time was up: its innermost calls; None if that is not known.
+        repeats: how often it was run once more in a fresh process and had the same verdict.
     """
 
     mutant: str
@@ -125,6 +127,8 @@ class Outcome:
     complete: bool = False
     kills: tuple[Kill, ...] = ()
     commands: int | None = None
+    stuck: str | None = None
+    repeats: int = 0
 
 
 def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:

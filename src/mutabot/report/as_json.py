@@ -7,9 +7,11 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+from mutabot.analysis.chance import Estimate, false_kills, false_survivors
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import KillRate, RoundScores, Score
 from mutabot.analysis.statistics import Interval
+from mutabot.campaign.repeats import REPEATS, Repeats, Stratum
 from mutabot.campaign.sampling import DRAWING, Drawing
 from mutabot.campaign.verify import CONFIRMATION, FLAKY, VERIFICATION, Replayed, Verification
 from mutabot.model import Mutant, Outcome, Quantity, Verdict, to_data
@@ -17,7 +19,7 @@ from mutabot.model import Mutant, Outcome, Quantity, Verdict, to_data
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
-_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING}
+_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS}
 
 
 def dumps(data: Any) -> str:
@@ -70,6 +72,7 @@ def results_data(results: Results) -> dict[str, Any]:
         "flaky": list(results.flaky.tests),
         "verification": _verification(results.verification),
         "confirmation": dict(results.confirmation) if results.confirmation is not None else None,
+        "repeats": repeats_data(results.repeats),
     }
 
 
@@ -181,6 +184,35 @@ def _verification(found: Verification | None) -> dict[str, Any] | None:
     }
 
 
+def repeats_data(repeats: Repeats) -> dict[str, Any]:
+    """What was run once more, and what that says about the others."""
+    return {
+        "doubted": _stratum(repeats.doubted),
+        "others": _stratum(repeats.others),
+        "certain": repeats.certain,
+        "survivors": _stratum(repeats.survivors),
+        "false_kills": _estimate(false_kills(repeats)),
+        "false_survivors": _estimate(false_survivors(repeats)),
+    }
+
+
+def _stratum(stratum: Stratum) -> dict[str, int]:
+    return {"outcomes": stratum.outcomes, "repeated": stratum.repeated, "changed": stratum.changed}
+
+
+def _estimate(found: Estimate | None) -> dict[str, Any] | None:
+    if found is None:
+        return None
+    return {
+        "expected": found.expected,
+        "low": found.low,
+        "high": found.high,
+        "level": found.level,
+        "known": found.known,
+        "unknown": found.unknown,
+    }
+
+
 def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
     if outcome is None:
         return {"round": number, "verdict": None}
@@ -205,6 +237,8 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "gaps": list(outcome.gaps),
         "compared": to_data(outcome.compared) if outcome.compared is not None else None,
         "engine": outcome.engine,
+        "stuck": outcome.stuck,
+        "repeats": outcome.repeats,
     }
 
 

@@ -30,6 +30,7 @@ from .console import (
 )
 from .errors import error_lines
 from .marks import counted, legend, mark_of
+from .repeats import repeat_lines
 
 #: verdicts outside the score that a user should look at, in this order
 _TOLD = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
@@ -318,8 +319,11 @@ def trust_lines(results: Results) -> Iterator[RenderableType]:
     confirmed = results.confirmation
     if confirmed is not None:
         kept = confirmed["checked"] - confirmed["unstable"]
-        text = f"\nConfirmed: {kept} of {confirmed['checked']} survivors and time-outs end so once more."
+        text = (
+            f"\nConfirmed: {kept} of {confirmed['checked']} kills, survivors and time-outs end so once more."
+        )
         yield Text(text, style="bold red" if confirmed["unstable"] else "dim")
+    yield from repeat_lines(results.repeats)
 
 
 def _controls(results: Results) -> Iterator[RenderableType]:
