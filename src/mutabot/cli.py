@@ -89,7 +89,7 @@ def init(
     """Run the tests once, look at what the program calls, and propose a configuration and a vocabulary."""
     from mutabot.campaign.proposal import propose
 
-    for line in propose(context.obj, program or []):
+    for line in propose(context.obj, program or [], tell=lambda text: typer.echo(text, err=True)):
         _echo(line)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import Any
+from unittest.mock import MagicMock
 
 import pytest
 
@@ -63,6 +64,31 @@ import builtins
     assert module.fields(len) == "len"
     with pytest.raises(AttributeError, match="'list' object has no attribute 'nothing'"):
         module.refuse()
+
+
+def test_what_cannot_be_looked_at_disturbs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Wild:
+        @property
+        def size(self) -> int:
+            raise RuntimeError("do not look")
+
+        def tolist(self) -> list[int]:
+            raise RuntimeError("do not look")
+
+        def __str__(self) -> str:
+            raise RuntimeError("do not look")
+
+        def set_x(self, value: Any) -> Any:
+            return value
+
+    monkeypatch.setattr(sys.modules[__name__], "WILD", Wild, raising=False)
+    Wild.__qualname__ = "WILD"
+    module, watch = run("def go(robot, value): return robot.set_x(value)\n", "own.py", monkeypatch)
+    mock, wild = MagicMock(), Wild()
+    assert module.go(wild, wild) is wild
+    assert module.go(wild, mock) is mock
+    assert module.go(mock, 1) is mock.set_x.return_value
+    assert [call["sites"] for call in watch.data()] == [[["own.py", 1, 2]]]
 
 
 @pytest.mark.parametrize(

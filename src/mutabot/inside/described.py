@@ -79,7 +79,7 @@ def _parts(value: Any, leaf: Leaf, depth: int) -> Iterator[Leaf]:
         yield leaf
     elif isinstance(value, enum.Enum) or depth == 0:
         yield leaf
-    elif isinstance(value, list | tuple) and not hasattr(value, "_fields"):
+    elif isinstance(value, list | tuple) and not hasattr(type(value), "_fields"):
         yield from _elements(value, leaf, depth)
     else:
         named = list(_named(value))[:MOST_PARTS]
@@ -103,7 +103,7 @@ def _elements(value: Any, leaf: Leaf, depth: int) -> Iterator[Leaf]:
 
 def _plain(value: Any) -> Any:
     """Arrays and scalars of numeric libraries as Python has them, if they are small enough."""
-    if hasattr(value, "tolist") and getattr(value, "size", 0) <= 4096:
+    if hasattr(type(value), "tolist") and getattr(value, "size", 0) <= 4096:
         return value.tolist()
     return value
 
@@ -117,7 +117,7 @@ def _named(value: Any) -> Iterator[tuple[str, str, Any]]:
         return
     if isinstance(value, type) or callable(value):
         return
-    names: Any = getattr(value, "_fields", None)
+    names: Any = getattr(type(value), "_fields", None)  # the type's: a mock has any attribute
     if names is None and not dataclasses.is_dataclass(value) and not _is_data(value):
         return
     if names is None:

@@ -13,6 +13,7 @@ import json
 import os
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -144,8 +145,10 @@ class Watch:
         of_program = not self._is_of_tests(place)
 
         def watched(*args: Any, **kwargs: Any) -> Any:
-            values = self._arguments(seen, args, kwargs)
-            which = seen.told_apart.see(instance, seen.callee.target, values) if of_program else None
+            which: str | None = None
+            with suppress(Exception):  # looking at values must not disturb the program
+                values = self._arguments(seen, args, kwargs)
+                which = seen.told_apart.see(instance, seen.callee.target, values) if of_program else None
             try:
                 result = function(*args, **kwargs)
             except Exception as error:
@@ -202,8 +205,9 @@ class Watch:
 
     def _answer(self, seen: _Seen, result: Any, which: str | None = None) -> None:
         seen.answered += 1
-        seen.result.see(result)
-        seen.told_apart.answer(which, result)
+        with suppress(Exception):
+            seen.result.see(result)
+            seen.told_apart.answer(which, result)
 
     def _data(self, seen: _Seen) -> dict[str, Any]:
         found = facts(seen.callee)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -34,8 +34,9 @@ class _Look:
         unreached: calls of the program's text that no test makes.
     """
 
-    def __init__(self, root: Path, given: Sequence[Path], limit: float) -> None:
+    def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
         self.layout = look(root, given)
+        tell("running the tests once, to see what the program calls")
         self.seen: Observed = observe(self.layout, limit)
         self.program = [self.layout.relative(path) for path in self.layout.program]
         calls = [call for call in self.seen.calls if call.sites]
@@ -96,18 +97,24 @@ class _Look:
         return [(file, line, call.name) for call in self.seen.calls for file, line, _ in call.sites]
 
 
-def propose(root: Path, program: Sequence[Path] = (), *, limit: float = LIMIT) -> list[str]:
+def propose(
+    root: Path,
+    program: Sequence[Path] = (),
+    *,
+    limit: float = LIMIT,
+    tell: Callable[[str], None] = lambda text: None,
+) -> list[str]:
     """Write ``mutabot.toml`` and ``robot.toml``; the lines say what was found and what to do next.
 
     ``program`` are files or folders of the robot program, relative to the working folder or to ``root``;
     without any they are guessed. The tests are run once, for ``limit`` seconds at most, to see what the
-    program calls. No existing file is touched.
+    program calls; ``tell`` is told before. No existing file is touched.
 
     Raises UsageError if there is a configuration already, or no program.
     """
     root = root.resolve()
     _refuse_existing(root)
-    found = _Look(root, program, limit)
+    found = _Look(root, program, limit, tell)
     text = _loadable(found)
     if found.needs_vocabulary:
         _write(root / VOCABULARY, text)
