@@ -26,7 +26,7 @@ PROGRAM = """
 """
 VOCABULARY = """
     [[operation]]
-    call = "asyncua:Node.write_value"
+    call = "asyncua.common.node:Node.write_value"
     message = "self"
     patterns = [
       { text = "ns=2;s=Arm.X", arguments.value = { kind = "translation", unit = "m", mode = "to" } },

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 
 from mutabot.campaign.configuration import Settings, load_configuration
 from mutabot.errors import ConfigurationError
+from mutabot.model import Vocabulary, from_data, to_data
 from mutabot.vocabulary import load
 
 COMMON = settings(
@@ -18,6 +20,7 @@ COMMON = settings(
 )
 WORDS = ["operation", "call", "arguments", "result", "patterns", "kind", "unit", "axis", "values", "text"]
 WORDS += ["range", "clock", "tick", "time", "probe", "message", "mode", "current", "opposite"]
+WORDS += ["signature", "overrides", "step", "argument", "self", "true"]
 WORDS += ["x", ".x", "[0:3]", "[-3:]", ""]
 TEXTS = [
     "",
@@ -34,6 +37,8 @@ TEXTS = [
     "..",
     "**",
     "mission.py",
+    "self.x",
+    "(x, …)",
 ]
 
 scalars = st.booleans() | st.integers() | st.floats() | st.sampled_from(TEXTS)
@@ -49,7 +54,10 @@ quantities = st.fixed_dictionaries(
     optional={
         "axis": st.sampled_from(["x", "xyz", "j1", "j1..j3", "q"]),
         "unit": st.sampled_from(["m", "deg", "s", "percent"]),
-        "mode": st.sampled_from(["by", "to"]),
+        "mode": st.sampled_from(["by", "to"])
+        | st.dictionaries(
+            st.sampled_from(["argument", "true", "false", "{"]), st.sampled_from(["x.y", "self", "by", "to"])
+        ),
         "values": st.lists(scalars, max_size=3),
         "range": st.lists(st.floats() | st.integers(), min_size=1, max_size=3),
         "noise": st.floats(),
@@ -64,7 +72,9 @@ operations = st.fixed_dictionaries(
     optional={
         "arguments": described,
         "result": quantities | described | anything,
-        "message": st.just("m"),
+        "message": st.sampled_from(["m", "self", "self.m", "m.x", "x.", "self.["]),
+        "signature": st.sampled_from(["(m, x)", "(x, …)", "(self)", "x", "(x=y)"]) | scalars,
+        "overrides": scalars,
         "patterns": st.lists(quantities.map(lambda q: {"text": "up/{a:g}", **q}) | anything, max_size=2),
         "current": st.just("a:b"),
         "opposite": st.just("a:c"),
@@ -80,8 +90,14 @@ def test_any_vocabulary_is_loaded_or_refused(
     data: dict[str, Any], described: list[Any], tmp_path: Path
 ) -> None:
     write(tmp_path / "robot.toml", {**data, "operation": described})
-    error = refusal(lambda: load(["robot.toml"], tmp_path))
+    found: list[Vocabulary] = []
+    error = refusal(lambda: found.append(load(["robot.toml"], tmp_path)))
     assert error is None or str(error).startswith("robot.toml")
+    for vocabulary in found:
+        assert from_data(Vocabulary, json.loads(json.dumps(to_data(vocabulary)))) == vocabulary
+        for operation in vocabulary.operations:
+            assert set(operation.described) >= {one.path.root for one in operation.arguments}
+            assert all(one.name for one in operation.patterns)
 
 
 @COMMON
