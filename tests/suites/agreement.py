@@ -27,6 +27,8 @@ from .judge import IGNORED, Judge, Judgement
 
 ENGINES = ("branch", "replay")
 PROJECTS = Path(__file__).resolve().parent / "projects"
+#: no verdict: the plan says that the mutant would change nothing
+LEFT_OUT = "left out"
 #: what plain pytest must say for a verdict; what is not listed says nothing about the suite
 EXPECTED = {
     "killed": ("fails", "hangs"),
@@ -34,6 +36,7 @@ EXPECTED = {
     "survived": ("passes",),
     "no effect": ("passes",),
     "not covered": ("passes",),
+    LEFT_OUT: ("passes",),
 }
 OUTSIDE = ("invalid",)
 
@@ -162,6 +165,9 @@ def compare(
                 results[engine] = campaign(replace(wanted, selection=selection))
             except MutabotError as error:
                 found.failed.append(f"{folder.name} [{engine}] the campaign stops: {str(error)[:600]}")
+    if "robot" not in (only or {}):
+        for data in results.values():
+            data["mutants"] += list(left_out(data))
     mutants = {one["id"]: one for data in results.values() for one in data["mutants"]}
     judge = Judge(folder, limit, seeds_of(results), cache)
     original = judge.original()
@@ -183,6 +189,37 @@ def compare(
             verdict(folder.name, engine, mutants[one.id], one, plain[one.id]) for one in _ended(data)
         ]
     return found
+
+
+def left_out(data: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Mutants of calls that the plan leaves out because they would change nothing, where they stand.
+
+    The place is that of another mutant of the same call. Without one, and in text commands, it is not known.
+    """
+    places = {one["id"].rpartition(":")[0].rpartition(":")[0]: one for one in data["mutants"]}
+    for item in data["left_out"]:
+        subject, _, operator = item["id"].rpartition(":")
+        site, _, quantity = subject.rpartition(":")
+        other = places.get(site)
+        if (
+            other
+            and other["operation"]
+            and not other["pattern"]
+            and item["reason"].startswith("would change nothing")
+        ):
+            name, _, variant = operator.partition("=")
+            changed = {
+                "operator": name,
+                "variant": variant,
+                "quantity": None if quantity == "call" else quantity,
+            }
+            yield {
+                **other,
+                "id": item["id"],
+                "description": item["description"],
+                "rounds": [{"verdict": LEFT_OUT}],
+                **changed,
+            }
 
 
 def verdict(project: str, engine: str, mutant: Mapping[str, Any], end: _End, plain: Judgement) -> Verdict:
