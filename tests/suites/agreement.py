@@ -23,7 +23,7 @@ from mutabot.report.as_json import mutant_data, results_data
 from mutabot.vocabulary import load
 
 from .editor import Facts
-from .judge import IGNORED, Judge, Judgement
+from .judge import IGNORED, MORE_DRAWS, Judge, Judgement
 
 ENGINES = ("branch", "replay")
 PROJECTS = Path(__file__).resolve().parent / "projects"
@@ -184,6 +184,12 @@ def compare(
 
     with ThreadPoolExecutor(jobs) as pool:
         plain = dict(zip(mutants, pool.map(judged, mutants.values()), strict=True))
+    for one in (end for data in results.values() for end in _ended(data)):
+        # what few draws of noise say may be chance
+        if mutants[one.id]["operator"] == "noise" and plain[one.id].state not in EXPECTED.get(
+            one.verdict, ()
+        ):
+            plain[one.id] = judge.mutant(mutants[one.id], draws=MORE_DRAWS)
     for engine, data in results.items():
         found.verdicts += [
             verdict(folder.name, engine, mutants[one.id], one, plain[one.id]) for one in _ended(data)
