@@ -186,9 +186,8 @@ def compare(
         plain = dict(zip(mutants, pool.map(judged, mutants.values()), strict=True))
     for one in (end for data in results.values() for end in _ended(data)):
         # what few draws of noise say may be chance
-        if mutants[one.id]["operator"] == "noise" and plain[one.id].state not in EXPECTED.get(
-            one.verdict, ()
-        ):
+        explained = ("unwritable", *EXPECTED.get(one.verdict, ()))
+        if mutants[one.id]["operator"] == "noise" and plain[one.id].state not in explained:
             plain[one.id] = judge.mutant(mutants[one.id], draws=MORE_DRAWS)
     for engine, data in results.items():
         found.verdicts += [
