@@ -32,7 +32,7 @@ def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary 
     quantity = quantity_of(mutant, vocabulary)
     survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
     if survivors:
-        worst = max(survivors, key=lambda one: one.distance or 0.0)
+        worst = max(survivors, key=lambda one: (one.distance or 0.0, one.way or 0.0))
         return f"{change_text(mutant, worst, quantity) or mutant.description}; {_world_text(worst)}"
     verdict, _ = Counter(one.verdict for one in outcomes).most_common(1)[0]
     if any(one.verdict is Verdict.NOT_COVERED for one in outcomes):

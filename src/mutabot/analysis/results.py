@@ -58,6 +58,11 @@ class MutantResult:
         return any(one.verdict.is_valid and not one.verdict.is_killed for one in self.outcomes)
 
     @property
+    def way(self) -> float:
+        """How far the way of its survivors' tests was from the original's, in multiples of the tolerance."""
+        return max((one.way or 0.0 for one in self.outcomes), default=0.0)
+
+    @property
     def indistinguishable(self) -> bool:
         """Whether no survivor of it looked other than the original."""
         return is_indistinguishable(self.outcomes)
@@ -118,7 +123,9 @@ class Results:
     def survivors(self) -> list[MutantResult]:
         """Mutants that some round lets through, the farthest from the original first."""
         found = [result for result in self.mutants if result.is_survivor]
-        return sorted(found, key=lambda one: (-one.distance, one.indistinguishable, one.mutant.number))
+        return sorted(
+            found, key=lambda one: (-one.distance, -one.way, one.indistinguishable, one.mutant.number)
+        )
 
     def with_verdict(self, *verdicts: Verdict) -> list[tuple[MutantResult, Outcome]]:
         """Each mutant with its first outcome of one of these verdicts, by number."""

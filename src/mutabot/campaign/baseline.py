@@ -19,6 +19,7 @@ from mutabot.vocabulary import problem_error
 from .answers import Answers
 from .comparison import Event, Observation, as_steady
 from .failing import refuse_failing, rounds_to_repeat, why_set_aside
+from .moments import moments_in, note_moments, strides_of
 from .places import Place
 from .program_text import ProgramTexts, read_texts
 from .readability import note_readability, refuse_unreadable
@@ -65,6 +66,7 @@ class Baseline:
         unstable: tests set aside as flaky, with the reason, by (round, test).
         flaky_reaching: (round, place) to the tests that reach it but are set aside in this round.
         dependent: selections of tests that pass only together with others; filled in by the controls.
+        strides: after every how many commands probes are read along the way, by (round, test).
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
         doubted: tests that have failed once where equal runs pass.
         unequal: (round, test) that were not the same to the last bit in all runs of the original.
@@ -86,6 +88,7 @@ class Baseline:
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
+    strides: Mapping[tuple[int, str], int] = field(default_factory=dict)
     restless: set[tuple[int, str]] = field(default_factory=set)
     unequal: set[tuple[int, str]] = field(default_factory=set)
     doubted: set[str] = field(default_factory=set)
@@ -265,14 +268,17 @@ def take_baseline(
             _refuse(result, request.arguments)
             progress.advance(f"baseline, round {run.round + 1}, run {run.repetition + 1}: {_counts(result)}")
 
-    run_suite(_tasks(request, repetitions, texts, may_share))
+    run_suite(_tasks(request, texts, may_share))
+    strides = strides_of({(run[0], end.test): end for run, result in results.items() for end in result.ends})
+    if repetitions > 1:
+        run_suite(_again(request, repetitions, strides, may_share))
     if repetitions == 1:  # was it chance, or the round's seed?
         again = rounds_to_repeat({run[0]: result.ends for run, result in results.items()})
         run_suite(
             Task(_Run(round, 1), request.job(round, record=True), startup=300.0, may_share=may_share)
             for round in again
         )
-    baseline = Baseline(remarks=tuple(dict.fromkeys(remarks)))
+    baseline = Baseline(strides=strides, remarks=tuple(dict.fromkeys(remarks)))
     sources = Sources(request.root)
     failing: dict[tuple[int, str], TestEnd] = {}
     for round in range(request.rounds):
@@ -289,6 +295,7 @@ def take_baseline(
     note_readability(request.vocabulary, list(baseline.ends.values()), progress)
     for remark in sharing_remarks(baseline.sharing, _not_private(results.values())):
         progress.note(remark)
+    note_moments(baseline.ends.values(), progress)
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
 
 
@@ -309,16 +316,21 @@ def _told_as_they_come(
             progress.note(str(event[1]))
 
 
-def _tasks(
-    request: Request, repetitions: int, texts: tuple[ProgramText, ...], may_share: bool
-) -> Iterator[Task]:
-    """The second run of a round is that of the text as it stands: looking at it must change nothing."""
+def _tasks(request: Request, texts: tuple[ProgramText, ...], may_share: bool) -> Iterator[Task]:
+    """The first run of each round."""
     recording = Instrumentation(texts, record=True) if texts else None
-    for repetition in range(repetitions):
+    for round in range(request.rounds):
+        job = request.job(round, record=True, inspect=round == 0, instrumentation=recording)
+        yield Task(_Run(round, 0), job, startup=300.0, may_share=may_share)
+
+
+def _again(
+    request: Request, repetitions: int, strides: Mapping[tuple[int, str], int], may_share: bool
+) -> Iterator[Task]:
+    """Further runs, of the text as it stands: neither looking at it nor probes may change anything."""
+    for repetition in range(1, repetitions):
         for round in range(request.rounds):
-            inspect = (round, repetition) == (0, 0)
-            text = recording if repetition == 0 else None
-            job = request.job(round, record=True, inspect=inspect, instrumentation=text)
+            job = request.job(round, record=True, moments=moments_in(strides, round))
             yield Task(_Run(round, repetition), job, startup=300.0, may_share=may_share)
 
 
@@ -491,4 +503,6 @@ def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
         place = places[index]
         events.append(Event(place.key, written, read, (place.operation, place.pattern)))
     prepared, called = end.returned[: end.prepared], end.returned[end.prepared :]
-    return Observation(events, end.probes, end.truncated, end.unread, end.outcome, prepared, called)
+    return Observation(
+        events, end.probes, end.truncated, end.unread, end.outcome, prepared, called, end.moments
+    )

@@ -29,6 +29,7 @@ from mutabot.model.job import Line
 from .baseline import Baseline, at, death, observation, place_of
 from .comparison import Observation
 from .judge import Death, Run, judge
+from .moments import moments_in
 from .places import Place
 from .replay import Pair, wall_limit, without_tests
 from .request import Request
@@ -199,6 +200,7 @@ class _Trunk:
             tests=in_order,
             record=True,
             budgets=budgets,
+            moments=moments_in(baseline.strides, round),
             branching=branching,
             instrumentation=text,
         )

@@ -11,11 +11,14 @@ from mutabot.model import Compared, Operation, Probe
 from mutabot.model.quantity import told_apart
 
 from .orientations import Angles, Command, Turned, turned_parts, values_apart
+from .way import compare_moments
 
 #: greatest difference of two equal numbers where the vocabulary names no probe
 DEFAULT_TOLERANCE = 1e-6
 #: multiples of its tolerance that a difference counts which is not one of numbers
 OTHER_WORLD = 1e9
+_NO_RETURNS: dict[str, Any] = {"prepared": None, "returned": None}
+_NO_MOMENTS: dict[str, Any] = {"moments": None}
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +47,7 @@ class Observation:
         probes: values by ``target.part``.
         truncated: whether the list of calls was cut off.
         unread: why a probe could not be read, by target.
+        moments: probes along the way, as in ``TestEnd.moments``; None if they are not to be compared.
         outcome: how the test ended for the suite.
         prepared, returned: what the program returned to the test's fixtures and to the test itself, as in
             ``TestEnd.returned``; None if that is not to be compared.
@@ -56,6 +60,7 @@ class Observation:
     outcome: str = "passed"
     prepared: Sequence[Any] | None = ()
     returned: Sequence[Any] | None = ()
+    moments: Sequence[Any] | None = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +73,8 @@ class Comparison:
             that is not of numbers); None without probes, or if none that differs more is all that is known.
         divergence: one line per difference: the outcome, the worst probe first, the first call that differs.
         gaps: what could not be compared, one line each.
+        way: greatest difference of a probe along the way, in multiples of its tolerance; None if none was
+            compared.
         compared: how much was.
     """
 
@@ -75,6 +82,7 @@ class Comparison:
     distance: float | None
     divergence: tuple[str, ...]
     gaps: tuple[str, ...] = ()
+    way: float | None = None
     compared: Compared = field(default=Compared(), compare=False)
 
 
@@ -105,11 +113,22 @@ def compare(
     returned_line = _returned_difference(original, mutant, probes)
     distances = [distance for distance, _ in probe_lines]
     different = [line for distance, line in probe_lines if distance > 1.0]
-    lines = [*_outcome_lines(original, mutant), *different, *filter(None, [returned_line, trace_line])]
+
+    def differences(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[tuple[float, str]]:
+        return _probe_differences(Observation(probes=before), Observation(probes=after), probes)
+
+    way = compare_moments(original, mutant, differences)
+    lines = [
+        *_outcome_lines(original, mutant),
+        *different,
+        *([way.line] if (way.distance or 0.0) > 1.0 else []),
+        *filter(None, [returned_line, trace_line]),
+    ]
     distance = max(distances, default=None)
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
-    return Comparison(not lines, distance, tuple(lines), gaps, _compared(original, mutant))
+    compared = _compared(original, mutant, way.count)
+    return Comparison(not lines, distance, tuple(lines), gaps, way.distance, compared)
 
 
 def as_steady(
@@ -120,12 +139,13 @@ def as_steady(
 ) -> Observation | None:
     """The observation of the original that mutants are compared with, after a second run of it.
 
-    Without what the program returned if only that differs; None if more does.
+    Without what the program returned, or probes along the way, if only that differs; None if more does.
     """
-    if compare(first, second, probes, operations).indistinguishable:
-        return first
-    bare = replace(first, prepared=None, returned=None)
-    return bare if compare(bare, second, probes, operations).indistinguishable else None
+    for dropped in ({}, _NO_RETURNS, _NO_MOMENTS, {**_NO_RETURNS, **_NO_MOMENTS}):
+        one = replace(first, **dropped)
+        if compare(one, second, probes, operations).indistinguishable:
+            return one if one.moments is None or one.moments else replace(one, moments=second.moments)
+    return None
 
 
 def farthest(comparisons: Sequence[Comparison]) -> Comparison:
@@ -143,7 +163,8 @@ def farthest(comparisons: Sequence[Comparison]) -> Comparison:
     if gaps and (distance or 0.0) <= 1.0:
         distance = None
     compared = Compared.together(one.compared for one in comparisons)
-    return Comparison(together, distance, tuple(lines), gaps, compared)
+    way = max((one.way for one in comparisons if one.way is not None), default=None)
+    return Comparison(together, distance, tuple(lines), gaps, way, compared)
 
 
 def _outcome_lines(original: Observation, mutant: Observation) -> list[str]:
@@ -229,14 +250,14 @@ def _first_difference(
     return f"{abs(more)} {'calls' if abs(more) > 1 else 'call'} {'more' if more > 0 else 'fewer'}"
 
 
-def _compared(original: Observation, mutant: Observation) -> Compared:
+def _compared(original: Observation, mutant: Observation, moments: int) -> Compared:
     returned = 0
     for before, after in ((original.prepared, mutant.prepared), (original.returned, mutant.returned)):
         if before is not None and after is not None:
             returned += sum("opaque" not in str(entry[1]) for entry in before[: len(after)])
     return Compared(
         calls=min(len(original.events), len(mutant.events)),
-        moments=1 if original.probes and mutant.probes else 0,
+        moments=moments + bool(original.probes and mutant.probes),
         returned=returned,
     )
 

@@ -179,6 +179,7 @@ def _template(job: Job) -> Job:
         record=False,
         stop_at_kill=False,
         budgets={},
+        moments={},
         inspect=False,
         branching=None,
     )

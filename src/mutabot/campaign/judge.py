@@ -203,5 +203,6 @@ def _compared(outcome: Outcome, run: Run, request: Request, baseline: Baseline) 
         distance=worst.distance,
         divergence=worst.divergence,
         gaps=worst.gaps,
+        way=worst.way,
         compared=worst.compared if comparisons else None,
     )

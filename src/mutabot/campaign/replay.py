@@ -8,6 +8,7 @@ from mutabot.model import Mutant, Outcome, Verdict
 
 from .baseline import Baseline, death, observation, places_of
 from .judge import Death, Run, judge
+from .moments import moments_in
 from .request import Request
 from .sites import Sources
 from .workers import Result, Task, Workers
@@ -74,6 +75,7 @@ def task(
         record=True,
         stop_at_kill=stop and not request.every_test,
         budgets=budgets,
+        moments=moments_in(baseline.strides, round),
         instrumentation=baseline.program.instrumentation([mutant], active=True),
     )
     least = request.configuration.timeout_seconds

@@ -399,7 +399,9 @@ class Conductor:
         end = self._test_end(self.session.test)
         sites = self.session.recorder.sites_of_trace() if end.outcome != FAILED else ()
         if end.outcome == FAILED:
-            end = replace(end, trace=(), returned=())  # only survivors are compared with the original
+            end = replace(
+                end, trace=(), returned=(), moments=()
+            )  # only survivors are compared with the original
         self._pipe.send(BranchEnd(mutant, end, sites, self._shared))
         return DECIDED if end.is_decided else ALIVE
 
@@ -443,6 +445,9 @@ class Conductor:
             probes=self._reading.values,
             unread=self._reading.unread,
             footprint=self._footprint(),
+            moments=tuple(session.along.entries) if self.job.record else (),
+            reading=session.rehearsal.seconds,
+            not_along=session.rehearsal.why_not,
         )
 
     def _footprint(self) -> Footprint | None:

@@ -7,10 +7,7 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from datetime import date, time, timedelta
-from decimal import Decimal
 from enum import Enum
-from fractions import Fraction
 from typing import Any
 
 #: values within one value that are told; of more only whether they are all the same
@@ -20,7 +17,9 @@ MOST = 20_000
 #: characters of a text that are told
 _CHARACTERS = 300
 _DEPTH = 20
-_AS_TEXT = (complex, Decimal, Fraction, date, time, timedelta, range, slice)
+_AS_TEXT = (complex, range, slice)
+#: modules whose objects are told as texts; they are not imported for this
+_TOLD = ("datetime", "decimal", "fractions")
 #: what differs between equal runs in different processes
 _ACCIDENTS = re.compile(r"0x[0-9a-fA-F]{6,}|pytest-\d+")
 
@@ -60,7 +59,7 @@ class _Reader:
             return float(value) if isinstance(value, float) else int(value)
         if isinstance(value, str | bytes | bytearray):
             return _text(value)
-        if isinstance(value, _AS_TEXT):
+        if isinstance(value, _AS_TEXT) or type(value).__module__ in _TOLD:
             return repr(value)
         return _opaque(value) if depth > _DEPTH or self.leaves > MOST else self._container(value, depth + 1)
 

@@ -17,6 +17,7 @@ import os
 import sys
 import warnings
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from importlib.machinery import SourceFileLoader
 from types import CodeType, FrameType
 from typing import Any, TypeVar, cast
@@ -91,6 +92,15 @@ class Returns:
     def begin_call(self) -> None:
         """Its fixtures are set up."""
         self.prepared = len(self.entries)
+
+    @contextmanager
+    def pause(self) -> Iterator[None]:
+        """Note nothing for the moment."""
+        was, self._on = self._on, False
+        try:
+            yield
+        finally:
+            self._on = was
 
     def stop(self) -> None:
         """What comes now is no more part of the test."""

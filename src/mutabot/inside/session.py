@@ -6,6 +6,7 @@ import importlib
 import inspect
 import sys
 from collections.abc import Callable
+from contextlib import nullcontext
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from functools import partial
@@ -22,6 +23,7 @@ from mutabot.model import (
     Mutant,
     MutatedCall,
     Operation,
+    Probe,
     Problem,
     Remark,
     Reply,
@@ -31,6 +33,7 @@ from mutabot.model import (
 )
 
 from .activate import Activation, Evidence, together
+from .along import Along, Rehearsal, rehearse
 from .answers import Answers, Returned, handles_of
 from .branch import Trunk
 from .clock import ClockReader
@@ -76,6 +79,8 @@ class Session:
     recorder: Recorder = field(init=False)
     interception: Interception = field(init=False)
     instances: Instances = field(default_factory=Instances)
+    along: Along = field(init=False)
+    rehearsal: Rehearsal = field(default_factory=Rehearsal)
     trunk: Trunk | None = None
     branch: str | None = None
     activations: list[Activation] = field(default_factory=list)
@@ -95,6 +100,7 @@ class Session:
         self.recorder = Recorder(self._site_seen)
         self._watch = Watch(self.locate, self._calls_of, _under_way.get)
         self.interception = Interception(self._target_is_wrong)
+        self.along = Along(partial(self._read_probes, along=True))
 
     def install(self) -> None:
         """Put the interception of the whole vocabulary in place, and the mutant with it."""
@@ -183,6 +189,7 @@ class Session:
         self.recorder.answers = Answers.of(self.job.vocabulary) if is_baseline else None
         self.recorder.start()
         self.instances.start()
+        self.along.start(self.job.moments.get(test, 0))
         if self.returns is not None:
             self.returns.start()
         for door in self._doors:
@@ -228,12 +235,28 @@ class Session:
         """Read all probes: at the end of a test, before its fixtures take the world down."""
         if self.returns is not None:
             self.returns.stop()
+        self.along.stop()
+        reading, self.rehearsal = rehearse(self._read_probes)
+        self.instances.start()  # what the program is done with may go
+        return reading
+
+    def _read_probes(self, *, along: bool = False) -> Reading:
         meter, self.meter = self.meter, None  # probes are no operations of the program's
+        returns = self.returns.pause() if self.returns is not None else nullcontext()
         try:
-            return take(self.job.vocabulary.probes, self.instances)
+            with returns:
+                return take(self._probes(along=along), self.instances)
         finally:
             self.meter = meter
-            self.instances.start()  # what the program is done with may go
+
+    def _probes(self, *, along: bool) -> tuple[Probe, ...]:
+        """The probes; along the way without those in program files, in which mutants may be waited for."""
+        probes = self.job.vocabulary.probes
+        if not along or self.returns is None:
+            return probes
+        modules = {probe: sys.modules.get(probe.target.partition(":")[0]) for probe in probes}
+        files = {probe: getattr(module, "__file__", None) or "" for probe, module in modules.items()}
+        return tuple(probe for probe in probes if not self.returns.is_program(files[probe]))
 
     def finish(self) -> None:
         """All tests are over: wait for branches, tell what was seen, and check the vocabulary if asked to."""
@@ -458,6 +481,8 @@ class Session:
         is_wanted = self.recorder.answers is not None and reply is not None
         returned = Returned(reply.payload, here(call)) if reply is not None and is_wanted else None
         self.recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned)
+        if call.operation.command:
+            self.along.after(len(self.recorder.trace))
         if self.job.inspect:
             self._fit.setdefault(call.operation.target, set()).update(read)
             instance = call.payload.instance

@@ -79,6 +79,8 @@ class Job:
         stop_at_kill: whether to stop after the first test that fails for another reason than a refusal.
         budgets: limits by node id.
         memory: address space limit in bytes; None for no limit.
+        moments: after every how many commands the probes are read along the way, by node id; tests that are
+            missing are read at their end only.
         inspect: whether to check every callable of the vocabulary at the end, also those that no test
             imported.
         branching: set for a trunk: fork a branch for each live mutant at its site.
@@ -100,6 +102,7 @@ class Job:
     stop_at_kill: bool = False
     budgets: Mapping[str, Budget] = field(default_factory=dict)
     memory: int | None = None
+    moments: Mapping[str, int] = field(default_factory=dict)
     inspect: bool = False
     branching: Branching | None = None
     serving: int | None = None
@@ -305,6 +308,10 @@ class TestEnd:
             ``target#2.part``.
         unread: why a probe could not be read, by target.
         footprint: what of the test can be noticed outside of it; None if that was not looked at.
+        moments: probes along the way: after which call (from 1), parts that differ from the moment before,
+            and whether these are all parts.
+        reading: processor seconds it takes to read all probes; None if they cannot be read along the way.
+        not_along: why not, or None.
     """
 
     __test__ = False  # not a test class, whatever pytest may think of the name
@@ -338,6 +345,9 @@ class TestEnd:
     probes: Mapping[str, Any] = field(default_factory=dict)
     unread: Mapping[str, str] = field(default_factory=dict)
     footprint: Footprint | None = None
+    moments: tuple[Any, ...] = ()
+    reading: float | None = None
+    not_along: str | None = None
 
     @property
     def lasting(self) -> str:

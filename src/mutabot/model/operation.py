@@ -160,7 +160,7 @@ class Clock:
 
 @dataclass(frozen=True, slots=True)
 class Probe:
-    """A reading that mutabot takes at the end of a test, to compare worlds.
+    """A reading that mutabot takes along the way and at the end of a test, to compare worlds.
 
     Attributes:
         target: callable without arguments, or a value, as ``module:qualified.name``. A method, property or

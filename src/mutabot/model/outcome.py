@@ -90,6 +90,8 @@ class Outcome:
             None without probes, or if one cannot be read.
         divergence: what ended otherwise than in the original, one line each, worst first.
         gaps: what could not be compared with the original, one line each.
+        way: greatest difference of a probe along the way of a test, in multiples of its tolerance; None if
+            probes were not read along the way.
         compared: how much was compared; None if nothing was.
         engine: ``replay`` or ``branch``.
         complete: whether every test that reaches the mutant was run, also after one had noticed it.
@@ -122,6 +124,7 @@ class Outcome:
     distance: float | None = None
     divergence: tuple[str, ...] = ()
     gaps: tuple[str, ...] = ()
+    way: float | None = None
     compared: Compared | None = None
     engine: str = "replay"
     complete: bool = False

@@ -182,6 +182,8 @@ class Quantity:
 def told_apart(one: Value, other: Value, text: Callable[[Value, int], str], digits: int) -> tuple[str, str]:
     """Two values as texts, with as many significant digits as tell them apart, but at least ``digits``."""
     usual = text(one, digits), text(other, digits)
+    if usual[0] != usual[1] or text(one, _MOST_DIGITS) == text(other, _MOST_DIGITS):
+        return usual
     for more in range(digits, _MOST_DIGITS + 1):
         texts = text(one, more), text(other, more)
         if texts[0] != texts[1]:

@@ -234,6 +234,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "indistinguishable": outcome.indistinguishable,
         "distance": outcome.distance,
         "divergence": list(outcome.divergence),
+        "way": outcome.way,
         "gaps": list(outcome.gaps),
         "compared": to_data(outcome.compared) if outcome.compared is not None else None,
         "engine": outcome.engine,
