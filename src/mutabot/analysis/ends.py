@@ -8,7 +8,7 @@ indistinguishable, informative) are said of all its rounds:
   if no test reached it. What counts are the other rounds, in which tests could judge it: the *judged* ones.
 - *valid*: it stood in the score in at least one round, be it as not covered.
 - *trivial*: every test that reached it noticed it, in every judged round, and there is one.
-- *indistinguishable*: it survived every judged round, and the world always ended as the original's.
+- *indistinguishable*: it survived every judged round, and nothing that was compared ever differed.
 - *informative*: valid, not trivial, not indistinguishable.
 
 Whether a killed mutant is trivial is known only if every test that reaches it was run (``Outcome.complete``).
@@ -31,7 +31,7 @@ class End(StrEnum):
     TIMEOUT = "timeout"
     SURVIVED = "survived"  # something ended otherwise than in the original, or nobody knows
     NOT_COVERED = "not covered"  # no test reaches it
-    INDISTINGUISHABLE = "indistinguishable"  # survived, and the world ended as the original's
+    INDISTINGUISHABLE = "indistinguishable"  # survived, and nothing that was compared differs
     NO_EFFECT = "no effect"  # it changed no value at any hit
     REFUSED = "refused"  # the robot refused the mutated command
     BEFORE = "exception before any command"  # killed by an exception before a command reached the robot
