@@ -87,6 +87,7 @@ class Conductor:
             os._exit(BRANCH_FAILED)
         home = os.path.dirname(job_file)
         job = read_job(job_file)
+        say_where_on_signal(home)  # before anybody notes which files are open
         if job.memory is not None:
             limit_memory(job.memory)
         # what the program draws while it is imported is the same in all rounds: a fork server imports it once
@@ -114,7 +115,6 @@ class Conductor:
             die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
-        say_where_on_signal(home)
         if self.job.branching is not None:
             preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
             self.grow(self.job.branching, os.path.join(home, LOG))
@@ -245,6 +245,7 @@ class Conductor:
         cache = getattr(session.config, "cache", None)
         if cache is not None:  # what one job keeps there, others must not find
             cache._cachedir = Path(commission.home, "cache")
+        say_where_on_signal(commission.home)
         self._begin(commission.home)
         self.session.look_ahead()
         seeds.seed_all(seeds.derive(job.seed, job.round, "session"))
