@@ -471,6 +471,23 @@ def test_a_robot_that_only_the_tests_know_is_found(tmp_path: Path) -> None:
     assert set(operations(tmp_path)) == {"fakes:Arm.move_to"}
 
 
+def test_values_come_from_the_program_where_the_tests_call_the_same(tmp_path: Path) -> None:
+    test = """
+        import link, program, pytest
+        @pytest.mark.parametrize("text", ["nonsense", "lift/", "PICK", "lift five"])
+        def test_it(text):
+            link.send(text)
+            program.run()
+    """
+    files = {
+        "link.py": "def send(text): ...\n",
+        "program.py": "import link\ndef run(): link.send('lift/5')\n",
+        "tests/test_it.py": test,
+    }
+    propose(write(tmp_path, files))
+    assert [one.text for one in operations(tmp_path)["link:send"].patterns] == ["lift/{height:g}"]
+
+
 def test_tests_that_cannot_run_are_told_precisely_and_files_are_written(project: Path) -> None:
     (project / "tests" / "test_mission.py").write_text("import simulator_that_is_missing, mission\n")
     told = "\n".join(propose(project))

@@ -46,6 +46,7 @@ class _Seen:
 
     callee: Callee
     own: bool
+    of_tests: bool
     sites: dict[int, int] = field(default_factory=dict)
     arguments: dict[str, Leaves] = field(default_factory=dict)
     positional: Leaves = field(default_factory=Leaves)
@@ -71,8 +72,8 @@ class Watch:
         self._program, self._tests = program, tests
         self._places: list[tuple[str, int]] = []
         self._numbers: dict[tuple[str, int], int] = {}
-        self._seen: dict[str, _Seen] = {}
-        self._known: dict[tuple[Any, str], _Seen | None] = {}
+        self._seen: dict[tuple[str, bool], _Seen] = {}
+        self._known: dict[tuple[Any, str], Callee | None] = {}
 
     def install(self) -> None:
         """Watch what is imported from now on."""
@@ -86,20 +87,20 @@ class Watch:
         found = getattr(value, name)
         if isinstance(found, type):
             return found
-        return self._wrapped(found, self._method(value, name), place)
+        return self._wrapped(found, self._of(self._method(value, name), place), place)
 
     def named(self, function: Any, place: int) -> Any:
         """A function is about to be called by its name."""
         if isinstance(function, type):
             return function
-        return self._wrapped(function, self._of(function_of(function)), place)
+        return self._wrapped(function, self._of(function_of(function), place), place)
 
     def read(self, value: Any, name: str, place: int) -> Any:
         """``value.name`` is read."""
         found = getattr(value, name)
         raw = inspect.getattr_static(type(value), name, None)
         if isinstance(raw, property | functools.cached_property):
-            seen = self._of(method_of(value, name))
+            seen = self._of(method_of(value, name), place)
             if seen is not None and self._counts(seen, place):
                 self._answer(seen, found)
         return found
@@ -114,25 +115,26 @@ class Watch:
             self._places.append((file, line))
         return self._numbers[file, line]
 
-    def _method(self, value: Any, name: str) -> _Seen | None:
-        """What is known of a method; looked up once for each class."""
+    def _method(self, value: Any, name: str) -> Callee | None:
+        """A method by its name; looked up once for each class."""
         if inspect.ismodule(value) or isinstance(value, super) or name in getattr(value, "__dict__", ()):
-            return self._of(method_of(value, name))
+            return method_of(value, name)
         key = (value if isinstance(value, type) else type(value), name)
         if key not in self._known:
-            self._known[key] = self._of(method_of(value, name))
+            self._known[key] = method_of(value, name)
         return self._known[key]
 
-    def _of(self, callee: Callee | None) -> _Seen | None:
-        """What is known of a callable; None for one that is no robot's."""
+    def _of(self, callee: Callee | None, place: int) -> _Seen | None:
+        """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
         if callee is None:
             return None
-        known = self._seen.get(callee.target)
+        key = (callee.target, self._is_of_tests(place))
+        known = self._seen.get(key)
         if known is None:
             top = callee.target.partition(":")[0].partition(".")[0]
-            if top in sys.stdlib_module_names or top in _NO_ROBOTS:
+            if top in sys.stdlib_module_names or top in _NO_ROBOTS or top.startswith("pytest"):
                 return None
-            known = self._seen[callee.target] = _Seen(callee, callee.file in self._program)
+            known = self._seen[key] = _Seen(callee, callee.file in self._program, key[1])
             known.signature = callee.signature
             known.is_coroutine = inspect.iscoroutinefunction(getattr(callee.raw, "__func__", callee.raw))
         return known
@@ -142,13 +144,12 @@ class Watch:
             return function
 
         instance = getattr(function, "__self__", None)
-        of_program = not self._is_of_tests(place)
 
         def watched(*args: Any, **kwargs: Any) -> Any:
             which: str | None = None
             with suppress(Exception):  # looking at values must not disturb the program
                 values = self._arguments(seen, args, kwargs)
-                which = seen.told_apart.see(instance, seen.callee.target, values) if of_program else None
+                which = seen.told_apart.see(instance, seen.callee.target, values)
             try:
                 result = function(*args, **kwargs)
             except Exception as error:
@@ -173,7 +174,7 @@ class Watch:
 
     def _counts(self, seen: _Seen, place: int) -> bool:
         """Count a call; whether its values are to be looked at."""
-        if self._is_of_tests(place) and (seen.own or seen.callee.file in self._tests):
+        if seen.of_tests and (seen.own or seen.callee.file in self._tests):
             return False
         seen.sites[place] = seen.sites.get(place, 0) + 1
         seen.looked_at += 1
@@ -209,6 +210,11 @@ class Watch:
             seen.result.see(result)
             seen.told_apart.answer(which, result)
 
+    def _raised(self, target: str) -> list[str]:
+        """What a callable raised, whoever called it: tests make robots refuse."""
+        sides = (self._seen.get((target, of_tests)) for of_tests in (False, True))
+        return list(dict.fromkeys(name for side in sides if side is not None for name in side.raised))
+
     def _data(self, seen: _Seen) -> dict[str, Any]:
         found = facts(seen.callee)
         if seen.returns_coroutine:
@@ -216,13 +222,14 @@ class Watch:
         return {
             **found,
             "own": seen.own,
+            "of_tests": seen.of_tests,
             "sites": [[*self._places[place], count] for place, count in seen.sites.items()],
             "given": seen.given,
             "arguments": {name: leaves.data() for name, leaves in seen.arguments.items()},
             "positional": seen.positional.data(),
             "result": seen.result.data(),
             "answered": seen.answered,
-            "raised": list(seen.raised),
+            "raised": self._raised(seen.callee.target),
             "told_apart": seen.told_apart.data(),
         }
 

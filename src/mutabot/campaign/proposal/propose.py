@@ -42,7 +42,7 @@ class _Look:
         calls = [call for call in self.seen.calls if call.sites]
         self.known: list[Known] = known_vocabularies(self.layout, calls)
         groups = compared_with(self.layout)
-        mine, rest = _by_role(calls, self.program)
+        mine, rest = _by_side(calls)
         ours, own = (
             [call for call in mine if not call.facts["own"]],
             [call for call in mine if call.facts["own"]],
@@ -126,9 +126,11 @@ def _says_more(call: SeenCall) -> bool:
     return tells_commands(call) and any(guess.table for _, guess in commands_of(call))
 
 
-def _by_role(calls: Sequence[SeenCall], program: Sequence[str]) -> tuple[list[SeenCall], list[SeenCall]]:
-    mine = [call for call in calls if any(file in program for file, _, _ in call.sites)]
-    return mine, [call for call in calls if call not in mine]
+def _by_side(calls: Sequence[SeenCall]) -> tuple[list[SeenCall], list[SeenCall]]:
+    """What the program calls, and what only the tests do."""
+    mine = [call for call in calls if not call.facts["of_tests"]]
+    targets = {call.target for call in mine}
+    return mine, [call for call in calls if call.target not in targets]
 
 
 def _write(path: Path, text: str) -> None:
@@ -219,7 +221,7 @@ def _told(found: _Look) -> list[str]:
 
 
 def _counted(found: _Look) -> str:
-    mine, rest = _by_role([call for call in found.seen.calls if call.sites], found.program)
+    mine, rest = _by_side([call for call in found.seen.calls if call.sites])
     calls = sum(call.count for call in mine)
     return f"the program calls {len(mine)} callables, {calls} times" + (
         f", the tests {len(rest)} more" if rest else ""
