@@ -232,6 +232,8 @@ class _Look:
             yield from (value.items() if isinstance(value, dict) else value)
         elif isinstance(value, io.IOBase) and not isinstance(value, io.BytesIO | io.StringIO):
             yield from _of_file(value)
+        elif isinstance(value, types.GeneratorType):
+            yield from _of_generator(value)
         elif _is_native(kind):
             yield from self._of_opaque(value, kind)
         else:  # a part that C code of a Python class holds, such as what a cache remembers
@@ -256,8 +258,6 @@ class _Look:
             children = gc.get_referents(value)
             if not children:
                 yield from self._unknown(kind, error)
-            if isinstance(value, types.GeneratorType):
-                yield value.gi_frame.f_lasti if value.gi_frame is not None else -1
             yield from (child for child in children if child is not kind)
             return
         if isinstance(reduced, tuple):
@@ -283,6 +283,14 @@ class _Look:
 
 _ATOM_TYPES = frozenset(_ATOMS)
 _SEQUENCES = frozenset({list, tuple})
+
+
+def _of_generator(generator: types.GeneratorType[Any, Any, Any]) -> Iterator[Any]:
+    """How far a generator has come, and with what."""
+    frame = generator.gi_frame
+    if frame is not None:
+        yield frame.f_lasti
+        yield dict(frame.f_locals)
 
 
 def _of_file(file: Any) -> Iterator[Any]:

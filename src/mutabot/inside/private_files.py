@@ -85,9 +85,9 @@ def _lay_over(folder: str, lower: int, own: int, number: int) -> None:
     with _opened([f"{layers}/upper", f"{layers}/work"]) as (upper, work):
         options = f"lowerdir={_path(lower)},upperdir={_path(upper)},workdir={_path(work)}"
         try:
+            _mount("overlay", folder, options + ",redirect_dir=on", 0, kind="overlay")
+        except OSError:  # without privileges, folders that were there cannot be renamed
             _mount("overlay", folder, options + ",userxattr", 0, kind="overlay")
-        except OSError:
-            _mount("overlay", folder, options, 0, kind="overlay")
 
 
 def _mounts_below(folders: list[str], shared: str) -> list[str]:
