@@ -77,6 +77,10 @@ def try_controls(
     ended = 0
     if engine_of(request) == "branch":
         controls = controls_in_branches(baseline, mutants)
+        for mutant, round in ((mutant, round) for mutant in mutants for round in range(request.rounds)):
+            forbidding = baseline.why_not_branch(round, baseline.judges(round, mutant))
+            if forbidding is not None:
+                remainder.leave(mutant, round, *forbidding)
         progress.stage("controls", len(controls))
         ended = sum(1 for _ in _controls(request, baseline, workers, controls, remainder, progress))
         mutants = [mutant for mutant in mutants if remainder.pairs or baseline.is_early(mutant)]
