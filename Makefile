@@ -56,13 +56,15 @@ bench: $(READY)
 	$(RUN) benchmarks/pick_and_place_seeds.py
 
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the
-## examples; both engines against plain pytest; ten thousand mutants; 200 campaigns in a row
+## examples; both engines against plain pytest; ten thousand mutants; 200 campaigns in a row;
+## 400 campaigns with a test that fails at random
 stress: $(READY)
 	$(RUN) benchmarks/kill_and_resume.py --kills 30
 	$(RUN) benchmarks/differential.py
 	$(RUN) benchmarks/judged.py
 	$(RUN) benchmarks/ten_thousand.py
 	$(RUN) benchmarks/campaigns_in_a_row.py --count 200
+	$(RUN) benchmarks/flaky_campaigns.py
 
 ## slow: every verdict on the corpus of tests/suites and on mutants of the examples, by both engines, against plain
 ## pytest on program text that was edited
