@@ -145,6 +145,7 @@ class Conductor:
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Keep the job's tests, in the job's order."""
         self._collected = tuple(item.nodeid for item in items)
+        self.footprints.has_others = len(items) > 1
         self._select(items)
 
     def _select(self, items: list[pytest.Item]) -> None:

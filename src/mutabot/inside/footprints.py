@@ -30,6 +30,10 @@ class Footprints:
     Args:
         job: the job at hand.
         locator: whose file is whose.
+
+    Attributes:
+        files: what the running test does to files.
+        has_others: whether the suite has more tests than one; else nobody is there to find what is left.
     """
 
     job: Job
@@ -38,6 +42,7 @@ class Footprints:
     _leftovers: Leftovers = field(init=False)
     _fixtures: SharedFixtures = field(init=False)
     _private: tuple[str, ...] = ()
+    has_others: bool = True
     _used: tuple[SharedFixture, ...] = ()
     _folder: str | None = None
     _begun: bool = False
@@ -60,7 +65,8 @@ class Footprints:
         """A test begins, before its fixtures."""
         if not self._begun:
             self._begun = True
-            self._leftovers.start()
+            if self.has_others:
+                self._leftovers.start()
             self.files.install()
         self._used, self._folder = (), None
         self.files.start()
@@ -80,7 +86,7 @@ class Footprints:
     def of_test(self) -> Footprint:
         """The footprint of the test that has just ended, its fixtures taken down."""
         self.files.stop(self._folder)
-        left, replaced, unseen = self._leftovers.since()
+        left, replaced, unseen = self._leftovers.since() if self.has_others else ([], [], [])
         done = sorted(self.files.done.items(), key=lambda item: not item[1])
         return Footprint(
             fixtures=self._used,

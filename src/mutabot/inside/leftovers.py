@@ -95,9 +95,13 @@ class Leftovers:
 
     def _look_at(self, module: str, names: Any) -> None:
         for variable, value in _names(names).items():
-            look = _Look(self._owns)
             name = f"{module}.{variable}"
-            self._state[name], self._objects[name] = look.digest(value), value
+            self._objects[name] = value
+            if _is_stateless(value):
+                self._state[name] = repr(value)
+                continue
+            look = _Look(self._owns)
+            self._state[name] = look.digest(value)
             self._unseen += [f"{name} ({what})" for what in look.unseen]
 
     def _owns(self, module: str) -> bool:
@@ -127,6 +131,14 @@ def _names(module: Any) -> dict[str, Any]:
         for name, value in vars(module).items()
         if not (name.startswith(("__", "@")) and name != "__all__")
     }
+
+
+def _is_stateless(value: Any) -> bool:
+    """Whether a value tells all that it is by its ``repr``: most names of a module do."""
+    kind = type(value)
+    if kind is types.FunctionType:
+        return not (value.__closure__ or value.__defaults__ or value.__kwdefaults__ or value.__dict__)
+    return kind in _ATOM_TYPES or kind is types.ModuleType
 
 
 class _Look:
