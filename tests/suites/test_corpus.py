@@ -11,10 +11,11 @@ import pytest
 
 from .agreement import PROJECTS, compare, corpus
 
-#: answers that are objects, exception groups, outcomes other than passed
+#: act once and assert many, files that tests share, answers that are objects, outcomes other than passed
 PART = (
+    "welding_module_fixture",
+    "growing_log_file",
     "returns_objects",
-    "taskgroup_cell",
     "strict_xfail_limits",
 )
 #: mutants of each, drawn by a fixed seed
