@@ -113,7 +113,7 @@ class Judge:
         span = mutant["span"]
         place = f"{mutant['file']}|{span['line']}|{span['end_line']}" if mutant["operation"] else "||"
         if not self._refusals_are_ours():
-            return replace(found, refused=self._names_a_refusal(found.text))
+            return replace(found, refused=self._names_a_refusal(found.text, mutant))
         return replace(found, refused=self._notes(edits, place) > self._notes([], place))
 
     def _refusals_are_ours(self) -> bool:
@@ -121,9 +121,14 @@ class Judge:
         files = [name.partition(":")[0].replace(".", "/") for name in Facts.of(self.folder).refusals]
         return all((self.folder / f"{file}.py").is_file() for file in files)
 
-    def _names_a_refusal(self, output: str) -> bool:
+    def _names_a_refusal(self, output: str, mutant: Mapping[str, Any]) -> bool:
+        """Whether a traceback ends in a refusal and goes through the mutated call, if it is one."""
         names = [name.rpartition(":")[2].rpartition(".")[2] for name in Facts.of(self.folder).refusals]
-        return any(re.search(rf"^E .*\b{name}\b", output, re.MULTILINE) for name in names)
+        refused = any(re.search(rf"^E .*\b{name}\b", output, re.MULTILINE) for name in names)
+        lines = range(mutant["span"]["line"], mutant["span"]["end_line"] + 1)
+        places = [rf"^{re.escape(mutant['file'])}:{line}: in " for line in lines]
+        is_there = any(re.search(place, output, re.MULTILINE) for place in places)
+        return refused and (is_there or not mutant["operation"])
 
     def _notes(self, edits: Sequence[Edit], place: str) -> int:
         """How often the robot refused, under the lines of ``place`` only."""
@@ -201,7 +206,7 @@ class Judge:
             return Judgement("hangs")
         tests = dict.fromkeys(found[1] for line in output.splitlines() if (found := _SUMMARY.match(line)))
         state = "passes" if process.returncode == 0 else "fails"
-        return Judgement(state, tuple(tests), text=output[-6000:])
+        return Judgement(state, tuple(tests), text=output[-20000:])
 
     def _kept(self, edits: Sequence[Edit], noise: int) -> Path | None:
         if self.cache is None:
