@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from mutabot.campaign.baseline import Baseline
 from mutabot.campaign.comparison import Event, Observation, compare
 from mutabot.campaign.forkserver import _template
 from mutabot.campaign.moments import strides_of
 from mutabot.campaign.run import run_campaign
-from mutabot.model import Outcome, Probe, TestEnd, Verdict
+from mutabot.model import Outcome, Probe, TestEnd, Verdict, Vocabulary
 
 from .project import ROBOT, VOCABULARY, Quiet, outcomes, request_for, write_project
 from .test_branching import both_engines
@@ -117,6 +119,18 @@ def test_moments_are_compared_as_long_as_the_calls_are_the_same() -> None:
     found = compare(moved(0.0, 1.0), moved(5.0, 5.0, key="b"), [Probe("w:p", 0.01)])
     assert found.way is None
     assert found.divergence == ("call 1: b instead of a",)
+
+
+def test_a_first_run_that_was_not_read_along_the_way_is_equal_to_one_that_was() -> None:
+    read = moved(0.0, 1.0)
+    baseline = Baseline(ends={(0, "t"): TestEnd("t", "passed")})
+    baseline.observations[0, "t"] = replace(read, moments=())
+    vocabulary = Vocabulary((), probes=(Probe("w:p", 0.01),))
+    baseline.compare_runs(0, TestEnd("t", "passed"), read, vocabulary)
+    assert baseline.unequal == set()
+    assert baseline.observations[0, "t"] == read
+    baseline.compare_runs(0, TestEnd("t", "passed"), moved(0.0, 1.0 + 1e-9), vocabulary)
+    assert baseline.unequal == {(0, "t")}
 
 
 def test_the_cost_of_a_reading_decides_how_often() -> None:
