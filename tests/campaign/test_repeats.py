@@ -16,6 +16,7 @@ from mutabot.campaign.journal import Journal
 from mutabot.campaign.places import Place
 from mutabot.campaign.repeats import Stratum
 from mutabot.campaign.run import run_campaign
+from mutabot.campaign.sharing import Sharing
 from mutabot.model import By, Mutant, Outcome, Role, Site, Span, TestEnd, Verdict
 
 from .project import CONFIGURATION, Quiet, outcomes, request_for, write_project
@@ -146,7 +147,7 @@ def doubts(
     kills: dict[str, list[tuple[int, int]]], mutants: int, rounds: int = 1, clock: float | None = None
 ) -> Doubts:
     """Mutants of which each test kills some, given as (mutant, round); all tests judge all of them."""
-    baseline = Baseline(tests=[list(kills)] * rounds)
+    baseline = Baseline(tests=[list(kills)] * rounds, sharing=[Sharing() for _ in range(rounds)])
     for round in range(rounds):
         baseline.reaching[round, PLACE] = list(kills)
         for test in kills:
