@@ -1,4 +1,4 @@
-"""The tutorial is a program that runs: its files are written, and its commands typed, as they stand on the page."""
+"""The tutorial runs: its files are written, and its commands typed, as they stand on the page."""
 
 from __future__ import annotations
 
