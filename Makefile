@@ -14,7 +14,7 @@ demo: $(READY)
 
 ## lint, types and the whole test suite
 test: check
-	$(RUN) -m pytest
+	$(RUN) -m pytest -n 2 --dist worksteal
 
 ## lint and types only
 check: $(READY)

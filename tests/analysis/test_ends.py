@@ -76,7 +76,7 @@ def test_trivial_is_not_known_where_not_every_test_was_run() -> None:
     assert properties_of([killed(A, complete=False), ended(Verdict.SURVIVED)]).trivial is False
 
 
-@pytest.mark.parametrize("silent", [*(set(Verdict) - {Verdict.KILLED, Verdict.SURVIVED, Verdict.TIMEOUT})])
+@pytest.mark.parametrize("silent", sorted(set(Verdict) - {Verdict.KILLED, Verdict.SURVIVED, Verdict.TIMEOUT}))
 def test_rounds_in_which_no_test_could_judge_it_say_nothing(silent: Verdict) -> None:
     assert properties_of([killed(A), ended(silent, round=1)]).trivial is True
     found = properties_of([ended(Verdict.SURVIVED, same=True), ended(silent, round=1)])

@@ -102,7 +102,7 @@ def copied(value: Any, here: dict[str, Any] | None = None, there: dict[str, Any]
     return restore(data, here or {} if there is None else there)
 
 
-@pytest.mark.parametrize("value", VALUES, ids=repr)
+@pytest.mark.parametrize("value", VALUES, ids=lambda value: repr(value).partition(" at 0x")[0])
 def test_a_value_comes_back_equal_and_of_the_same_type(value: Any) -> None:
     found = copied(value)
     assert found == value
