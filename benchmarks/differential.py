@@ -39,7 +39,7 @@ EXAMPLES = {"paper": 5, "pick_and_place": 1, "scales": 1}
 FAMILIES = ("robot", "classical", "text")
 ENGINES = ("branch", "replay")
 #: what two engines may differ in: what an outcome cost, and who found it
-COST = {"wall", "cpu", "shared", "engine"}
+COST = {"wall", "cpu", "shared", "engine", "repeats"}
 
 Key = tuple[str, int]
 

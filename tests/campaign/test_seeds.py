@@ -81,11 +81,11 @@ def expected(round: int) -> set[tuple[str, ...]]:
     }
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["auto", "replay"])
 def test_a_shared_fixture_gets_the_seed_of_its_scope_and_a_test_its_own(
     tmp_path: Path, engine: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    told = tmp_path / "seeds"
+    told = tmp_path / "project" / ".mutabot" / "seeds"  # common to all runs
     monkeypatch.setenv("SEEDS", str(told))
     folder = write_project(tmp_path / "project", MISSION, SHARED)
     request = request_for(folder, engine=engine, rounds=2, only=("*:reverse",))

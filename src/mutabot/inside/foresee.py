@@ -257,6 +257,8 @@ def _helper_name(function: ast.expr) -> str:
 
 def _compared(sign: ast.cmpop, left: Any, right: Any) -> Any:
     if isinstance(sign, ast.Is | ast.IsNot):
+        if type(left) is type(right) and left is not None and not isinstance(left, bool) and _is_plain(left):
+            raise UnforeseenError  # whether equal constants are one object is up to the compiler
         return (left is right) == isinstance(sign, ast.Is)
     among = isinstance(sign, ast.In | ast.NotIn) and type(right) in (list, dict, set, frozenset)
     if not _is_plain(left) or not (_is_plain(right) or (among and all(map(_is_plain, right)))):

@@ -44,7 +44,11 @@ _MACHINERY = (
     "weakref", "importlib", "_frozen_importlib", "ctypes", "_ctypes", "unittest.mock", "warnings", "re",
     "mutabot.inside", "mutabot.model", "mutabot.operators", "_asyncio", "_contextvars",
 )  # fmt: skip
-_OF_CLASS = {"__dict__", "__weakref__", "__doc__", "__module__", "__abstractmethods__", "_abc_impl"}
+#: what Python, and ``unittest`` as it runs, keep in a class
+_OF_CLASS = {
+    "__dict__", "__weakref__", "__doc__", "__module__", "__abstractmethods__", "_abc_impl",
+    "tearDown_exceptions", "_class_cleanups", "_classSetupFailed",
+}  # fmt: skip
 #: variables of the environment that pytest itself changes in every test
 _PYTESTS_OWN = "PYTEST_CURRENT_TEST"
 

@@ -49,7 +49,7 @@ class Drift(Operator):
             reply = await proceed(call)
             value = reply.values.get(quantity.name)
             if not is_number(value):
-                return reply
+                return reply.as_is("there is no number to shift")
             error += step
             return reply.with_value(quantity, value + error)
 
