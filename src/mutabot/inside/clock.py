@@ -41,12 +41,18 @@ class ClockReader:
 
     def handler(self) -> Handler:
         """What stands around the tick."""
+        is_direct = not self.clock.time and self._step is None and self.clock.unit == "s"
 
         def handle(
             wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
         ) -> Any:
             __tracebackhide__ = True
             result = wrapped(*args, **kwargs)
+            if is_direct and type(result) is float and isfinite(result):  # the way of most simulators
+                meter = self.meter()
+                if meter is not None:
+                    meter.tick(result)
+                return result
             if isinstance(result, CoroutineType):  # nothing has happened yet
                 return self._awaited(result, wrapped, instance, args, kwargs)
             self._told(result, wrapped, instance, args, kwargs)

@@ -89,22 +89,23 @@ class Leftovers:
     def _look(self) -> None:
         self._state = {"the working directory": _folder(), "os.environ": _digest_of_environment()}
         self._objects, self._unseen = {}, []
+        classes: dict[type, str] = {}
         for name, module in list(sys.modules.items()):
             file = getattr(module, "__file__", None)
             if isinstance(file, str) and file.endswith(".py"):
                 if name in self.targets or self.is_project(file):
-                    self._look_at(name, module)
+                    self._look_at(name, module, classes)
             elif name in self.targets:
                 self._unseen.append(name)
 
-    def _look_at(self, module: str, names: Any) -> None:
+    def _look_at(self, module: str, names: Any, classes: dict[type, str]) -> None:
         for variable, value in _names(names).items():
             name = f"{module}.{variable}"
             self._objects[name] = value
             if _is_stateless(value):
                 self._state[name] = repr(value)
                 continue
-            look = _Look(self._owns)
+            look = _Look(self._owns, classes)
             self._state[name] = look.digest(value)
             self._unseen += [f"{name} ({what})" for what in look.unseen]
 
@@ -150,13 +151,14 @@ class _Look:
 
     Args:
         owns: whether classes and functions of a module count, by the module's name.
+        classes: digests of classes that were looked at before, since many names lead to the same ones.
 
     Attributes:
         unseen: types of objects that cannot be looked into.
     """
 
-    def __init__(self, owns: Callable[[str], bool]) -> None:
-        self._owns = owns
+    def __init__(self, owns: Callable[[str], bool], classes: dict[type, str]) -> None:
+        self._owns, self._classes = owns, classes
         self._owned: dict[str, bool] = {}
         self._hash = hashlib.blake2b(digest_size=8)
         self._seen: dict[int, int] = {}
@@ -218,11 +220,17 @@ class _Look:
 
     def _of_class(self, cls: type) -> Iterator[Any]:
         yield f"{cls.__module__}.{cls.__qualname__}"
-        if self._is_owned(cls.__module__):
-            for name, item in list(vars(cls).items()):
-                if name not in _OF_CLASS:
-                    yield item
-                    yield name
+        if not self._is_owned(cls.__module__):
+            return
+        if cls not in self._classes:
+            self._classes[cls] = ""  # it may lead to itself
+            own = {name: item for name, item in vars(cls).items() if name not in _OF_CLASS}
+            look = _Look(self._owns, self._classes)
+            stateful = {name: item for name, item in own.items() if not _is_stateless(item)}
+            rest = [f"{name}={item!r}" for name, item in own.items() if type(item) in _ATOM_TYPES]
+            self._classes[cls] = look.digest([list(own), rest, stateful])
+            self.unseen.update(look.unseen)
+        yield self._classes[cls]
 
     def _of_function(self, function: types.FunctionType) -> Iterator[Any]:
         yield f"{function.__module__}.{function.__qualname__}"
