@@ -10,6 +10,7 @@ from __future__ import annotations
 import gc
 import hashlib
 import io
+import operator
 import os
 import sys
 import types
@@ -42,12 +43,13 @@ _IGNORED = (
 _MACHINERY = (
     "_pytest", "pytest", "pluggy", "logging", "typing", "abc", "_abc", "_thread", "threading", "_weakref",
     "weakref", "importlib", "_frozen_importlib", "ctypes", "_ctypes", "unittest.mock", "warnings", "re",
-    "mutabot.inside", "mutabot.model", "mutabot.operators", "_asyncio", "_contextvars",
+    "__future__", "mutabot.inside", "mutabot.model", "mutabot.operators", "_asyncio", "_contextvars",
 )  # fmt: skip
 #: what Python, and ``unittest`` as it runs, keep in a class
 _OF_CLASS = {
     "__dict__", "__weakref__", "__doc__", "__module__", "__abstractmethods__", "_abc_impl",
-    "tearDown_exceptions", "_class_cleanups", "_classSetupFailed",
+    "tearDown_exceptions", "_class_cleanups", "_classSetupFailed", "__annotations__", "__dataclass_fields__",
+    "__dataclass_params__", "_member_map_", "_value2member_map_", "_member_names_",
 }  # fmt: skip
 #: variables of the environment that pytest itself changes in every test
 _PYTESTS_OWN = "PYTEST_CURRENT_TEST"
@@ -67,6 +69,11 @@ class Leftovers:
     _state: dict[str, str] = field(default_factory=dict)
     _objects: dict[str, Any] = field(default_factory=dict)
     _unseen: list[str] = field(default_factory=list)
+    _sorted: dict[str, Any] = field(default_factory=dict)
+    _ours: dict[str, Any] = field(default_factory=dict)
+    _native: list[str] = field(default_factory=list)
+    _inert: dict[str, Any] = field(default_factory=dict)
+    _classes: dict[type, _Known] = field(default_factory=dict)
 
     def start(self) -> None:
         """Note the state before the first test."""
@@ -87,26 +94,39 @@ class Leftovers:
         return now is not None and now is not before.get(name) and not is_plain(now)
 
     def _look(self) -> None:
+        before = self._state
         self._state = {"the working directory": _folder(), "os.environ": _digest_of_environment()}
         self._objects, self._unseen = {}, []
-        classes: dict[type, str] = {}
+        for known in self._classes.values():
+            known.is_fresh = False
         for name, module in list(sys.modules.items()):
-            file = getattr(module, "__file__", None)
-            if isinstance(file, str) and file.endswith(".py"):
-                if name in self.targets or self.is_project(file):
-                    self._look_at(name, module, classes)
-            elif name in self.targets:
-                self._unseen.append(name)
+            if self._sorted.get(name, self) is not module:  # it is new, or was imported anew
+                self._sort(name, module)
+        for name, module in self._ours.items():
+            self._look_at(name, module, before)
+        self._unseen += self._native
 
-    def _look_at(self, module: str, names: Any, classes: dict[type, str]) -> None:
+    def _sort(self, name: str, module: Any) -> None:
+        """Note whose module it is."""
+        self._sorted[name] = module
+        file = getattr(module, "__file__", None)
+        if not isinstance(file, str) or not file.endswith(".py"):
+            if name in self.targets:
+                self._native.append(name)
+        elif name in self.targets or self.is_project(file):
+            self._ours[name] = module
+
+    def _look_at(self, module: str, names: Any, before: dict[str, str]) -> None:
         for variable, value in _names(names).items():
             name = f"{module}.{variable}"
             self._objects[name] = value
-            if _is_stateless(value):
-                self._state[name] = repr(value)
+            if self._inert.get(name, self) is value and name in before:  # nobody can have changed it
+                self._state[name] = before[name]
                 continue
-            look = _Look(self._owns, classes)
+            look = _Look(self._owns, self._classes)
             self._state[name] = look.digest(value)
+            if not look.is_mutable:
+                self._inert[name] = value
             self._unseen += [f"{name} ({what})" for what in look.unseen]
 
     def _owns(self, module: str) -> bool:
@@ -146,24 +166,43 @@ def _is_stateless(value: Any) -> bool:
     return kind in _ATOM_TYPES or kind is types.ModuleType
 
 
+@dataclass(slots=True)
+class _Known:
+    """What was seen of a class of the project.
+
+    Attributes:
+        parts: its attributes, as they were then.
+        digest: their digest.
+        is_mutable: whether any of them can change without being replaced.
+        is_fresh: whether it was looked at in this look.
+    """
+
+    parts: tuple[Any, ...]
+    digest: str = ""
+    is_mutable: bool = True
+    is_fresh: bool = True
+
+
 class _Look:
     """One walk over all that a module's names lead to.
 
     Args:
         owns: whether classes and functions of a module count, by the module's name.
-        classes: digests of classes that were looked at before, since many names lead to the same ones.
+        classes: classes that were looked at before, since many names lead to the same ones.
 
     Attributes:
         unseen: types of objects that cannot be looked into.
+        is_mutable: whether anything that was met can change without being replaced.
     """
 
-    def __init__(self, owns: Callable[[str], bool], classes: dict[type, str]) -> None:
+    def __init__(self, owns: Callable[[str], bool], classes: dict[type, _Known]) -> None:
         self._owns, self._classes = owns, classes
         self._owned: dict[str, bool] = {}
         self._hash = hashlib.blake2b(digest_size=8)
         self._seen: dict[int, int] = {}
         self._kept: list[Any] = []
         self.unseen: dict[str, None] = {}
+        self.is_mutable = False
 
     def digest(self, top: Any) -> str:
         """The digest of everything that an object leads to."""
@@ -191,13 +230,16 @@ class _Look:
     def _parts(self, value: Any, kind: type) -> Iterator[Any]:
         """What an object consists of."""
         if kind is dict or kind is types.MappingProxyType:
+            self.is_mutable = True
             for key, item in value.items():
                 yield item
                 yield key
         elif kind in _SEQUENCES:
+            self.is_mutable = self.is_mutable or kind is list
             yield len(value)
             yield from value
         elif kind in (set, frozenset):
+            self.is_mutable = self.is_mutable or kind is set
             yield len(value)
             yield from sorted(value, key=lambda item: repr(item) if type(item) in _ATOM_TYPES else "")
         elif isinstance(value, PurePath | Enum):  # they remember what they have been asked
@@ -207,6 +249,7 @@ class _Look:
         elif isinstance(value, types.FunctionType):
             yield from self._of_function(value)
         elif isinstance(value, types.MethodType):
+            self.is_mutable = True
             yield value.__self__
             yield value.__func__.__qualname__
         elif isinstance(value, _IGNORED) or self._is_machinery(kind):
@@ -222,19 +265,29 @@ class _Look:
         yield f"{cls.__module__}.{cls.__qualname__}"
         if not self._is_owned(cls.__module__):
             return
-        if cls not in self._classes:
-            self._classes[cls] = ""  # it may lead to itself
+        self.is_mutable = True
+        parts = tuple(vars(cls).values())
+        known = self._classes.get(cls)
+        is_same = (
+            known is not None
+            and len(parts) == len(known.parts)
+            and all(map(operator.is_, parts, known.parts))
+        )
+        if known is None or not is_same or (known.is_mutable and not known.is_fresh):
+            known = self._classes[cls] = _Known(parts)  # it may lead to itself
             own = {name: item for name, item in vars(cls).items() if name not in _OF_CLASS}
             look = _Look(self._owns, self._classes)
-            stateful = {name: item for name, item in own.items() if not _is_stateless(item)}
             rest = [f"{name}={item!r}" for name, item in own.items() if type(item) in _ATOM_TYPES]
-            self._classes[cls] = look.digest([list(own), rest, stateful])
+            stateful = tuple((name, item) for name, item in own.items() if not _is_stateless(item))
+            known.digest = look.digest((tuple(own), tuple(rest), stateful))
+            known.is_mutable = look.is_mutable
             self.unseen.update(look.unseen)
-        yield self._classes[cls]
+        yield known.digest
 
     def _of_function(self, function: types.FunctionType) -> Iterator[Any]:
         yield f"{function.__module__}.{function.__qualname__}"
-        if self._is_owned(function.__module__ or ""):
+        if self._is_owned(function.__module__ or "") and not _is_stateless(function):
+            self.is_mutable = True
             yield function.__defaults__
             yield function.__kwdefaults__
             yield function.__dict__
@@ -245,6 +298,7 @@ class _Look:
                     yield None
 
     def _of_object(self, value: Any, kind: type) -> Iterator[Any]:
+        self.is_mutable = True
         yield kind
         if hasattr(kind, "__array_interface__") or hasattr(kind, "tobytes"):
             yield from self._of_array(value)
