@@ -19,6 +19,7 @@ from .intercept import resolve
 #: parts reported per probe; a probe is meant to be a handful of numbers
 LIMIT = 200
 _MISSING = object()
+_PLAIN = frozenset({float, int, str, bool, type(None)})
 
 
 class UnreadableError(Exception):
@@ -117,12 +118,24 @@ def _value(found: Any) -> Any:
 
 def needed_arguments(found: Callable[..., Any]) -> list[str]:
     """The arguments that must be given."""
+    if _needs_none(found):
+        return []
     try:
         parameters = inspect.signature(found).parameters.values()
     except (TypeError, ValueError):  # a native function: its call will say
         return []
     variable = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
     return [one.name for one in parameters if one.default is one.empty and one.kind not in variable]
+
+
+def _needs_none(found: Callable[..., Any]) -> bool:
+    """Whether that can be seen at a glance: probes are read often, and signatures are slow."""
+    function = getattr(found, "__func__", found)
+    if type(function) is not FunctionType or hasattr(function, "__wrapped__"):
+        return False
+    given = len(function.__defaults__ or ()) + (function is not found)
+    code = function.__code__
+    return code.co_argcount <= given and code.co_kwonlyargcount <= len(function.__kwdefaults__ or ())
 
 
 def flatten(value: Any, name: str) -> dict[str, Any]:
@@ -136,6 +149,9 @@ def flatten(value: Any, name: str) -> dict[str, Any]:
 
 
 def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
+    if type(value) in _PLAIN:  # the most of them
+        yield name, value
+        return
     if hasattr(value, "tolist"):
         value = value.tolist()
     if is_dataclass(value) and not isinstance(value, type):
