@@ -33,10 +33,10 @@ from pathlib import Path
 from textwrap import dedent
 from typing import Any
 
-from mutabot.campaign.configuration import load_configuration
-from mutabot.campaign.journal import Journal
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.journal.journal import Journal
+from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 ENGINES = ("branch", "replay")
@@ -192,7 +192,7 @@ class Series:
         """Run a campaign in a process of its own, and send it a signal."""
         words = ["-C", str(self.home / project), "run", "--fresh", "-j", str(JOBS), "--engine", engine]
         process = subprocess.Popen(
-            [sys.executable, "-m", "mutabot.cli", *words],
+            [sys.executable, "-m", "mutabot.cli.app", *words],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,

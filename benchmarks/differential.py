@@ -26,11 +26,12 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from mutabot.campaign.configuration import load_configuration
-from mutabot.campaign.journal import Journal
+from mutabot.border.codec import to_data
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
-from mutabot.model import Outcome, to_data
+from mutabot.journal.journal import Journal
+from mutabot.model import Outcome
+from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 ROOT = Path(__file__).resolve().parent.parent

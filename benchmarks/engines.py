@@ -41,15 +41,15 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from mutabot.campaign.baseline import Baseline, take_baseline
-from mutabot.campaign.branching import Remainder, branch
-from mutabot.campaign.configuration import load_configuration
-from mutabot.campaign.plan import make_plan
-from mutabot.campaign.replay import Pair, replay
+from mutabot.campaign.baseline.baseline import Baseline, take_baseline
+from mutabot.campaign.engines.branch import Remainder, branch
+from mutabot.campaign.engines.replay import Pair, replay
+from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import selected
-from mutabot.campaign.workers import Workers
+from mutabot.campaign.workers.workers import Workers
 from mutabot.model import Outcome
+from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -22,12 +22,12 @@ from textwrap import dedent
 
 from mutabot.analysis.chance import Estimate, false_kills, false_survivors
 from mutabot.analysis.results import Results, read_results
-from mutabot.campaign.configuration import load_configuration
-from mutabot.campaign.journal import Journal
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import MutabotError
+from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
+from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 _FILES = {

@@ -129,7 +129,7 @@ def _print(figures: dict[str, Any]) -> None:
 
 
 def _mutabot(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "mutabot.cli", "-C", str(folder), *words]
+    command = [sys.executable, "-m", "mutabot.cli.app", "-C", str(folder), *words]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 

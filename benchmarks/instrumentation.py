@@ -17,8 +17,8 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.classical import find_texts, names
-from mutabot.inside.import_hook import ImportHook
-from mutabot.inside.instrument import compile_text
+from mutabot.inside.text.import_hook import ImportHook
+from mutabot.inside.text.instrument import compile_text
 from mutabot.model import Instrumentation, ProgramText
 
 #: many places per line and nothing else: the worst there is

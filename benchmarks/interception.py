@@ -11,10 +11,10 @@ import tempfile
 import timeit
 from pathlib import Path
 
-from mutabot.inside.locate import Locator
+from mutabot.border.job import Job
+from mutabot.border.lines import Line
+from mutabot.inside.calls.locate import Locator
 from mutabot.inside.session import Session
-from mutabot.model import Job
-from mutabot.model.job import Line
 from mutabot.vocabulary import load
 
 CALLS = 200_000
@@ -28,7 +28,7 @@ arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
 IMPORT = """
 import pytest, time
 start = time.process_time()
-import mutabot.inside.conductor
+import mutabot.inside.suite.conductor
 print((time.process_time() - start) * 1e3)
 """
 

@@ -23,8 +23,8 @@ from textwrap import dedent
 from typing import Any
 
 from mutabot.analysis.results import read_results
-from mutabot.campaign.journal import Journal
-from mutabot.model import to_data
+from mutabot.border.codec import to_data
+from mutabot.journal.journal import Journal
 
 FILES = {
     "mutabot.toml": """
@@ -152,7 +152,7 @@ class Trial:
             str(self.rounds),
         ]
         return subprocess.Popen(
-            [sys.executable, "-m", "mutabot.cli", *words],
+            [sys.executable, "-m", "mutabot.cli.app", *words],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             text=True,

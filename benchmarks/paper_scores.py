@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from mutabot.analysis.results import Results, read_results
-from mutabot.campaign.journal import Journal
+from mutabot.journal.journal import Journal
 from mutabot.model import Verdict
 
 #: killed of 26 per round, from the paper's table; its text says 77 to 81 % of the same runs

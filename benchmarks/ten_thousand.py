@@ -159,7 +159,7 @@ class Campaign:
     def command(self, *words: str) -> list[str]:
         """The command line of the tool in this project."""
         jobs = ["-j", str(self.jobs)] if words[0] != "results" else []
-        return [sys.executable, "-m", "mutabot.cli", "-C", str(self.folder), *words, *jobs]
+        return [sys.executable, "-m", "mutabot.cli.app", "-C", str(self.folder), *words, *jobs]
 
     def timed(self, *words: str) -> float:
         """Seconds of another command in the project."""

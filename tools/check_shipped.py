@@ -22,10 +22,12 @@ from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from typing import Any
 
+from mutabot.border.job import Job
+from mutabot.border.lines import Problem
 from mutabot.inside.pipe import Held
 from mutabot.inside.session import Session
-from mutabot.model import Job, Operation, Problem, Vocabulary
-from mutabot.model.signature import parse_signature, signature_of
+from mutabot.model import Operation, Vocabulary
+from mutabot.model.values.signature import parse_signature, signature_of
 from mutabot.vocabulary import load
 from mutabot.vocabulary.load import shipped
 

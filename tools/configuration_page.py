@@ -10,12 +10,12 @@ from itertools import pairwise
 from textwrap import dedent
 from typing import Any
 
-from mutabot.campaign.configuration import Settings
+from mutabot.settings.configuration import Settings
 
 HEAD = """\
 # Which settings are there?
 
-<!-- Written by tools/make_docs.py from src/mutabot/campaign/configuration.py. Do not edit. -->
+<!-- Written by tools/make_docs.py from src/mutabot/settings/configuration.py. Do not edit. -->
 
 The configuration stands in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml`, there without that
 heading. `mutabot init` proposes one. An unknown key or a wrong value is an error that names the line and the

@@ -13,7 +13,7 @@ from typing import Any
 
 import configuration_page
 from mutabot.model import Quantity
-from mutabot.model.notation import Notation
+from mutabot.model.values.notation import Notation
 from mutabot.operators import Example, Operator, Subject, operator
 from mutabot.operators.registry import BUILT_IN
 
@@ -51,8 +51,8 @@ TAIL = """\
 ## Your own operators
 
 An operator is a class with a name, a summary, examples and three methods. The contract is
-`src/mutabot/operators/operator.py`, the shortest example `src/mutabot/operators/skip.py`. What it needs it
-declares on the class:
+`src/mutabot/operators/operator.py`, the shortest example `src/mutabot/operators/robot/skip.py`. What it needs
+it declares on the class:
 
 | attribute | what it gets or promises |
 |---|---|

@@ -9,7 +9,7 @@ from typing import Any
 
 from analysis import samples
 from mutabot.analysis.results import Results, read_results
-from mutabot.campaign.journal import Journal
+from mutabot.journal.journal import Journal
 from mutabot.model import By, Kill, Mutant, Outcome, Role, Verdict
 
 TESTS = tuple(f"tests/test_mission.py::test_{letter}" for letter in "abc")

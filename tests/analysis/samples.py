@@ -6,7 +6,9 @@ import time
 from pathlib import Path as File
 from typing import Any
 
-from mutabot.campaign.journal import Journal
+from mutabot.border.codec import to_data
+from mutabot.border.lines import TestEnd
+from mutabot.journal.journal import Journal
 from mutabot.model import (
     By,
     Compared,
@@ -21,10 +23,8 @@ from mutabot.model import (
     Role,
     Site,
     Span,
-    TestEnd,
     Verdict,
     Vocabulary,
-    to_data,
 )
 
 PROGRAM = """\

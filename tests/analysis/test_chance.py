@@ -8,7 +8,7 @@ from math import comb
 import pytest
 
 from mutabot.analysis.chance import confirmed_by_chance, false_kills, false_survivors, remaining
-from mutabot.campaign.repeats import Repeats, Stratum
+from mutabot.journal.records import Repeated, Repeats
 
 TAIL = 0.025
 
@@ -27,11 +27,11 @@ def test_the_interval_holds_the_numbers_that_the_sample_does_not_speak_against(
         if sum(probability(k, total, changed, drawn) for k in range(seen + 1)) > TAIL
         and sum(probability(k, total, changed, drawn) for k in range(seen, min(drawn, changed) + 1)) > TAIL
     ]
-    assert remaining(Stratum(total, drawn, seen)) == (min(possible), max(possible))
+    assert remaining(Repeated(total, drawn, seen)) == (min(possible), max(possible))
 
 
 def test_nothing_remains_where_all_were_repeated() -> None:
-    assert remaining(Stratum(20, 20, 3)) == (0, 0)
+    assert remaining(Repeated(20, 20, 3)) == (0, 0)
 
 
 @pytest.mark.parametrize(("chance", "mutants"), [(0.03, 60), (0.1, 60), (0.1, 15)])
@@ -42,8 +42,8 @@ def test_false_kills_that_come_out_twice_are_within_the_interval(chance: float, 
         false = sum(rng.random() < chance for _ in range(mutants))
         twice = sum(rng.random() < chance for _ in range(false))
         repeats = Repeats(
-            Stratum(true_kills + false, true_kills + false, false - twice),
-            survivors=Stratum(mutants - false),
+            Repeated(true_kills + false, true_kills + false, false - twice),
+            survivors=Repeated(mutants - false),
         )
         estimate = false_kills(repeats)
         assert estimate is not None
@@ -52,16 +52,16 @@ def test_false_kills_that_come_out_twice_are_within_the_interval(chance: float, 
 
 
 def test_kinds_of_kills_are_summed_and_those_never_repeated_are_unknown() -> None:
-    estimate = false_kills(Repeats(Stratum(4, 2, 1), Stratum(30), certain=9, survivors=Stratum(20)))
+    estimate = false_kills(Repeats(Repeated(4, 2, 1), Repeated(30), certain=9, survivors=Repeated(20)))
     assert estimate is not None
     assert estimate.expected == pytest.approx(1.0 + 1 / 21)
     assert (estimate.known, estimate.unknown) == (3, 30)
-    assert false_kills(Repeats(Stratum(4), Stratum(30))) is None
-    assert false_survivors(Repeats(survivors=Stratum(20))) is None
+    assert false_kills(Repeats(Repeated(4), Repeated(30))) is None
+    assert false_survivors(Repeats(survivors=Repeated(20))) is None
 
 
 def test_large_campaigns_are_no_trouble() -> None:
-    low, high = remaining(Stratum(100_000, 100, 5))
+    low, high = remaining(Repeated(100_000, 100, 5))
     assert 1_500 < low < 5_000 < high < 12_000
     assert confirmed_by_chance(500, 10_000, 5_000)[0] == pytest.approx(500 * 500 / 5_500)
     assert confirmed_by_chance(0, 50, 20) == (0.0, 0)

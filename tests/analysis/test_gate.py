@@ -9,8 +9,8 @@ import pytest
 from analysis.samples import MUTANTS, OUTCOMES, REVERSE, SKIP, write_journal
 from mutabot.analysis.gate import decide
 from mutabot.analysis.results import Results, find_mutant, read_results
-from mutabot.campaign.journal import Journal
 from mutabot.errors import SelectionError
+from mutabot.journal.journal import Journal
 from mutabot.model import By, Mutant, Outcome, Verdict
 
 

@@ -9,11 +9,11 @@ from pathlib import Path
 from textwrap import dedent
 from typing import Any
 
-from mutabot.campaign.configuration import load_configuration
-from mutabot.campaign.journal import Journal
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
+from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 ROBOT = """

@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from mutabot.model import Verdict
-
-from .project import write_project
-from .test_branching import both_engines
+from tests.campaign.engines.test_branching import both_engines
+from tests.campaign.project import write_project
 
 ROBOT = """
     class Node:

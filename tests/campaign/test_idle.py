@@ -13,8 +13,7 @@ from mutabot.campaign.run import plan_only
 from mutabot.errors import OperatorError
 from mutabot.model import Outcome, Verdict
 from mutabot.operators import registry
-
-from .project import Quiet, request_for, run, write_project
+from tests.campaign.project import Quiet, request_for, run, write_project
 
 #: async programs open a socket pair, which branch leaves to replay
 ENGINES = ["replay", "auto"]

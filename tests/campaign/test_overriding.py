@@ -6,9 +6,8 @@ from pathlib import Path
 
 from mutabot.campaign.run import check
 from mutabot.model import Verdict
-
-from .project import Quiet, request_for, write_project
-from .test_branching import both_engines
+from tests.campaign.engines.test_branching import both_engines
+from tests.campaign.project import Quiet, request_for, write_project
 
 #: as in Gymnasium: what stands around an environment is an environment, and calls no method of its base
 ROBOT = """

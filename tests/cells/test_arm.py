@@ -6,7 +6,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from mutabot.cells import BadArgument, Cell, MotionRefused, Pose, ProtectiveStop, kinova
+from mutabot.cells import BadArgument, Cell, MotionRefused, Pose, ProtectiveStop
+from mutabot.cells.models import kinova
 from mutabot.cells.simulation import TICK
 
 SPEED = np.array([joint.speed for joint in kinova.JOINTS])

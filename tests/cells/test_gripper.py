@@ -5,7 +5,8 @@ from collections.abc import Callable
 
 import pytest
 
-from mutabot.cells import BadArgument, Box, Cell, Scene, robotiq
+from mutabot.cells import BadArgument, Box, Cell, Scene
+from mutabot.cells.models import robotiq
 
 
 def test_fingers_close_at_their_speed() -> None:

@@ -14,7 +14,7 @@ from typing import Any
 
 from mutabot.classical import Example, find_texts, names, refine
 from mutabot.classical.rendering import same_program
-from mutabot.inside.import_hook import ImportHook
+from mutabot.inside.text.import_hook import ImportHook
 from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
 
 

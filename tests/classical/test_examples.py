@@ -8,9 +8,8 @@ from pathlib import Path
 import pytest
 
 from mutabot.classical import Example, names, operator
-from mutabot.inside.instrument import compile_text
-
-from .build import choices, refined, spliced, text_of
+from mutabot.inside.text.instrument import compile_text
+from tests.classical.build import choices, refined, spliced, text_of
 
 CASES = [(name, index) for name in names() for index in range(len(operator(name).examples))]
 

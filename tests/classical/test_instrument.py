@@ -14,13 +14,13 @@ from typing import Any
 
 import pytest
 
+from mutabot.border.codec import from_data, to_data
 from mutabot.classical import find_texts, merge, refine
-from mutabot.inside.alternatives import Alternatives, Bomb, ZeroValue
-from mutabot.inside.import_hook import ImportHook
-from mutabot.inside.instrument import compile_text
-from mutabot.model import Instrumentation, from_data, to_data
-
-from .build import choices, imported, load, spliced, text_of
+from mutabot.inside.text.import_hook import ImportHook
+from mutabot.inside.text.instrument import compile_text
+from mutabot.inside.text.switches import Alternatives, Bomb, ZeroValue
+from mutabot.model import Instrumentation
+from tests.classical.build import choices, imported, load, spliced, text_of
 
 ORDINARY = Path(__file__).with_name("ordinary.py").read_text(encoding="utf-8")
 

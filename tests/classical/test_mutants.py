@@ -9,8 +9,7 @@ import pytest
 from mutabot.classical import find_texts, merge, names, plant, refine
 from mutabot.errors import OperatorError
 from mutabot.model import Choice, Sighting
-
-from .build import choices, text_of
+from tests.classical.build import choices, text_of
 
 SOURCE = """
 HOME = (0.5, -0.2)

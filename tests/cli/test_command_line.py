@@ -16,7 +16,7 @@ import pytest
 import mutabot
 from analysis import samples
 from mutabot.campaign import run as campaign
-from mutabot.cli import main
+from mutabot.cli.app import main
 from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
 
@@ -76,7 +76,7 @@ def test_help_works_in_any_folder_and_names_every_command(
 
 def test_help_imports_nothing_heavy() -> None:
     script = (
-        "import sys; from mutabot.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
+        "import sys; from mutabot.cli.app import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     loaded = set(done.stderr.split())
@@ -354,7 +354,7 @@ def test_show_of_an_unknown_mutant_names_the_nearest(
 def test_results_can_be_piped_in_any_encoding(fake: Campaign, encoding: str) -> None:
     main(["run"])
     done = subprocess.run(
-        [sys.executable, "-m", "mutabot.cli", "results"],
+        [sys.executable, "-m", "mutabot.cli.app", "results"],
         capture_output=True, check=False, env={**os.environ, "PYTHONIOENCODING": encoding, "COLUMNS": "80"},
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
@@ -402,5 +402,5 @@ def test_the_shell_completes_commands_and_names(project: Path) -> None:
 
 def test_help_is_quick() -> None:
     began = time.perf_counter()
-    subprocess.run([sys.executable, "-m", "mutabot.cli", "--help"], capture_output=True, check=True)
+    subprocess.run([sys.executable, "-m", "mutabot.cli.app", "--help"], capture_output=True, check=True)
     assert time.perf_counter() - began < 2.0  # 0.1 s alone; leave room for a busy machine

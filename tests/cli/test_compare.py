@@ -11,7 +11,7 @@ import pytest
 from analysis import campaigns, samples
 from mutabot.campaign import run as campaign
 from mutabot.campaign.request import Request
-from mutabot.cli import main
+from mutabot.cli.app import main
 from mutabot.model import Outcome, Verdict
 
 

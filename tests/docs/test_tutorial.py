@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.cli import main
+from mutabot.cli.app import main
 
 PAGE = Path(__file__).parents[2] / "docs" / "tutorial.md"
 TEXT = PAGE.read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.configuration import load_configuration
+from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "pick_and_place"

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.configuration import load_configuration
-from mutabot.campaign.journal import Journal
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
+from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "scales"

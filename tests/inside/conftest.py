@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from .stage import Make, Stage
+from tests.inside.stage import Make, Stage
 
 
 @pytest.fixture

@@ -15,11 +15,12 @@ from textwrap import dedent
 from types import ModuleType
 from typing import Any
 
-from mutabot.inside.activate import Activation
-from mutabot.inside.locate import Locator
+from mutabot.border.job import Budget, Job
+from mutabot.border.lines import Line, SiteSeen
+from mutabot.inside.calls.activation import Activation
+from mutabot.inside.calls.locate import Locator
 from mutabot.inside.session import Session
-from mutabot.model import Budget, Job, Mutant, Role, Site, SiteSeen, Span, Vocabulary
-from mutabot.model.job import Line
+from mutabot.model import Mutant, Role, Site, Span, Vocabulary
 from mutabot.vocabulary import load
 
 _numbers = count(1)

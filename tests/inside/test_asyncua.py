@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from .stage import Make
+from tests.inside.stage import Make
 
 pytest.importorskip("asyncua")
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from .stage import Make
+from tests.inside.stage import Make
 
 pytest.importorskip("pybullet")
 

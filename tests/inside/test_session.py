@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from mutabot.border.job import Budget
+from mutabot.border.lines import Acted, Problem
 from mutabot.inside.limits import BudgetExceeded
-from mutabot.model import Acted, Budget, Problem
-
-from .stage import Make
+from tests.inside.stage import Make
 
 ROBOT = """
     LOG = []

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mutabot.operators.driving import same
+from mutabot.model.values.quantity import same
 
 
 @pytest.mark.parametrize(

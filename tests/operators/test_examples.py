@@ -7,9 +7,10 @@ from random import Random
 import pytest
 
 from mutabot.model import Call, Reply
+from mutabot.model.values.quantity import same_values
 from mutabot.operators import Example, names, operator
 from mutabot.operators.control import FatalFault
-from mutabot.operators.driving import Passage, rehearse, same_values
+from mutabot.operators.passage import Passage, rehearse
 from mutabot.operators.registry import CONTROLS
 
 CASES = [(name, index) for name in [*names(), *CONTROLS] for index in range(len(operator(name).examples))]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import configuration_page
-from mutabot.campaign.configuration import Settings
+from mutabot.settings.configuration import Settings
 
 PAGE = Path(__file__).parents[2] / "docs" / "configuration.md"
 #: what must be given

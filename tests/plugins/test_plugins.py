@@ -71,12 +71,12 @@ BROKEN = {
     ),
     "has another name": (
         "late",
-        "from mutabot.operators.skip import Skip\nclass Rule(Skip):\n    name = 'early'",
+        "from mutabot.operators.robot.skip import Skip\nclass Rule(Skip):\n    name = 'early'",
         "'early'",
     ),
     ON_USE: (
         "late",
-        "from mutabot.operators.skip import Skip\nclass Rule(Skip):\n    name = 'late'\n"
+        "from mutabot.operators.robot.skip import Skip\nclass Rule(Skip):\n    name = 'late'\n"
         "    def subjects(self, operation, pattern):\n        raise KeyError('frame')",
         "KeyError('frame')",
     ),
@@ -84,7 +84,7 @@ BROKEN = {
 
 #: repeats a call; breaks on a real answer, which the plan's rehearsal does not have
 BREAKS_LATE = """
-from mutabot.operators.repeat import Repeat
+from mutabot.operators.robot.repeat import Repeat
 from mutabot.operators import Subject
 
 class Rule(Repeat):
@@ -145,7 +145,7 @@ def python(path: Path | None, *arguments: str) -> subprocess.CompletedProcess[st
 
 def mutabot(path: Path | None, project: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """Run mutabot's command line on a project."""
-    code = "import sys; from mutabot.cli import main; sys.exit(main())"
+    code = "import sys; from mutabot.cli.app import main; sys.exit(main())"
     return python(path, "-c", code, "-C", str(project), *arguments)
 
 

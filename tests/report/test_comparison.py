@@ -22,10 +22,10 @@ from mutabot.errors import UsageError
 from mutabot.report import as_png
 from mutabot.report.as_json import dumps
 from mutabot.report.comparison_json import comparison_data
-from mutabot.report.console import make_console
 from mutabot.report.picture import _COLOURS, Bar, Box, bars_of, draw, svg
 from mutabot.report.picture_file import check_picture, write_picture
-from mutabot.report.side_by_side import duration, print_comparison, share_cell
+from mutabot.report.terminal.console import make_console
+from mutabot.report.terminal.side_by_side import duration, print_comparison, share_cell
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "compare.md"
 WIDTHS = pytest.mark.parametrize("width", [60, 80, 120, 200])

@@ -12,10 +12,10 @@ import pytest
 
 from analysis import samples
 from mutabot.analysis.results import read_results
-from mutabot.campaign.journal import Journal
+from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict
 from mutabot.report.as_json import dumps, results_data
-from mutabot.report.listing import plan_data
+from mutabot.report.terminal.listing import plan_data
 
 SECOND_LOOK: dict[str, Any] = {
     "verification": {

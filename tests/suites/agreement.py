@@ -13,13 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.analysis.results import read_results
-from mutabot.campaign.configuration import load_configuration
-from mutabot.campaign.journal import Journal
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import plan_only, run_campaign
 from mutabot.errors import MutabotError
 from mutabot.inside.seeds import derive
+from mutabot.journal.journal import Journal
 from mutabot.report.as_json import mutant_data, results_data
+from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 from .editor import Facts

@@ -10,9 +10,10 @@ from typing import Any
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mutabot.campaign.configuration import Settings, load_configuration
+from mutabot.border.codec import from_data, to_data
 from mutabot.errors import ConfigurationError
-from mutabot.model import Vocabulary, from_data, to_data
+from mutabot.model import Vocabulary
+from mutabot.settings.configuration import Settings, load_configuration
 from mutabot.vocabulary import load
 
 COMMON = settings(

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.configuration import load_configuration
+from mutabot.border.lines import Problem
 from mutabot.errors import ConfigurationError, UnknownNameError, VocabularyError
-from mutabot.model import Problem
+from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load, problem_error
 
 MOVE = 'call = "robot:Arm.move"\n'

@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 
 from mutabot import vocabulary as package
-from mutabot.model import Clock, Kind, Mode, Operation, Probe, Quantity, Vocabulary, from_data, to_data
-from mutabot.model.answer import restore
+from mutabot.border.codec import from_data, to_data
+from mutabot.model import Clock, Kind, Mode, Operation, Probe, Quantity, Vocabulary
+from mutabot.model.values.answer import restore
 from mutabot.vocabulary import load
 from mutabot.vocabulary.load import shipped
 

@@ -15,7 +15,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mutabot.campaign.repeats import Repeats, Stratum
+from mutabot.journal.records import Repeated, Repeats
 
 from .statistics import LEVEL
 
@@ -58,7 +58,7 @@ def false_survivors(repeats: Repeats, level: float = LEVEL) -> Estimate | None:
     return _together((repeats.survivors,), level)
 
 
-def _together(strata: tuple[Stratum, ...], level: float) -> Estimate | None:
+def _together(strata: tuple[Repeated, ...], level: float) -> Estimate | None:
     """The sum over kinds of outcomes. The ends are summed too, which makes the interval rather too wide."""
     looked = [one for one in strata if one.repeated]
     if not looked:
@@ -74,7 +74,7 @@ def _together(strata: tuple[Stratum, ...], level: float) -> Estimate | None:
     )
 
 
-def remaining(stratum: Stratum, level: float = LEVEL) -> tuple[int, int]:
+def remaining(stratum: Repeated, level: float = LEVEL) -> tuple[int, int]:
     """The interval of how many of the outcomes that were not repeated would change.
 
     Exact, as Clopper and Pearson's, but for a random sample without replacement: the numbers for which

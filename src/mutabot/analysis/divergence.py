@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from mutabot.campaign.comparison import value_text
 from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
-from mutabot.model.quantity import READ, told_apart
+from mutabot.model.values.quantity import READ, told_apart, value_text
 
 
 def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | None:

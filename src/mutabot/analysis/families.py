@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from mutabot.campaign.sampling import Drawing
+from mutabot.journal.records import Drawing
 from mutabot.model import Outcome, Role
 
 from .ends import End, Properties, end_of, properties_of

@@ -6,14 +6,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.campaign.journal import BaselineTest, ControlEnd, Journal
-from mutabot.campaign.lock import is_written
-from mutabot.campaign.repeats import REPEATS, Repeats
-from mutabot.campaign.sampling import DRAWING, Drawing
-from mutabot.campaign.selection import fits
-from mutabot.campaign.verify import CONFIRMATION, FLAKY, VERIFICATION, Flaky, Verification
+from mutabot.border.codec import from_data
 from mutabot.errors import SelectionError, unknown_name_text
-from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict, from_data
+from mutabot.journal.journal import Journal
+from mutabot.journal.lock import is_written
+from mutabot.journal.records import (
+    CONFIRMATION,
+    DRAWING,
+    FLAKY,
+    REPEATS,
+    VERIFICATION,
+    BaselineTest,
+    ControlEnd,
+    Drawing,
+    Flaky,
+    Repeats,
+    Verification,
+)
+from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
+from mutabot.model.selector import fits
 
 from .divergence import explain, is_indistinguishable, quantity_of, rank
 from .score import Group, KillRate, RoundScores, groups_of

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from statistics import fmean
 
-from mutabot.campaign.sampling import Drawing
+from mutabot.journal.records import Drawing
 from mutabot.model import By, Mutant, Outcome, Verdict
 
 from .statistics import Interval, crossed, sampled, wilson

@@ -19,8 +19,8 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
-from mutabot.campaign.verify import without_accidents
 from mutabot.model import Outcome
+from mutabot.model.outcome import without_accidents
 
 from .ends import noticing_tests
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
-from mutabot.model import Job, Vocabulary
-
-from .configuration import Configuration
-from .sampling import Sample
+from mutabot.border.job import Job
+from mutabot.model import Vocabulary
+from mutabot.settings.configuration import Configuration
+from mutabot.settings.sample import Sample
 
 #: mutabot's folder in a project, and its journals: of `run`, of `compare`, and of that without an oracle
 HOME = ".mutabot"

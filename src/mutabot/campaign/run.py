@@ -13,31 +13,34 @@ from pathlib import Path
 from typing import Any
 
 from mutabot import __version__
+from mutabot.border.codec import to_data
+from mutabot.campaign.baseline.baseline import Baseline, take_baseline
+from mutabot.campaign.baseline.program_text import family_of
+from mutabot.campaign.baseline.ranges import note_ranges
+from mutabot.campaign.baseline.unfit import refuse_unfit
+from mutabot.campaign.engines.branch import Remainder
+from mutabot.campaign.engines.engine import engine_of, repetitions_for, run_mutants, try_controls
+from mutabot.campaign.engines.repeats import look_again
+from mutabot.campaign.engines.second_look import refuse_flaky
+from mutabot.campaign.plan.earlier import carry, note_outdated
+from mutabot.campaign.plan.plan import Plan, make_plan
+from mutabot.campaign.plan.sampling import draw
+from mutabot.campaign.plan.second_order import pairs
+from mutabot.campaign.plan.selection import numbered, select
+from mutabot.campaign.reuse.keys import Dependencies
+from mutabot.campaign.reuse.opened import Watch
+from mutabot.campaign.reuse.reuse import reuse
+from mutabot.campaign.reuse.snapshot import Snapshot
+from mutabot.campaign.workers.interruption import interruptions_kept
+from mutabot.campaign.workers.workers import Result, Workers
 from mutabot.errors import JournalError, NothingToDoError
-from mutabot.model import LeftOut, Mutant, Vocabulary, to_data
+from mutabot.journal.journal import Journal
+from mutabot.journal.lock import at_work
+from mutabot.journal.records import DRAWING
+from mutabot.model import LeftOut, Mutant, Vocabulary
 from mutabot.vocabulary.load import shipped
 
-from .baseline import Baseline, take_baseline
-from .branching import Remainder
-from .dependencies import Dependencies, Snapshot
-from .earlier import carry, note_outdated
-from .engine import engine_of, repetitions_for, run_mutants, try_controls
-from .interruption import interruptions_kept
-from .journal import Journal
-from .lock import at_work
-from .opened import Watch
-from .pairs import pairs
-from .plan import Plan, make_plan
-from .program_text import family_of
-from .ranges import note_ranges
-from .repeats import look_again
 from .request import CheckReport, Progress, Request
-from .reuse import reuse
-from .sampling import DRAWING, draw
-from .selection import numbered, select
-from .unfit import refuse_unfit
-from .verify import refuse_flaky
-from .workers import Result, Workers
 
 #: what else decides how a campaign ends, beside the user's own files
 _VERSIONS = ("pytest", "wrapt", "mujoco", "mink", "ruckig", "numpy", "pytest-bdd")

@@ -9,13 +9,14 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from . import kinova
+from mutabot.cells.models import kinova
+from mutabot.cells.models.model import PHYSICS_STEP
+from mutabot.cells.motion.kinematics import Kinematics, Line
+from mutabot.cells.motion.trajectory import Motion, joint_motion, line_motion
+
 from .errors import BadArgument, MotionRefused, ProtectiveStop
 from .geometry import Array, Pose, pose_of, rotation_from_euler
-from .kinematics import Kinematics, Line
-from .model import PHYSICS_STEP
 from .simulation import STEPS_PER_TICK, Simulation
-from .trajectory import Motion, joint_motion, line_motion
 
 EXTERNAL_TORQUE_LIMIT = (20.0, 20.0, 20.0, 20.0, 6.0, 6.0, 6.0)
 """External torque on a joint that stops the arm when it lasts two ticks, Nm."""

@@ -8,13 +8,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from types import TracebackType
 
+from mutabot.cells.models.noise import Noise
+from mutabot.cells.models.robotiq import STROKE
+
 from .arm import Arm
 from .errors import BadArgument
 from .geometry import Pose, Position
 from .gripper import Gripper
 from .monitors import Condition, Monitors, Values
-from .noise import Noise
-from .robotiq import STROKE
 from .scene import Box, Scene
 from .sensors import Sensors, true_box_position, true_box_tilt, true_tool_pose, true_tool_position
 from .simulation import Simulation

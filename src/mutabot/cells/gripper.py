@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 
-from . import robotiq
+from mutabot.cells.models import robotiq
+from mutabot.cells.models.noise import Noise
+
 from .errors import BadArgument
-from .noise import Noise
 from .simulation import TICK, Simulation
 
 _BLOCKED = 0.003

@@ -7,10 +7,11 @@ import math
 import mujoco
 import numpy as np
 
-from . import kinova
+from mutabot.cells.models import kinova
+from mutabot.cells.models.noise import Noise
+
 from .errors import SensorError
 from .geometry import Pose, Position, pose_of
-from .noise import Noise
 from .scene import BASE_POSITION, Box
 from .simulation import Simulation
 

@@ -9,7 +9,8 @@ from typing import Literal
 import mujoco
 import numpy as np
 
-from . import kinova, model
+from mutabot.cells.models import kinova, model
+
 from .errors import SimulationDiverged
 from .geometry import Array
 from .scene import Scene

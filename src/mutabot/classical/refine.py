@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+from mutabot.classical.operators.variable import VariableReplacement
 from mutabot.model.alternative import Alternative, ProgramText, Sighting, TextPlace
 
 from .mutants import LeftOutText
-from .variable import VariableReplacement
 
 #: kinds of values that fit what an alternative needs
 FITTING: Mapping[str, frozenset[str]] = {

@@ -4,21 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from mutabot.classical.operators.absolute import Absolute
+from mutabot.classical.operators.arithmetic import ArithmeticReplacement
+from mutabot.classical.operators.assignment import AssignmentReplacement
+from mutabot.classical.operators.bomb import Bomb
+from mutabot.classical.operators.characters import (
+    DoubleCharacter,
+    DropCharacter,
+    ReplaceCharacter,
+    SwapCharacters,
+)
+from mutabot.classical.operators.conditional import ConditionalReplacement
+from mutabot.classical.operators.logical import LogicalReplacement
+from mutabot.classical.operators.relational import RelationalReplacement
+from mutabot.classical.operators.shift import ShiftReplacement
+from mutabot.classical.operators.unary_deletion import UnaryDeletion
+from mutabot.classical.operators.unary_insertion import UnaryInsertion
+from mutabot.classical.operators.variable import VariableReplacement
 from mutabot.errors import OperatorError, unknown_name_text
 
-from .absolute import Absolute
-from .arithmetic import ArithmeticReplacement
-from .assignment import AssignmentReplacement
-from .bomb import Bomb
-from .characters import DoubleCharacter, DropCharacter, ReplaceCharacter, SwapCharacters
-from .conditional import ConditionalReplacement
-from .logical import LogicalReplacement
 from .operator import ClassicalOperator
-from .relational import RelationalReplacement
-from .shift import ShiftReplacement
-from .unary_deletion import UnaryDeletion
-from .unary_insertion import UnaryInsertion
-from .variable import VariableReplacement
 
 #: all operators, in the order of the documentation and of the alternatives at a place
 ALL: tuple[ClassicalOperator, ...] = (

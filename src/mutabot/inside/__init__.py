@@ -1,4 +1,12 @@
 """What lives beside the robot program, in its process.
 
-It imports the standard library, wrapt, ``mutabot.model`` and ``mutabot.operators``, and nothing else.
+It imports the standard library, wrapt, pytest, and of mutabot only ``model``, ``border`` and ``operators``.
+Its rooms: ``suite`` makes pytest run a job, ``calls`` and ``text`` are a mutant's two ways into the program,
+``readings`` looks at the world, ``footprint`` at what tests share, ``fork`` makes branches and copies, and
+``watching`` is for ``mutabot init``.
 """
+
+import os
+
+#: where all of it lies: frames in these files are ours
+FOLDER = os.path.dirname(os.path.realpath(__file__))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from .intercept import resolve
-from .probes import is_bound, needed_arguments
+from mutabot.inside.calls.intercept import resolve
+from mutabot.inside.readings.probes import is_bound, needed_arguments
 
 
 def why_not_asked(reading: str, asker: type | None) -> str | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import resource
 from dataclasses import dataclass
 
-from mutabot.model import Budget
+from mutabot.border.job import Budget
 
 
 class BudgetExceeded(BaseException):  # it is no error of the program's

@@ -7,7 +7,7 @@ import json
 import os
 from typing import Any
 
-from mutabot.model.job import Line, line_to_data
+from mutabot.border.lines import Line, line_to_data
 
 
 class Pipe:

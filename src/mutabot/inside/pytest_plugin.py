@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from mutabot.model.job import JOB_VARIABLE, PIPE_VARIABLE
+from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE
+from mutabot.inside.suite.any_scope import offer_at_every_scope
 from mutabot.model.seed import ROUND_VARIABLE, SEED_VARIABLE
 
-from .any_scope import offer_at_every_scope
-
 if TYPE_CHECKING:
-    from .conductor import Conductor
-    from .plain_round import PlainRound
+    from mutabot.inside.suite.conductor import Conductor
+    from mutabot.inside.suite.plain_round import PlainRound
 
 _conductor: Conductor | None = None
 _plain_round: PlainRound | None = None
@@ -29,7 +28,7 @@ def pytest_addoption(pluginmanager: pytest.PytestPluginManager) -> None:
     from .unrewritten import import_us_unrewritten  # noqa: PLC0415  # a sleeping plugin costs nothing
 
     import_us_unrewritten()
-    from .switched_off import switch_off  # noqa: PLC0415
+    from mutabot.inside.suite.switched_off import switch_off  # noqa: PLC0415
 
     switch_off(pluginmanager)
 
@@ -41,11 +40,11 @@ def pytest_load_initial_conftests() -> Generator[None, Any, Any]:
     if JOB_VARIABLE in os.environ and _conductor is None:
         # tests that start pytest themselves must not find the job again
         job, pipe = os.environ.pop(JOB_VARIABLE), os.environ.pop(PIPE_VARIABLE)
-        from .conductor import Conductor  # noqa: PLC0415  # a sleeping plugin costs nothing
+        from mutabot.inside.suite.conductor import Conductor  # noqa: PLC0415  # a sleeping plugin costs nothing
 
         _conductor = Conductor.from_files(job, int(pipe))
     elif _conductor is None and os.environ.get(ROUND_VARIABLE):
-        from .plain_round import PlainRound  # noqa: PLC0415  # see above
+        from mutabot.inside.suite.plain_round import PlainRound  # noqa: PLC0415  # see above
 
         _plain_round = PlainRound.from_environment()
     try:

@@ -13,43 +13,30 @@ from functools import partial
 from types import FrameType
 from typing import Any
 
+from mutabot.border.job import Budget, Job
+from mutabot.border.lines import Acted, CalledAtImport, MutatedCall, Problem, Remark, SiteSeen
 from mutabot.errors import PathError
-from mutabot.model import (
-    Acted,
-    Budget,
-    Call,
-    CalledAtImport,
-    Job,
-    Mutant,
-    MutatedCall,
-    Operation,
-    Probe,
-    Problem,
-    Remark,
-    Reply,
-    Role,
-    SiteSeen,
-    Span,
-)
+from mutabot.inside.calls.activation import Activation
+from mutabot.inside.calls.answers import Answers, Returned, handles_of
+from mutabot.inside.calls.door import Door, here
+from mutabot.inside.calls.intercept import Handler, Interception, NotFoundError, resolve
+from mutabot.inside.calls.overrides import Watch
+from mutabot.inside.calls.parameters import look_at
+from mutabot.inside.calls.trace import Recorder
+from mutabot.inside.fork.trunk import Trunk
+from mutabot.inside.readings.along import Along, Rehearsal, rehearse
+from mutabot.inside.readings.clock import ClockReader
+from mutabot.inside.readings.instances import Instances
+from mutabot.inside.readings.probes import Reading, take
+from mutabot.inside.text.program_text import Texts
+from mutabot.inside.text.returns import Returns
+from mutabot.model import Call, Mutant, Operation, Probe, Reply, Role, Span
 
-from .activate import Activation, Evidence, together
-from .along import Along, Rehearsal, rehearse
-from .answers import Answers, Returned, handles_of
-from .branch import Trunk
-from .clock import ClockReader
-from .door import Door, here
+from .evidence import Evidence, together
 from .inspection import why_not_asked
-from .instances import Instances
-from .intercept import Handler, Interception, NotFoundError, resolve
 from .limits import Meter
-from .overrides import Watch
-from .parameters import look_at
 from .pipe import Held, Pipe
-from .probes import Reading, take
-from .record import Recorder
-from .returns import Returns
 from .seeds import derive
-from .texts import Texts
 
 #: whether an operation is already under way here: only the outermost is a site
 _under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import faulthandler
 import os
 
-from mutabot.model import stack
+from mutabot.border import stack
 
 
 def say_where_on_signal(home: str) -> None:

@@ -10,7 +10,7 @@ from time import monotonic  # before a simulation takes over the clock
 
 import pytest
 
-from mutabot.model import Watched
+from mutabot.border.lines import Watched
 
 
 @contextmanager

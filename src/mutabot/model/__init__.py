@@ -1,5 +1,10 @@
 """Plain data: what mutabot talks about, without any input or output."""
 
+from mutabot.model.values.path import Path as Path
+from mutabot.model.values.quantity import Kind as Kind
+from mutabot.model.values.quantity import Mode as Mode
+from mutabot.model.values.quantity import Quantity as Quantity
+
 from .alternative import FATAL as FATAL
 from .alternative import IDENTITY as IDENTITY
 from .alternative import Alternative as Alternative
@@ -12,34 +17,6 @@ from .call import Call as Call
 from .call import Middleware as Middleware
 from .call import Proceed as Proceed
 from .call import Reply as Reply
-from .codec import from_data as from_data
-from .codec import to_data as to_data
-from .footprint import Footprint as Footprint
-from .footprint import SharedFixture as SharedFixture
-from .job import Acted as Acted
-from .job import BranchDied as BranchDied
-from .job import BranchEnd as BranchEnd
-from .job import Branching as Branching
-from .job import Budget as Budget
-from .job import CalledAtImport as CalledAtImport
-from .job import Copied as Copied
-from .job import CopyEnded as CopyEnded
-from .job import Job as Job
-from .job import MutatedCall as MutatedCall
-from .job import NotInstrumented as NotInstrumented
-from .job import PlacesReached as PlacesReached
-from .job import Problem as Problem
-from .job import Remark as Remark
-from .job import Serving as Serving
-from .job import SessionEnd as SessionEnd
-from .job import SiteSeen as SiteSeen
-from .job import TestEnd as TestEnd
-from .job import TestStart as TestStart
-from .job import TextsSeen as TextsSeen
-from .job import TokensHeld as TokensHeld
-from .job import Unbranched as Unbranched
-from .job import Undiverged as Undiverged
-from .job import Watched as Watched
 from .mutant import Mutant as Mutant
 from .operation import Case as Case
 from .operation import Clock as Clock
@@ -51,10 +28,6 @@ from .outcome import Compared as Compared
 from .outcome import Kill as Kill
 from .outcome import LeftOut as LeftOut
 from .outcome import Outcome as Outcome
-from .path import Path as Path
-from .quantity import Kind as Kind
-from .quantity import Mode as Mode
-from .quantity import Quantity as Quantity
 from .site import Role as Role
 from .site import Site as Site
 from .site import Span as Span

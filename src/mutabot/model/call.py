@@ -6,8 +6,9 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from mutabot.model.values.quantity import Quantity, Value
+
 from .operation import Operation, Pattern
-from .quantity import Quantity, Value
 
 
 async def _unknown(quantity: Quantity) -> float:

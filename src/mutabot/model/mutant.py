@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from .notation import Notation
+from mutabot.model.values.notation import Notation
+
 from .site import Site
 
 

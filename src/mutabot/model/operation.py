@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from .notation import Notation
-from .path import Path
-from .quantity import Quantity
+from mutabot.model.values.notation import Notation
+from mutabot.model.values.path import Path
+from mutabot.model.values.quantity import Quantity
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -156,3 +157,41 @@ class LeftOut:
     id: str
     description: str
     reason: str
+
+
+#: parts of a message that differ between equal runs in different processes: addresses, temporary folders,
+#: and the last words of a process that died, which only a process of its own can have
+_ACCIDENTAL = (
+    (re.compile(r"0x[0-9a-fA-F]{6,}"), "0x…"),
+    (re.compile(r"pytest-\d+"), "pytest-…"),
+    (re.compile(r"; it said last: .*", re.DOTALL), ""),
+)
+
+
+def same_end(first: Outcome, second: Outcome) -> bool:
+    """Whether two outcomes are the same in verdict, in what noticed it, in the test and in the message."""
+    return _end(first) == _end(second)
+
+
+def in_words(outcome: Outcome) -> str:
+    """How a mutant ended: ``killed by check in tests/test_box.py::test_arrives: assert 1 == 2``."""
+    lines = (outcome.message or "").strip().splitlines()
+    return f"{end_in_words(outcome)}{f': {lines[0]}' if lines else ''}"
+
+
+def end_in_words(outcome: Outcome) -> str:
+    """The same without the message."""
+    by = f" by {outcome.by}" if outcome.by is not None else ""
+    test = f" in {outcome.test}" if outcome.test is not None else ""
+    return f"{outcome.verdict}{by}{test}"
+
+
+def without_accidents(message: str | None) -> str | None:
+    """A message without what differs between equal runs in different processes."""
+    for pattern, text in _ACCIDENTAL if message is not None else ():
+        message = pattern.sub(text, message or "")
+    return message
+
+
+def _end(outcome: Outcome) -> tuple[Any, ...]:
+    return outcome.verdict, outcome.by, outcome.test, without_accidents(outcome.message)

@@ -7,7 +7,7 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
-from mutabot.model.quantity import Value
+from mutabot.model.values.quantity import Value
 
 from .operator import Example, Operator, Subject
 

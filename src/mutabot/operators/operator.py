@@ -16,7 +16,7 @@ from random import Random
 from typing import Any, ClassVar
 
 from mutabot.model import Middleware, Operation, Pattern, Quantity
-from mutabot.model.quantity import Value
+from mutabot.model.values.quantity import Value
 
 
 @dataclass(frozen=True, slots=True)

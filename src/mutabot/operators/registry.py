@@ -19,14 +19,14 @@ ENTRY_POINT = "mutabot.operators"
 
 #: name -> (module, class); the order is that of the documentation
 BUILT_IN: dict[str, tuple[str, str]] = {
-    "reverse": ("reverse", "Reverse"),
-    "by-to": ("by_to", "ByTo"),
-    "skip": ("skip", "Skip"),
-    "repeat": ("repeat", "Repeat"),
-    "opposite": ("opposite", "Opposite"),
-    "negate": ("negate", "Negate"),
-    "noise": ("noise", "Noise"),
-    "misread": ("misread", "Misread"),
+    "reverse": ("robot.reverse", "Reverse"),
+    "by-to": ("robot.by_to", "ByTo"),
+    "skip": ("robot.skip", "Skip"),
+    "repeat": ("robot.repeat", "Repeat"),
+    "opposite": ("robot.opposite", "Opposite"),
+    "negate": ("robot.negate", "Negate"),
+    "noise": ("robot.noise", "Noise"),
+    "misread": ("robot.misread", "Misread"),
 }
 CONTROLS: dict[str, tuple[str, str]] = {
     "identity": ("control", "Identity"),

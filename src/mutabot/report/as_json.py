@@ -11,10 +11,20 @@ from mutabot.analysis.chance import Estimate, false_kills, false_survivors
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import KillRate, RoundScores, Score
 from mutabot.analysis.statistics import Interval
-from mutabot.campaign.repeats import REPEATS, Repeats, Stratum
-from mutabot.campaign.sampling import DRAWING, Drawing
-from mutabot.campaign.verify import CONFIRMATION, FLAKY, VERIFICATION, Replayed, Verification
-from mutabot.model import Mutant, Outcome, Quantity, Verdict, to_data
+from mutabot.border.codec import to_data
+from mutabot.journal.records import (
+    CONFIRMATION,
+    DRAWING,
+    FLAKY,
+    REPEATS,
+    VERIFICATION,
+    Drawing,
+    Repeated,
+    Repeats,
+    Replayed,
+    Verification,
+)
+from mutabot.model import Mutant, Outcome, Quantity, Verdict
 
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
@@ -196,7 +206,7 @@ def repeats_data(repeats: Repeats) -> dict[str, Any]:
     }
 
 
-def _stratum(stratum: Stratum) -> dict[str, int]:
+def _stratum(stratum: Repeated) -> dict[str, int]:
     return {"outcomes": stratum.outcomes, "repeated": stratum.repeated, "changed": stratum.changed}
 
 

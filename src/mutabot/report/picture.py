@@ -12,8 +12,7 @@ from html import escape
 
 from mutabot.analysis.ends import End
 from mutabot.analysis.families import Family
-
-from .console import plural
+from mutabot.report.terminal.console import plural
 
 #: stands in every picture file, so that a campaign does not take one for data of the robot program
 MARK = "written by mutabot compare"

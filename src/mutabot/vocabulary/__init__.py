@@ -1,4 +1,5 @@
 """Vocabularies: the meaning of a robot API, read from TOML and checked."""
 
-from .explain import problem_error as problem_error
+from mutabot.settings.mistakes import problem_error as problem_error
+
 from .load import load as load

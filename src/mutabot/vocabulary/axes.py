@@ -6,7 +6,7 @@ import re
 from dataclasses import replace
 
 from mutabot.model import Path
-from mutabot.model.path import Step
+from mutabot.model.values.path import Step
 
 #: every axis a quantity may have
 AXES = ("x", "y", "z", *(f"j{number}" for number in range(1, 13)))

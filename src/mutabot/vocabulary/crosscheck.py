@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from mutabot.model import Operation, Quantity
-from mutabot.model.quantity import READING_OF, is_reading_of
-
-from .explain import Check
-from .lines import Place
+from mutabot.model.values.quantity import READING_OF, is_reading_of
+from mutabot.settings.mistakes import Check
+from mutabot.settings.toml_lines import Place
 
 #: an operation with the document and place it was read from
 Read = tuple[Operation, Check, Place]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from .explain import Check, shown
-from .lines import Place
+from mutabot.settings.mistakes import Check, shown
+from mutabot.settings.toml_lines import Place
+
 from .targets import target_fault
 
 

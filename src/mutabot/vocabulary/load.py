@@ -8,11 +8,11 @@ from pathlib import Path
 
 from mutabot.errors import ConfigurationError, UnknownNameError
 from mutabot.model import Clock, Operation, Probe, Vocabulary
+from mutabot.settings.document import Document
+from mutabot.settings.mistakes import Check, raise_errors
+from mutabot.settings.toml_lines import Place
 
 from .crosscheck import Read, check_operations
-from .document import Document
-from .explain import Check, raise_errors
-from .lines import Place
 from .operations import check_targets, read_clock, read_operation, read_probe
 from .schema import VocabularyTable
 

@@ -12,9 +12,8 @@ from itertools import product
 from typing import Any
 
 from mutabot.model import Case, Mode, Path, Quantity
-
-from .explain import Check, shown
-from .lines import Place
+from mutabot.settings.mistakes import Check, shown
+from mutabot.settings.toml_lines import Place
 
 _FORM = 'such as mode = { argument = "relative", true = "by", false = "to" }'
 

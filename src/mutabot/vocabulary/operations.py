@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from mutabot.model import Clock, Operation, Path, Pattern, Probe, Quantity
-from mutabot.model.signature import parse_signature
-from mutabot.model.units import UNITS, Dimension, dimension_of
+from mutabot.model.values.signature import parse_signature
+from mutabot.model.values.units import UNITS, Dimension, dimension_of
+from mutabot.settings.mistakes import Check
+from mutabot.settings.toml_lines import Place
 
-from .explain import Check
 from .idle import read_idle
-from .lines import Place
 from .modes import Undecided, cases_of, name_of
 from .patterns import read_patterns
 from .quantities import read_arguments, read_result

@@ -8,11 +8,11 @@ from typing import Any
 
 from mutabot.errors import nearest_name
 from mutabot.model import Path, Pattern, Quantity
-from mutabot.model.notation import Field, Notation
+from mutabot.model.values.notation import Field, Notation
+from mutabot.settings.mistakes import Check
+from mutabot.settings.toml_lines import Place
 
-from .explain import Check
 from .idle import read_idle
-from .lines import Place
 from .modes import cases_of, name_of
 from .quantities import read_arguments, read_quantity, read_result
 from .schema import PatternTable, QuantityTable

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mutabot.model import Path, Quantity
+from mutabot.settings.mistakes import Check, shown
+from mutabot.settings.toml_lines import Place
 
 from .axes import slice_of, split_axes, spread
-from .explain import Check, shown
-from .lines import Place
 from .modes import Decision, Undecided, read_decision
 from .rules import default_unit, default_values, faults
 from .schema import QuantityTable

@@ -8,12 +8,12 @@ from typing import Any
 
 from mutabot.errors import nearest_name
 from mutabot.model import Kind
-from mutabot.model.quantity import DIMENSIONS, MEASURED, READ, WHOLE, WRITTEN
-from mutabot.model.rotation import QUATERNION_ORDERS, is_euler_order
-from mutabot.model.units import UNITS, dimension_of
+from mutabot.model.values.quantity import DIMENSIONS, MEASURED, READ, WHOLE, WRITTEN
+from mutabot.model.values.rotation import QUATERNION_ORDERS, is_euler_order
+from mutabot.model.values.units import UNITS, dimension_of
+from mutabot.settings.mistakes import shown
 
 from .axes import AXES, split_axes
-from .explain import shown
 from .schema import QuantityTable
 
 _MOVED = (Kind.TRANSLATION, Kind.ROTATION)

@@ -1,0 +1,1 @@
+"""What crosses the process border: a job description in, report lines out."""

@@ -1,0 +1,106 @@
+"""What crosses the process border: a job description in, report lines out.
+
+The controller writes one ``Job`` as JSON; the process that runs the robot program answers with lines of
+JSON, each one of the report classes below.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from mutabot.model.alternative import Choice, Instrumentation
+from mutabot.model.mutant import Mutant
+from mutabot.model.operation import Vocabulary
+
+#: environment variable that names the job file; the plugin sleeps without it
+JOB_VARIABLE = "MUTABOT_JOB"
+#: environment variable with the number of the pipe's writing end
+PIPE_VARIABLE = "MUTABOT_PIPE"
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """What one test may use before it counts as timed out.
+
+    Attributes:
+        operations: intercepted calls; None for no limit.
+        simulated: simulated seconds; None for no limit.
+    """
+
+    operations: int | None = None
+    simulated: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Branching:
+    """How a trunk branches: which mutants, with how many processes, for how long.
+
+    Attributes:
+        mutants: the mutants that are alive in this round.
+        tests: per mutant id, the tests in which it is to be branched, in the order of the job's tests.
+        tokens: descriptors of the token pool: reading end, writing end.
+        walls: wall-clock seconds that a branch may take, by test.
+        wall: the same for tests that are missing there.
+        at_start: whether to fork when a test begins instead of at the site: nothing but the imports is
+            shared then. Only of use to measure what sharing is worth.
+        choices: for mutants of the program text, by id: the alternatives that they are.
+        every_test: whether to branch a mutant also in tests after one that decided about it.
+    """
+
+    mutants: tuple[Mutant, ...]
+    tests: Mapping[str, tuple[str, ...]]
+    tokens: tuple[int, int]
+    walls: Mapping[str, float] = field(default_factory=dict)
+    wall: float = 600.0
+    at_start: bool = False
+    choices: Mapping[str, tuple[Choice, ...]] = field(default_factory=dict)
+    every_test: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """One session inside: which tests to run, as which mutant.
+
+    Attributes:
+        root: absolute path of the project; files in spans are relative to it.
+        program, oracle: files and folders, relative to the root.
+        vocabulary: the robot API.
+        seed: the campaign's seed.
+        round: 0-based round.
+        tests: node ids to run, in this order; None for all that the project's own arguments select.
+        mutant: the fault to plant; None for the original.
+        record: whether to report traces and values.
+        stop_at_kill: whether to stop after the first test that fails for another reason than a refusal.
+        budgets: limits by node id.
+        memory: address space limit in bytes; None for no limit.
+        moments: after every how many commands the probes are read along the way, by node id; tests that are
+            missing are read at their end only.
+        inspect: whether to check every callable of the vocabulary at the end, also those that no test
+            imported.
+        branching: set for a trunk: fork a branch for each live mutant at its site.
+        serving: set for a fork server: the socket over which jobs come. It runs no test itself.
+        instrumentation: what to put into the program text; None to leave it alone.
+        no_oracle: whether all checks are switched off.
+        private_files: whether the process is to keep to itself what it does to files.
+    """
+
+    root: str
+    program: tuple[str, ...]
+    oracle: tuple[str, ...]
+    vocabulary: Vocabulary
+    seed: int
+    round: int
+    tests: tuple[str, ...] | None = None
+    mutant: Mutant | None = None
+    record: bool = False
+    stop_at_kill: bool = False
+    budgets: Mapping[str, Budget] = field(default_factory=dict)
+    memory: int | None = None
+    moments: Mapping[str, int] = field(default_factory=dict)
+    inspect: bool = False
+    branching: Branching | None = None
+    serving: int | None = None
+    instrumentation: Instrumentation | None = None
+    no_oracle: bool = False
+    private_files: bool = True

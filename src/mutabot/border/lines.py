@@ -1,0 +1,389 @@
+"""Report lines: what a worker process tells while it runs a job, one JSON object a line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, get_args
+
+from mutabot.model.alternative import Sighting
+from mutabot.model.site import Span
+from mutabot.model.verdict import By
+
+from .codec import from_data, to_data
+from .footprint import Footprint
+
+
+@dataclass(frozen=True, slots=True)
+class SiteSeen:
+    """A site was reached for the first time in this session; traces refer to it by ``index``."""
+
+    index: int
+    span: Span
+    operation: str
+    pattern: str | None
+    oracle: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TestStart:
+    """A test begins: its fixtures are next."""
+
+    __test__ = False
+
+    test: str
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """The suite itself ends this process with exit code 1 if a test takes too long.
+
+    Attributes:
+        test: the test.
+        until: from when on, by the clock of ``time.monotonic``, which all processes share.
+        text: the limit, in words.
+    """
+
+    test: str
+    until: float
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Acted:
+    """The mutant changed something for the first time in this test: proof that mutated code ran.
+
+    ``test`` is empty for a mutant of the program text that did so before any test began.
+    ``mutant`` is the branch that says so; None in a session that is one mutant altogether.
+    """
+
+    test: str
+    mutant: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PlacesReached:
+    """Places of the program text that a test reached; those before any test, if ``test`` is empty."""
+
+    test: str
+    places: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CalledAtImport:
+    """Operations of the program that were called before any test began; the trace is like that of a test."""
+
+    trace: tuple[Any, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TextsSeen:
+    """What a recording saw of the program text, over all tests.
+
+    Attributes:
+        imported: files that were imported, relative to the root.
+        sightings: what was seen at each place.
+    """
+
+    imported: tuple[str, ...]
+    sightings: tuple[Sighting, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NotInstrumented:
+    """A file whose mutants cannot run, because it was imported without its alternatives."""
+
+    file: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class MutatedCall:
+    """A mutated call begins or has ended: tells whether a process died in it."""
+
+    test: str
+    began: bool
+    mutant: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BranchEnd:
+    """A branch has finished its test.
+
+    Attributes:
+        mutant: id of the mutant it was.
+        end: what the test ended like.
+        sites: the sites that the trace refers to.
+        shared: simulated seconds it inherited from the trunk, or None without a clock.
+    """
+
+    mutant: str
+    end: TestEnd
+    sites: tuple[SiteSeen, ...] = ()
+    shared: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BranchDied:
+    """A branch ended without saying how its test ended.
+
+    Attributes:
+        mutant: id of the mutant it was.
+        test: the test it was in.
+        exit_code: its exit code, negative for a signal.
+        overdue: which wall-clock limit it exceeded, in words, or None.
+        where: where it was then, if that is known.
+    """
+
+    mutant: str
+    test: str
+    exit_code: int
+    overdue: str | None = None
+    where: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Unbranched:
+    """A test in which it was not safe to fork: these mutants need a process of their own there."""
+
+    test: str
+    mutants: tuple[str, ...]
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Undiverged:
+    """Mutants of the program text that were reached in a trunk's test and always had the original's value.
+
+    The trunk itself has run this test for them.
+
+    Attributes:
+        test: the test, which is about to end.
+        hits: evaluations of the mutant's place in it, by mutant id.
+    """
+
+    test: str
+    hits: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class TokensHeld:
+    """How many tokens a trunk and its branches hold: what the pool gets back if the trunk dies."""
+
+    held: int
+
+
+@dataclass(frozen=True, slots=True)
+class TestEnd:
+    """A test has ended.
+
+    Attributes:
+        test: node id.
+        outcome: as pytest counts it: ``passed``, ``failed``, ``skipped``, ``xfailed`` or ``xpassed``. Only
+            ``failed`` makes the suite fail.
+        by: what noticed, for a failure.
+        phase: ``setup``, ``call`` or ``teardown``: where it failed; ``collect`` if it never began.
+        exception: type of the exception as ``module:Name``.
+        message: first lines of the exception's text.
+        place: ``file:line`` where the failure was noticed.
+        timeout: which limit was exceeded, or None.
+        failure: the simulator's failure, or None.
+        invalid: whether the mutated call rejected its arguments' types.
+        refused: text of the refusal of a mutated call, or None.
+        caught: whether the program handled that refusal, so that the test ended for another reason.
+        hits: calls at the mutant's site (with its operation and pattern).
+        acted: hits at which the mutant changed something.
+        away: hits at which it stayed away, by the reason.
+        partly: whether a part of a mutant of higher order changed something, and another did not.
+        example: value before and after at the first hit at which it acted.
+        operations: intercepted calls at any site.
+        commands: operations that made the robot do something, from any site.
+        wall, cpu: seconds of the test, fixtures included.
+        simulated: simulated seconds, or None if there is no clock.
+        trace: per hit: site index, values written, values read, and in the baseline a note of what the call
+            returned: a plain value, ``{"kept": data}`` or ``{"opaque": what}`` at a site's first hit,
+            ``{"same"}`` or ``{"other"}`` than that later on, ``{"raised"}`` if it did not return.
+        truncated: whether the trace was cut off.
+        returned: what functions of the program returned to the test: name, and the value in a list or, for
+            one that raised, ``{"raised": text}``.
+        prepared: how many of these are from before the test itself began: from its fixtures.
+        probes: values of each probe by ``target.part``; those of the second object of a class by
+            ``target#2.part``.
+        unread: why a probe could not be read, by target.
+        footprint: what of the test can be noticed outside of it; None if that was not looked at.
+        moments: probes along the way: after which call (from 1), parts that differ from the moment before,
+            and whether these are all parts.
+        reading: processor seconds it takes to read all probes; None if they cannot be read along the way.
+        not_along: why not, or None.
+    """
+
+    __test__ = False  # not a test class, whatever pytest may think of the name
+
+    test: str
+    outcome: str
+    by: By | None = None
+    phase: str = "call"
+    exception: str | None = None
+    message: str | None = None
+    place: str | None = None
+    timeout: str | None = None
+    failure: str | None = None
+    invalid: bool = False
+    refused: str | None = None
+    caught: bool = False
+    hits: int = 0
+    acted: int = 0
+    away: Mapping[str, int] = field(default_factory=dict)
+    partly: bool = False
+    example: tuple[Any, ...] | None = None
+    operations: int = 0
+    commands: int = 0
+    wall: float = 0.0
+    cpu: float = 0.0
+    simulated: float | None = None
+    trace: tuple[Any, ...] = ()
+    truncated: bool = False
+    returned: tuple[Any, ...] = ()
+    prepared: int = 0
+    probes: Mapping[str, Any] = field(default_factory=dict)
+    unread: Mapping[str, str] = field(default_factory=dict)
+    footprint: Footprint | None = None
+    moments: tuple[Any, ...] = ()
+    reading: float | None = None
+    not_along: str | None = None
+
+    @property
+    def lasting(self) -> str:
+        """The outcome, as far as equal runs must agree on it: what may fail may also pass."""
+        return "xfailed" if self.outcome == "xpassed" else self.outcome
+
+    @property
+    def notices(self) -> bool:
+        """Whether this test noticed its mutant, provided that the mutant had changed anything."""
+        if self.failure is not None or self.invalid:
+            return False
+        is_refused = self.refused is not None and not self.caught
+        return self.timeout is not None or (self.outcome == "failed" and not is_refused)
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether this test alone decides about its mutant, so that no other test needs to run."""
+        if self.failure is not None or self.invalid or self.timeout is not None:
+            return True
+        return self.outcome == "failed" and (self.refused is None or self.caught)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Something in the vocabulary does not fit the program.
+
+    Attributes:
+        source: where the vocabulary says so.
+        key: the key below the source.
+        text: what is wrong.
+        name, known: the name that does not exist and those that do, where it is about a name.
+    """
+
+    source: str
+    key: str
+    text: str
+    name: str | None = None
+    known: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """Something about the vocabulary that the user should know; the program can be tested all the same.
+
+    Attributes:
+        source: where the vocabulary says so.
+        key: the key below the source.
+        text: what there is to say, and what to do about it.
+    """
+
+    source: str
+    key: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.source} · {self.key}: {self.text}"
+
+
+@dataclass(frozen=True, slots=True)
+class Serving:
+    """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``."""
+
+    reason: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Copied:
+    """A fork server has forked a copy of itself, process ``pid``, for the job that came last."""
+
+    pid: int
+
+
+@dataclass(frozen=True, slots=True)
+class CopyEnded:
+    """A copy of a fork server has ended, with an exit code that is negative for a signal."""
+
+    pid: int
+    exit_code: int
+
+
+@dataclass(frozen=True, slots=True)
+class SessionEnd:
+    """The session has ended in an orderly way.
+
+    Attributes:
+        exit_status: pytest's exit status.
+        collected: node ids of the tests collected, in order.
+        errors: texts of collection errors.
+        not_private: why its files were not its own, though that was asked for; None if they were.
+    """
+
+    exit_status: int
+    collected: tuple[str, ...] = ()
+    errors: tuple[str, ...] = ()
+    not_private: str | None = None
+
+
+Line = (
+    SiteSeen
+    | TestStart
+    | Watched
+    | Acted
+    | PlacesReached
+    | CalledAtImport
+    | TextsSeen
+    | NotInstrumented
+    | MutatedCall
+    | TestEnd
+    | BranchEnd
+    | BranchDied
+    | Unbranched
+    | Undiverged
+    | TokensHeld
+    | Problem
+    | Remark
+    | Serving
+    | Copied
+    | CopyEnded
+    | SessionEnd
+)
+
+
+_LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Line)}
+
+
+def line_to_data(line: Line) -> dict[str, Any]:
+    """JSON-like data of a report line, with its type."""
+    data: dict[str, Any] = to_data(line)
+    return {"type": type(line).__name__, **data}
+
+
+def line_from_data(data: dict[str, Any]) -> Line:
+    """The report line in such data. Raises KeyError for a type that is not known."""
+    kind = _LINES[data["type"]]
+    line: Line = from_data(kind, {key: value for key, value in data.items() if key != "type"})
+    return line

@@ -1,0 +1,78 @@
+"""Suspects: tests that passed in the baseline and failed in a trunk.
+
+A trunk runs the quickest tests first, and branches mutants off, so a test can fail there without being
+flaky. Two more runs without branches tell why: the whole suite in its own order, and the trunk's tests in
+the trunk's. A test that fails again in the former is flaky and judges nothing. One that fails again only in
+the latter depends on others, and its mutants are judged by the whole suite. One that passes in both has
+failed by chance, or by what a branch left behind: that cannot be told apart, so its kills are repeated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.workers.workers import Task, Workers
+
+from .baseline import Baseline
+
+#: seconds for a test of the suite without any mutant
+_DEADLINE = 600.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """Which run: the key of its task."""
+
+    round: int
+    in_trunks_order: bool
+
+
+def clear_up(
+    request: Request,
+    baseline: Baseline,
+    workers: Workers,
+    progress: Progress,
+    suspects: Iterable[tuple[int, str]],
+    orders: Mapping[int, tuple[str, ...]],
+) -> None:
+    """Run the tests twice more in each round that has suspects, and note in the baseline what they are.
+
+    ``orders``: per round, the tests of the trunk in its order.
+    """
+    by_round: dict[int, list[str]] = {}
+    for round, test in suspects:
+        by_round.setdefault(round, []).append(test)
+    tasks = [
+        Task(_Run(round, in_trunks_order), request.job(round, tests=tests), deadline=_DEADLINE)
+        for round in by_round
+        for in_trunks_order, tests in ((False, tuple(baseline.tests[round])), (True, orders[round]))
+    ]
+    passed: dict[_Run, set[str]] = {}
+    for result in workers.run(tasks):
+        run: _Run = result.task.key
+        ends = ((end, baseline.ends[run.round, end.test]) for end in result.ends)
+        passed[run] = {end.test for end, first in ends if end.lasting == first.lasting}
+    for round, tests in by_round.items():
+        for test in tests:
+            in_suite, in_order = (test in passed[_Run(round, trunks)] for trunks in (False, True))
+            _clear_up_one(baseline, progress, round, test, in_suite=in_suite, in_order=in_order)
+
+
+def _clear_up_one(
+    baseline: Baseline, progress: Progress, round: int, test: str, *, in_suite: bool, in_order: bool
+) -> None:
+    """What is known of a suspect from whether it passes in the suite's order, and in the trunk's."""
+    if not in_suite:
+        baseline.set_aside(round, test, "passed in the baseline, but not in equal runs")
+        progress.note(f"set aside as flaky in round {round + 1}: {test}")
+    elif in_order:
+        baseline.doubted.add(test)
+        progress.note(
+            f"{test} failed once while mutants were branched off in round {round + 1}, and passes without: "
+            "by chance, or by what a branch left behind; its mutants run in processes of their own"
+        )
+    else:
+        progress.note(f"{test} passes only after other tests: its mutants are judged by the whole suite")
+        baseline.judge_by_whole_suite(round, test)

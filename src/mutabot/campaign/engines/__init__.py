@@ -1,0 +1,1 @@
+"""The engines, which give mutants their outcomes, and all that makes these trustworthy."""

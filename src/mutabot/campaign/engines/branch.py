@@ -1,0 +1,316 @@
+"""The branch engine, seen from the controller: one trunk per round, and what its branches report.
+
+A branch's report counts only once the trunk itself has passed the same test as in the baseline: the trunk is
+the second run of the original. What could not be branched, or got lost with a trunk, is left to replay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from mutabot.border.job import Branching
+from mutabot.border.lines import (
+    Acted,
+    BranchDied,
+    BranchEnd,
+    Line,
+    MutatedCall,
+    SiteSeen,
+    TestEnd,
+    Unbranched,
+    Undiverged,
+)
+from mutabot.campaign.baseline.baseline import Baseline, at, death, observation, place_of
+from mutabot.campaign.baseline.moments import moments_in
+from mutabot.campaign.baseline.places import Place
+from mutabot.campaign.baseline.site_names import Sources
+from mutabot.campaign.comparing.observation import Observation
+from mutabot.campaign.request import Request
+from mutabot.campaign.workers.workers import Result, Task, Workers
+from mutabot.model import Instrumentation, Mutant, Outcome, Verdict
+
+from .judge import Death, Run, judge
+from .replay import Pair, wall_limit, without_tests
+
+#: seconds without any word from a trunk, beyond what its tests and branches may take
+_PATIENCE = 60.0
+
+
+@dataclass(slots=True)
+class Remainder:
+    """What the branch engine leaves to replay.
+
+    Attributes:
+        pairs: mutants and rounds.
+        early: mutants that act while the program is imported, before a trunk could branch.
+        reasons: test to why it was not safe to fork in it.
+        suspects: (round, test) that ended otherwise in a trunk than in the baseline.
+        orders: per round, the tests of the trunk in its order.
+        notes: what else went wrong, in words.
+    """
+
+    pairs: list[Pair] = field(default_factory=list)
+    early: list[Pair] = field(default_factory=list)
+    reasons: dict[str, str] = field(default_factory=dict)
+    suspects: list[tuple[int, str]] = field(default_factory=list)
+    orders: dict[int, tuple[str, ...]] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    def leave(self, mutant: Mutant, round: int, test: str, reason: str) -> None:
+        """Leave a mutant to replay because of a test."""
+        self.pairs.append((mutant, round))
+        self.reasons.setdefault(test, reason)
+
+
+def branch(
+    request: Request,
+    baseline: Baseline,
+    workers: Workers,
+    pairs: Iterable[Pair],
+    remainder: Remainder,
+    *,
+    only: Mapping[str, tuple[str, ...]] | None = None,
+    at_start: bool = False,
+) -> Iterator[Outcome]:
+    """Outcomes of mutants in rounds, as they come; ``remainder`` is filled with what is left to replay.
+
+    ``only`` names the tests that judge certain mutants, by id; all others are judged by every test that
+    reaches them. ``at_start`` forks when a test begins instead of at the site, to measure what sharing is
+    worth.
+    """
+    trunks: dict[int, _Trunk] = {}
+    for mutant, round in pairs:
+        tests = (only or {}).get(mutant.id) or baseline.judges(round, mutant)
+        if not tests:
+            yield without_tests(baseline, mutant, round)
+            continue
+        if baseline.is_early(mutant):
+            remainder.early.append((mutant, round))
+            continue
+        if round not in trunks:
+            trunks[round] = _Trunk(request, baseline, round)
+        forbidding = baseline.why_not_branch(round, tests)
+        if forbidding is not None:
+            remainder.leave(mutant, round, *forbidding)
+            trunks[round].run_too(tests)
+        else:
+            trunks[round].add(mutant, tests)
+    remainder.orders.update((round, trunk.order) for round, trunk in trunks.items())
+    # the text of all rounds alike, so that one fork server can serve them
+    text = baseline.program.instrumentation(
+        {one.id: one for trunk in trunks.values() for one in trunk.mutants}.values()
+    )
+    tasks = (trunk.task(workers.pool.descriptors, text, at_start=at_start) for trunk in trunks.values())
+    for event in workers.events(tasks):
+        if isinstance(event, Result):
+            yield from trunks[event.task.job.round].finish(event, remainder)
+        else:
+            task, line = event
+            yield from trunks[task.job.round].take(line, remainder)
+
+
+@dataclass(slots=True)
+class _Branches:
+    """What is known of one mutant so far.
+
+    Attributes:
+        mutant: the mutant.
+        tests: the tests that judge it, in order.
+        ends, observations: its tests that have ended.
+        deaths: set for the tests in which its branch died.
+        acted: tests in which it has changed something.
+        calling: tests in which it was in the midst of a mutated call when it was last heard of.
+        shared: simulated seconds its branches inherited.
+    """
+
+    mutant: Mutant
+    tests: tuple[str, ...]
+    ends: dict[str, TestEnd] = field(default_factory=dict)
+    observations: dict[str, Observation] = field(default_factory=dict)
+    deaths: dict[str, Death] = field(default_factory=dict)
+    acted: set[str] = field(default_factory=set)
+    calling: set[str] = field(default_factory=set)
+    shared: float | None = None
+
+    def take(self, line: BranchEnd) -> None:
+        self.ends[line.end.test] = line.end
+        if line.shared is not None:
+            self.shared = (self.shared or 0.0) + line.shared
+
+
+class _Trunk:
+    """The trunk of one round and its branches."""
+
+    def __init__(self, request: Request, baseline: Baseline, round: int) -> None:
+        self._request, self._baseline, self._round = request, baseline, round
+        self._sources = Sources(request.root)
+        self._open: dict[str, _Branches] = {}
+        self._needed: set[str] = set()
+        self._passed: set[str] = set()
+        self._failed: set[str] = set()
+        self._waiting: dict[str, set[str]] = {}
+        self._undiverged: dict[str, Mapping[str, int]] = {}
+        self._trunk_places: dict[int, Place] = {}
+
+    def add(self, mutant: Mutant, tests: tuple[str, ...]) -> None:
+        """A mutant to branch in these tests."""
+        self._open[mutant.id] = _Branches(mutant, tests)
+        self._needed.update(tests)
+
+    def run_too(self, tests: tuple[str, ...]) -> None:
+        """Tests to run although nothing is branched in them: the trunk is their second run."""
+        self._needed.update(tests)
+
+    @property
+    def mutants(self) -> tuple[Mutant, ...]:
+        """The mutants whose outcomes are not known yet."""
+        return tuple(branches.mutant for branches in self._open.values())
+
+    @property
+    def order(self) -> tuple[str, ...]:
+        """The tests it runs, in their order."""
+        return self._baseline.in_order(self._round, self._needed)
+
+    def task(self, tokens: tuple[int, int], text: Instrumentation | None, *, at_start: bool = False) -> Task:
+        """The task that runs the trunk."""
+        request, baseline, round = self._request, self._baseline, self._round
+        in_order = self.order
+        walls = {test: wall_limit(request, baseline, round, test) for test in in_order}
+        longest = max(walls.values(), default=0.0)
+        mutants = self.mutants
+        choices = {mutant.id: baseline.program.choices(mutant) for mutant in mutants}
+        branching = Branching(
+            mutants=mutants,
+            tests={mutant: branches.tests for mutant, branches in self._open.items()},
+            tokens=tokens,
+            walls=walls,
+            wall=longest,
+            at_start=at_start,
+            choices={mutant: found for mutant, found in choices.items() if found},
+            every_test=request.every_test,
+        )
+        factor = request.configuration.timeout_factor
+        budgets = {test: baseline.budget(round, test, factor) for test in in_order}
+        job = request.job(
+            round,
+            tests=in_order,
+            record=True,
+            budgets=budgets,
+            moments=moments_in(baseline.strides, round),
+            branching=branching,
+            instrumentation=text,
+        )
+        patience = 2.0 * longest + _PATIENCE
+        return Task(round, job, {}, patience, patience, is_trunk=True, may_share=True)
+
+    def take(self, line: Line, remainder: Remainder) -> Iterator[Outcome]:
+        """Sort in a report line; yields the outcomes that it settles."""
+        match line:
+            case BranchEnd() if line.mutant in self._open:
+                yield from self._branch_ended(line)
+            case BranchDied() if line.mutant in self._open:
+                yield from self._branch_died(line)
+            case Acted() | MutatedCall():
+                self._note(line)
+            case Unbranched():
+                remainder.reasons.setdefault(line.test, line.reason)
+            case Undiverged():
+                self._undiverged[line.test] = line.hits
+            case SiteSeen():
+                self._trunk_places[line.index] = place_of(line, self._sources)
+            case TestEnd():
+                yield from self._test_ended(line, remainder)
+
+    def finish(self, result: Result, remainder: Remainder) -> Iterator[Outcome]:
+        """The trunk is gone: settle what can be settled, and leave the rest to replay."""
+        if result.end is None:
+            remainder.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}{at(result)}")
+        for mutant in list(self._open):
+            yield from self._settle(mutant)
+        remainder.pairs.extend((branches.mutant, self._round) for branches in self._open.values())
+
+    def _branch_ended(self, line: BranchEnd) -> Iterator[Outcome]:
+        branches = self._open[line.mutant]
+        branches.take(line)
+        if line.end.outcome != "failed":
+            places = {seen.index: place_of(seen, self._sources) for seen in line.sites}
+            branches.observations[line.end.test] = observation(line.end, places)
+        yield from self._settle(line.mutant)
+
+    def _branch_died(self, line: BranchDied) -> Iterator[Outcome]:
+        branches = self._open[line.mutant]
+        code = line.exit_code
+        how = f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
+        branches.deaths[line.test] = Death(
+            text=f"{line.overdue or how} during {line.test}",
+            test=line.test,
+            signal=-code if code < 0 and line.overdue is None else None,
+            overdue=line.overdue is not None,
+            acted=line.test in branches.acted,
+            in_mutated_call=line.test in branches.calling,
+            where=line.where,
+        )
+        yield from self._settle(line.mutant)
+
+    def _note(self, line: Acted | MutatedCall) -> None:
+        branches = self._open.get(line.mutant or "")
+        if branches is None:
+            return
+        if isinstance(line, Acted):
+            branches.acted.add(line.test)
+        elif line.began:
+            branches.calling.add(line.test)
+        else:
+            branches.calling.discard(line.test)
+
+    def _test_ended(self, end: TestEnd, remainder: Remainder) -> Iterator[Outcome]:
+        """The trunk has run a test: the second opinion on the original."""
+        undiverged = self._undiverged.pop(end.test, {})
+        if end.lasting == self._baseline.ends[self._round, end.test].lasting:
+            self._passed.add(end.test)
+            found = observation(end, self._trunk_places)
+            self._baseline.compare_runs(self._round, end, found, self._request.vocabulary)
+            self._take_undiverged(end, found, undiverged)
+        else:
+            self._failed.add(end.test)
+            remainder.suspects.append((self._round, end.test))
+        for mutant in self._waiting.pop(end.test, set()) | undiverged.keys():
+            if mutant in self._open:
+                yield from self._settle(mutant)
+
+    def _take_undiverged(self, end: TestEnd, found: Observation, hits: Mapping[str, int]) -> None:
+        """The trunk has run its test for these mutants too, up to the end."""
+        for mutant in hits.keys() & self._open.keys():
+            branches = self._open[mutant]
+            own = replace(end, hits=hits[mutant], acted=0, wall=0.0, cpu=0.0, trace=())
+            branches.take(BranchEnd(mutant, own, (), end.simulated))
+            branches.observations[end.test] = found
+
+    def _settle(self, mutant: str) -> Iterator[Outcome]:
+        """Yield the mutant's outcome if all that it depends on is known."""
+        branches = self._open[mutant]
+        run = Run(branches.mutant, self._round, branches.tests, engine="branch", shared=branches.shared)
+        for test in branches.tests:
+            if test in self._failed:
+                return  # replay will find out what is the matter with this test
+            death = branches.deaths.get(test)
+            if test not in branches.ends and death is None:
+                return
+            if test not in self._passed:
+                self._waiting.setdefault(test, set()).add(mutant)
+                return
+            if death is not None:
+                run.death = run.death or death
+            else:
+                run.ends.append(branches.ends[test])
+            if not self._request.every_test and (death is not None or branches.ends[test].is_decided):
+                break
+        run.observations = branches.observations
+        run.wall = sum(end.wall for end in run.ends)
+        outcome = judge(run, self._request, self._baseline)
+        survived = outcome.verdict is Verdict.SURVIVED
+        if survived and self._baseline.must_widen(run.mutant, run.round, run.ends):
+            return  # to replay
+        del self._open[mutant]
+        yield outcome

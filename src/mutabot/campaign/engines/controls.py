@@ -1,0 +1,220 @@
+"""Controls: mutants that must survive, and mutants that must die.
+
+The identity mutant goes through all the machinery and changes nothing, so it must survive. The fatal mutant
+raises, so it must die; it is run once per test file and proves that turning a mutant on changes anything at
+all. A control that ends wrongly is tried again in a fresh process; one that ends wrongly there too stops the
+campaign: its verdicts could not be believed.
+
+Mutants of calls and mutants of the program text have controls of their own, as they take different ways
+into the program. Those of the text ask at their place like any alternative: the identity proves by its hits
+that the text which runs is the instrumented one.
+
+For the replay engine the identity mutant is run with every selection of tests that a mutant will be judged
+by, which also finds tests that pass only after others: their mutants are then judged by the whole suite. For
+the branch engine, whose trunk runs the whole suite anyway, it is run in every test.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.baseline.places import Place
+from mutabot.campaign.baseline.site_names import Sources
+from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.workers.workers import Task, Workers
+from mutabot.errors import ControlError
+from mutabot.journal.records import ControlEnd
+from mutabot.model import Mutant, Outcome, Verdict
+
+from .judge import judge
+from .replay import run_of, task
+
+IDENTITY, FATAL = "identity", "fatal"
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """One control to run.
+
+    Attributes:
+        name: ``identity`` or ``fatal``.
+        place: where it acts.
+        round: the round it is run in.
+        tests: the tests to run.
+        subject: what it is run for, in words.
+    """
+
+    name: str
+    place: Place
+    round: int
+    tests: tuple[str, ...]
+    subject: str
+
+    @property
+    def mutant(self) -> Mutant:
+        """The control as a mutant; what it is run for is part of its id."""
+        place = self.place
+        return Mutant(
+            0, "control", self.name, place.site, place.operation, place.pattern, None, self.subject, self.name
+        )
+
+    def task(self, request: Request, baseline: Baseline) -> Task:
+        """The task that runs it by replay."""
+        made = task(request, baseline, self.mutant, self.round, self.tests, stop=self.name == FATAL)
+        return replace(made, key=self)
+
+    def end(self, outcome: Outcome) -> ControlEnd:
+        """How it ended, judged by its outcome."""
+        wrong = self._what_is_wrong(outcome)
+        return ControlEnd(self.subject, self.name, wrong is None, wrong or f"{outcome.hits} hits")
+
+    def _what_is_wrong(self, outcome: Outcome) -> str | None:
+        expected = Verdict.NO_EFFECT if self.name == IDENTITY else Verdict.KILLED
+        if outcome.verdict is expected:
+            return None
+        if self.name == FATAL and outcome.verdict is Verdict.SURVIVED:
+            what = "program text" if self.place.is_text else "operation"
+            return f"the test passes although the {what} raises"
+        where = f"; it was at {outcome.stuck}" if outcome.stuck is not None else ""
+        return f"{outcome.verdict}: {outcome.message or 'it changed something'}{where}"
+
+    def error(self, wrong: str) -> ControlError:
+        """The error that stops the campaign."""
+        return ControlError(
+            f"the {self.name} control of {self.subject} at {self.place.site.place} ended wrongly: "
+            f"{wrong}; no verdict of this campaign could be believed",
+            control=self.name,
+            test_file=self.tests[0].partition("::")[0],
+        )
+
+
+def run_controls(
+    request: Request, baseline: Baseline, workers: Workers, progress: Progress, mutants: Iterable[Mutant]
+) -> Iterator[ControlEnd]:
+    """Run by replay the controls for these mutants; marks in the baseline which tests need the whole suite.
+
+    Raises ControlError for a control that ends wrongly, after it was yielded.
+    """
+    mutants = list(mutants)
+    identities = _identities_by_selection(baseline, mutants)
+    progress.stage("controls", len(identities) + len(_fatals(baseline, mutants)))
+    together: list[Control] = []
+    for control, outcome in _replayed(request, baseline, workers, identities):
+        end = end_of(control, outcome, request, baseline, progress)
+        progress.advance(f"identity, {control.subject}: {'survives, as it must' if end.ok else end.detail}")
+        if end.ok:
+            yield end
+        elif set(control.tests) == set(baseline.tests[control.round]):
+            yield end
+            raise control.error(end.detail)
+        else:
+            baseline.dependent.add(control.tests)
+            together.append(_with_whole_suite(control, baseline))
+            progress.note(f"{control.subject} pass only after other tests: judged by the whole suite")
+    # only now is it known which selections pass by themselves
+    fatals = [
+        replace(fatal, tests=baseline.selection(fatal.round, fatal.place))
+        for fatal in _fatals(baseline, mutants)
+    ]
+    for control, outcome in _replayed(request, baseline, workers, [*together, *fatals]):
+        end = end_of(control, outcome, request, baseline, progress)
+        progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
+        yield end
+        if not end.ok:
+            raise control.error(end.detail)
+
+
+def controls_in_branches(baseline: Baseline, mutants: Iterable[Mutant]) -> list[Control]:
+    """The controls to run as branches: identity in every test of the first round, fatal once per file."""
+    early = baseline.program.early | baseline.early
+    mutants = [mutant for mutant in mutants if not baseline.is_early(mutant)]
+    planned = _places(mutants)
+    uncovered = {is_text: set(baseline.tests[0]) for is_text in (False, True)}
+    found: list[Control] = []
+    for (round, place), tests in baseline.reaching.items():
+        here = tuple(test for test in tests if test in uncovered[place.is_text])
+        here = tuple(test for test in here if baseline.why_not_branch(round, [test]) is None)
+        if round == 0 and here and place in planned and place not in early:
+            uncovered[place.is_text] -= set(here)
+            found.append(Control(IDENTITY, place, 0, here, _subject(here)))
+    fatals = _fatals(baseline, mutants)
+    return [*found, *(one for one in fatals if baseline.why_not_branch(one.round, one.tests) is None)]
+
+
+def end_of(
+    control: Control, outcome: Outcome, request: Request, baseline: Baseline, progress: Progress
+) -> ControlEnd:
+    """How a control ended. One that ended wrongly is tried again in a process that shares nothing."""
+    end = control.end(outcome)
+    if end.ok:
+        return end
+    with Workers(request.root, request.arguments, jobs=1) as workers:  # the others are at work meanwhile
+        ((_, again),) = _replayed(request, baseline, workers, [control])
+    second = control.end(again)
+    if not second.ok:
+        return second
+    if outcome.test is not None:
+        baseline.doubted.add(outcome.test)
+    progress.note(
+        f"the {control.name} control of {control.subject} ended wrongly once ({end.detail}), but as it must "
+        "when it was tried again"
+    )
+    return second
+
+
+def _replayed(
+    request: Request, baseline: Baseline, workers: Workers, controls: Iterable[Control]
+) -> Iterator[tuple[Control, Outcome]]:
+    sources = Sources(request.root)
+    for result in workers.run(control.task(request, baseline) for control in controls):
+        control: Control = result.task.key
+        yield control, judge(run_of(result, sources), request, baseline)
+
+
+def _identities_by_selection(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
+    """One identity control per selection of tests that mutants are judged by."""
+    chosen: dict[tuple[bool, tuple[str, ...]], Control] = {}
+    for round in range(len(baseline.tests)):
+        for mutant in mutants:
+            place = Place.of(mutant.singles[0])
+            tests = baseline.judges(round, mutant)
+            if tests:
+                control = Control(IDENTITY, place, round, tests, _subject(tests))
+                chosen.setdefault((place.is_text, tests), control)
+    return list(chosen.values())
+
+
+def _places(mutants: Iterable[Mutant]) -> set[Place]:
+    """All places at which these mutants act."""
+    return {Place.of(single) for mutant in mutants for single in mutant.singles}
+
+
+def _subject(tests: tuple[str, ...]) -> str:
+    return tests[0] if len(tests) == 1 else f"{tests[0]} and {len(tests) - 1} more"
+
+
+def _fatals(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
+    """One fatal control per test file: its quickest test, at a site where a mutant is planned.
+
+    What raises while the program is imported says little about what is reached in a test: that comes last.
+    Only a test that passes on the original must fail by it; one that may fail, or skips itself, need not.
+    """
+    planned, early = _places(mutants), baseline.program.early | baseline.early
+    chosen: dict[tuple[bool, str], Control] = {}
+    costs: dict[tuple[bool, str], tuple[bool, int, float]] = {}
+    for (round, place), tests in baseline.reaching.items():
+        passing = [test for test in tests if baseline.ends[round, test].outcome == "passed"]
+        for test in passing if place in planned else ():
+            key = (place.is_text, test.partition("::")[0])
+            cost = (place in early, round, baseline.ends[round, test].wall)
+            if key not in costs or cost < costs[key]:
+                costs[key] = cost
+                chosen[key] = Control(FATAL, place, round, (test,), key[1])
+    return list(chosen.values())
+
+
+def _with_whole_suite(control: Control, baseline: Baseline) -> Control:
+    tests = tuple(baseline.tests[control.round])
+    return Control(control.name, control.place, control.round, tests, "the whole suite")

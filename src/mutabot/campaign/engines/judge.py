@@ -1,0 +1,208 @@
+"""The verdict: the one named end of a mutant in a round, from what was seen of it by either engine."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from mutabot.border.lines import TestEnd
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.comparing.observation import Observation, compare, farthest
+from mutabot.campaign.request import Request
+from mutabot.model import By, Kill, Mutant, Outcome, Verdict
+from mutabot.model.outcome import added
+
+#: signals by which a program dies of its own fault; others come from outside
+_OWN_FAULT = {signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL}
+
+Ruling = tuple[Verdict, TestEnd | None, str | None]
+
+
+@dataclass(slots=True)
+class Death:
+    """How a process ended that did not run its tests to their end.
+
+    Attributes:
+        text: in words.
+        test: the test it was in, or None.
+        signal: the signal that killed it, or None.
+        overdue: whether its wall-clock time was up.
+        acted: whether its mutant had changed anything by then.
+        in_mutated_call: whether it was in the midst of a mutated call.
+        where: where it was when its time was up, if that is known.
+    """
+
+    text: str
+    test: str | None = None
+    signal: int | None = None
+    overdue: bool = False
+    acted: bool = False
+    in_mutated_call: bool = False
+    where: str | None = None
+
+
+@dataclass(slots=True)
+class Run:
+    """What was seen of a mutant in a round.
+
+    Attributes:
+        mutant, round: which.
+        tests: the tests that judge it, in order.
+        ends: how they ended, in this order, up to the one that decided; all of them where each is to run.
+        observations: what is compared of each test that passed.
+        death: set if a process did not live to the end of its tests.
+        wall: seconds spent on it.
+        shared: simulated seconds that it did not have to spend, since the original had.
+        engine: ``replay`` or ``branch``.
+        problem: why the mutant was not there at all, or None.
+    """
+
+    mutant: Mutant
+    round: int
+    tests: tuple[str, ...]
+    ends: list[TestEnd] = field(default_factory=list)
+    observations: Mapping[str, Observation] = field(default_factory=dict)
+    death: Death | None = None
+    wall: float = 0.0
+    shared: float | None = None
+    engine: str = "replay"
+    problem: str | None = None
+
+
+def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
+    """The outcome of a run."""
+    verdict, end, message = _ruling(run)
+    aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
+    if aside:
+        verdict, message = Verdict.UNSTABLE, _let_through_without(aside)
+    simulated = [end.simulated for end in run.ends if end.simulated is not None]
+    by = end.by if end is not None else By.EXCEPTION
+    died_at_work = end is None and run.death is not None and (run.death.acted or run.death.in_mutated_call)
+    outcome = Outcome(
+        mutant=run.mutant.id,
+        round=run.round,
+        verdict=verdict,
+        by=by if verdict is Verdict.KILLED else None,
+        test=end.test if end is not None else run.death.test if run.death is not None else None,
+        exception=end.exception if end is not None else None,
+        message=message,
+        place=end.place if end is not None else None,
+        # a test that never ended cannot say how often, but that the mutant was at work is known
+        hits=sum(end.hits for end in run.ends) + died_at_work,
+        acted=sum(end.acted for end in run.ends) + died_at_work,
+        away=added(end.away for end in run.ends),
+        example=next((end.example for end in run.ends if end.example is not None), None),
+        tests=len(run.ends),
+        wall=run.wall,
+        cpu=sum(end.cpu for end in run.ends),
+        simulated=sum(simulated) if simulated else None,
+        shared=run.shared,
+        engine=run.engine,
+        complete=request.every_test and {end.test for end in run.ends} == set(run.tests),
+        kills=_kills(run, message)[: None if request.every_test else 1] if verdict.is_killed else (),
+        commands=end.commands if end is not None else None,
+        stuck=run.death.where if run.death is not None else None,
+    )
+    return _compared(outcome, run, request, baseline) if verdict is Verdict.SURVIVED else outcome
+
+
+def _let_through_without(aside: Sequence[str]) -> str:
+    more = f" and {len(aside) - 1} more" if len(aside) > 1 else ""
+    others = f"{aside[0]}{more}, set aside in this round, might not"
+    return f"the tests that can be relied on let it through; {others}"
+
+
+def _ruling(run: Run) -> Ruling:
+    """Verdict, the test that decided it, and the reason in words."""
+    if run.problem is not None:
+        return Verdict.ERROR, None, run.problem
+    acted = False
+    refused: TestEnd | None = None
+    for end in _before_death(run):
+        acted = acted or end.acted > 0
+        if end.failure is not None:
+            return Verdict.ERROR, end, end.failure
+        if end.partly and not acted and end.is_decided:
+            return Verdict.NO_EFFECT, end, "the test ended before more than one of the two had acted"
+        if end.invalid:
+            return Verdict.INVALID, end, end.message
+        if end.timeout is not None:
+            return (Verdict.TIMEOUT if acted else Verdict.UNSTABLE), end, end.timeout
+        if end.refused is not None and not end.caught:
+            if acted or not end.partly:
+                refused = refused or end
+        elif end.outcome == "failed":
+            if acted:
+                return Verdict.KILLED, end, end.message
+            return Verdict.UNSTABLE, end, f"failed before the mutant changed anything: {end.message}"
+    if run.death is not None:
+        return _ruling_on_death(run.death, acted)
+    if refused is not None:
+        return Verdict.REFUSED, refused, refused.refused
+    return _ruling_on_survivor(run, acted)
+
+
+def _before_death(run: Run) -> list[TestEnd]:
+    """The tests up to the one in which the process died, if it did: what comes after decides nothing."""
+    if run.death is None or run.death.test not in run.tests:
+        return run.ends
+    before = set(run.tests[: run.tests.index(run.death.test)])
+    return [end for end in run.ends if end.test in before]
+
+
+def _kills(run: Run, message: str | None) -> tuple[Kill, ...]:
+    """The tests that noticed the mutant, in their order; a crash is noticed by the test it ended."""
+    found: list[Kill] = []
+    acted = False
+    for end in run.ends:
+        acted = acted or end.acted > 0
+        if acted and end.notices:
+            found.append(Kill(end.test, end.by or By.EXCEPTION, end.exception, end.timeout or end.message))
+    death = run.death
+    if death is not None and death.test is not None and _ruling_on_death(death, acted)[0].is_killed:
+        found.append(Kill(death.test, By.EXCEPTION, None, message))
+    order = {test: number for number, test in enumerate(run.tests)}
+    return tuple(sorted(found, key=lambda kill: order.get(kill.test, -1)))
+
+
+def _ruling_on_death(death: Death, acted: bool) -> Ruling:
+    if death.overdue and (acted or death.acted):
+        return Verdict.TIMEOUT, None, death.text
+    if death.in_mutated_call and death.signal in _OWN_FAULT:
+        return Verdict.KILLED, None, f"the mutated call crashed: {death.text}"
+    return Verdict.ERROR, None, death.text
+
+
+def _ruling_on_survivor(run: Run, acted: bool) -> Ruling:
+    if acted:
+        return Verdict.SURVIVED, None, None
+    if any(end.partly for end in run.ends):
+        return Verdict.NO_EFFECT, None, "only one of the two changed anything"
+    if any(end.hits for end in run.ends):
+        return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
+    return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"
+
+
+def _compared(outcome: Outcome, run: Run, request: Request, baseline: Baseline) -> Outcome:
+    """The outcome of a survivor with how far its world is from the original's."""
+    comparisons = []
+    for test, found in run.observations.items():
+        key = (run.round, test)
+        if key in baseline.restless:
+            return replace(outcome, gaps=(f"equal runs of the original differ in {test}",))
+        if key in baseline.observations:
+            known = (request.vocabulary.probes, request.vocabulary.operations)
+            comparisons.append(compare(baseline.observations[key], found, *known))
+    worst = farthest(comparisons)
+    # Without a probe, equal traces say only that the program did the same, not that the world ended so.
+    is_claimed = worst.divergence or (worst.distance is not None and not worst.gaps)
+    return replace(
+        outcome,
+        indistinguishable=worst.indistinguishable if is_claimed else None,
+        distance=worst.distance,
+        divergence=worst.divergence,
+        gaps=worst.gaps,
+        way=worst.way,
+        compared=worst.compared if comparisons else None,
+    )

@@ -1,0 +1,146 @@
+"""Repeats: kills that may be chance are run once more, and what ``--verify`` and ``--confirm`` ask for.
+
+A kill that does not come out again becomes ``unstable``. If one of a test's kills does not, all its other
+kills are in doubt as well. Kills in doubt are repeated cheapest first, within a bounded share of the
+campaign's time; how many were left is told.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from mutabot.border.codec import to_data
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.workers.workers import Workers
+from mutabot.journal.journal import Journal
+from mutabot.journal.records import (
+    CONFIRMATION,
+    FLAKY,
+    REPEATS,
+    VERIFICATION,
+    Repeated,
+    Repeats,
+    Verification,
+)
+from mutabot.model import Mutant, Verdict
+
+from .doubt import Doubts, Key
+from .replay import Pair
+from .second_look import Looker, choose, disagreement, flaky_of, unconfirmed
+
+#: repeats of kills in doubt may take this share of the time that the campaign has taken, or so many seconds
+SHARE, SECONDS = 0.2, 10.0
+_CONFIRMED = (Verdict.SURVIVED, Verdict.TIMEOUT, Verdict.KILLED)
+
+
+def look_again(
+    request: Request,
+    baseline: Baseline,
+    workers: Workers,
+    progress: Progress,
+    mutants: Sequence[Mutant],
+    journal: Journal,
+    spent: float,
+) -> None:
+    """Verify, confirm and repeat, and write down what came of it, flaky tests included.
+
+    ``spent``: seconds that the campaign has taken until now.
+    """
+    journal.set_meta(FLAKY, to_data(flaky_of(baseline)))
+    by_id = {mutant.id: mutant for mutant in mutants}
+    outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
+    looker = Looker(request, baseline, workers, progress)
+    second = _SecondLook(Doubts(baseline, by_id, outcomes), looker, journal, progress)
+    chosen = choose(outcomes.values(), request.verify, request.seed)
+    wanted = second.confirmable() if request.confirm else []
+    second.run(dict.fromkeys([*chosen, *wanted]))
+    if request.verify:
+        found = [disagreement(by_id[key[0]], outcomes[key], looker.found[key]) for key in chosen]
+        verification = Verification(request.verify, len(chosen), tuple(one for one in found if one))
+        journal.set_meta(VERIFICATION, to_data(verification))
+        progress.note(f"verify: {verification.agreed} of {verification.checked} outcomes agree")
+    if request.confirm:
+        second.confirm(wanted)
+    elif request.repeats:
+        second.repeat_doubted(max(SHARE * spent, SECONDS))
+    journal.set_meta(REPEATS, to_data(second.repeats()))
+
+
+@dataclass(slots=True)
+class _SecondLook:
+    """The repeats of one campaign."""
+
+    doubts: Doubts
+    looker: Looker
+    journal: Journal
+    progress: Progress
+
+    def confirmable(self) -> list[Key]:
+        """All that ``--confirm`` repeats, cheapest first."""
+        found = [key for key, one in self.doubts.outcomes.items() if one.verdict in _CONFIRMED]
+        return sorted(found, key=self.doubts.cost)
+
+    def run(self, keys: Iterable[Key], until: float | None = None) -> None:
+        """Run these once more, as far as ``until`` (``time.monotonic``) allows."""
+        pairs: list[Pair] = [(self.doubts.mutants[mutant], round) for mutant, round in keys]
+        self.looker.look(pairs, self.doubts.outcomes, until)
+
+    def confirm(self, keys: Sequence[Key]) -> None:
+        """Write down what ``--confirm`` found about these."""
+        changed = self._settle(keys)
+        self.journal.set_meta(CONFIRMATION, {"checked": len(keys), "unstable": len(changed)})
+        self.progress.note(f"confirm: {len(keys) - len(changed)} of {len(keys)} outcomes are confirmed")
+
+    def repeat_doubted(self, seconds: float) -> None:
+        """Run the kills in doubt once more, and those which that puts in doubt."""
+        until = time.monotonic() + seconds
+        repeated: list[Key] = []
+        changed: list[Key] = []
+        while due := [key for key in self.doubts.in_doubt() if key not in repeated]:
+            new = sorted((key for key in due if key not in self.looker.found), key=self.doubts.cost)
+            self.run(new, until)
+            looked = [key for key in due if key in self.looker.found]
+            if not looked:
+                break
+            repeated += looked
+            changed += self._settle(looked)
+            self.doubts.unreliable.update(self.doubts.outcomes[key].test or "" for key in changed)
+        if repeated or due:
+            left = f"; {len(due)} were left, as repeats may take {seconds:.0f} s" if due else ""
+            again = len(repeated) - len(changed)
+            self.progress.note(f"repeats: {again} of {len(repeated)} kills in doubt come out again{left}")
+
+    def repeats(self) -> Repeats:
+        """What is known now."""
+        doubts = self.doubts
+        kills = doubts.kills()
+        certain = {key for key in kills if key not in self.looker.found and doubts.is_certain(key)}
+        doubted = set(doubts.in_doubt())
+        others = [key for key in kills if key not in certain and key not in doubted]
+        survivors = [key for key, one in doubts.outcomes.items() if one.verdict is Verdict.SURVIVED]
+        return Repeats(
+            self._stratum(doubted - certain), self._stratum(others), len(certain), self._stratum(survivors)
+        )
+
+    def _stratum(self, keys: Iterable[Key]) -> Repeated:
+        keys = list(keys)
+        looked = [key for key in keys if key in self.looker.found]
+        return Repeated(len(keys), len(looked), sum(map(self._is_changed, looked)))
+
+    def _is_changed(self, key: Key) -> bool:
+        return self.looker.found[key].verdict is not self.doubts.outcomes[key].verdict
+
+    def _settle(self, keys: Iterable[Key]) -> list[Key]:
+        """Write into the journal what their repeats say; returns those that came out otherwise."""
+        changed = []
+        for key in keys:
+            first, second = self.doubts.outcomes[key], self.looker.found[key]
+            if self._is_changed(key):
+                changed.append(key)
+                self.journal.add_outcome(unconfirmed(first, second))
+            else:
+                self.journal.add_outcome(replace(first, repeats=first.repeats + 1))
+        return changed

@@ -1,0 +1,146 @@
+"""The replay engine: one fresh process per (mutant, round). Simple; it defines what is right."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from mutabot.campaign.baseline.baseline import Baseline, death, observation, places_of
+from mutabot.campaign.baseline.moments import moments_in
+from mutabot.campaign.baseline.site_names import Sources
+from mutabot.campaign.request import Request
+from mutabot.campaign.workers.workers import Result, Task, Workers
+from mutabot.model import Mutant, Outcome, Verdict
+
+from .judge import Death, Run, judge
+
+#: how many times its baseline's wall clock a test may take before the safety net ends it
+WALL_FACTOR = 10.0
+
+#: what to run: a mutant in a round
+Pair = tuple[Mutant, int]
+
+
+def replay(
+    request: Request, baseline: Baseline, workers: Workers, pairs: Iterable[Pair]
+) -> Iterator[Outcome]:
+    """Outcomes of mutants in rounds, as they come."""
+    sources = Sources(request.root)
+    uncovered: list[Outcome] = []
+    widened: list[Pair] = []
+    for result in workers.run(_tasks(request, baseline, pairs, uncovered)):
+        yield from _drain(uncovered)
+        run = run_of(result, sources)
+        outcome = judge(run, request, baseline)
+        if outcome.verdict is Verdict.SURVIVED and baseline.must_widen(run.mutant, run.round, run.ends):
+            widened.append((run.mutant, run.round))
+        else:
+            yield outcome
+    yield from _drain(uncovered)
+    if widened:
+        yield from replay(request, baseline, workers, widened)
+
+
+def _drain(outcomes: list[Outcome]) -> Iterator[Outcome]:
+    while outcomes:
+        yield outcomes.pop(0)
+
+
+def _tasks(
+    request: Request, baseline: Baseline, pairs: Iterable[Pair], uncovered: list[Outcome]
+) -> Iterator[Task]:
+    for mutant, round in pairs:
+        tests = baseline.judges(round, mutant)
+        if tests:
+            yield task(request, baseline, mutant, round, tests)
+        else:
+            uncovered.append(without_tests(baseline, mutant, round))
+
+
+def task(
+    request: Request,
+    baseline: Baseline,
+    mutant: Mutant,
+    round: int,
+    tests: tuple[str, ...],
+    *,
+    stop: bool = True,
+) -> Task:
+    """The task of running these tests as this mutant."""
+    budgets = {test: baseline.budget(round, test, request.configuration.timeout_factor) for test in tests}
+    walls = {test: wall_limit(request, baseline, round, test) for test in tests}
+    job = request.job(
+        round,
+        tests=tests,
+        mutant=mutant,
+        record=True,
+        stop_at_kill=stop and not request.every_test,
+        budgets=budgets,
+        moments=moments_in(baseline.strides, round),
+        instrumentation=baseline.program.instrumentation([mutant], active=True),
+    )
+    least = request.configuration.timeout_seconds
+    startup = max(least, WALL_FACTOR * baseline.startup)
+    return Task(
+        (mutant, round), job, walls, least, startup, alone=baseline.sharing[round].is_exclusive(tests)
+    )
+
+
+def wall_limit(request: Request, baseline: Baseline, round: int, test: str) -> float:
+    """Seconds of wall clock that a test may take: the safety net behind the other limits."""
+    return max(request.configuration.timeout_seconds, WALL_FACTOR * baseline.ends[round, test].wall)
+
+
+def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
+    """The outcome of a mutant that no test can judge in this round."""
+    aside = baseline.missing_judges(round, mutant)
+    if aside:
+        text = f"all tests that reach the site are set aside in this round, such as {aside[0]}"
+        return Outcome(mutant.id, round, Verdict.UNSTABLE, message=text)
+    text = "no test reaches the site in this round"
+    return Outcome(mutant.id, round, Verdict.NOT_COVERED, message=text)
+
+
+def run_of(result: Result, sources: Sources) -> Run:
+    """What a worker saw of its mutant."""
+    job = result.task.job
+    assert job.mutant is not None
+    places = places_of(result, sources)
+    return Run(
+        mutant=job.mutant,
+        round=job.round,
+        tests=job.tests or (),
+        ends=result.ends,
+        observations={end.test: observation(end, places) for end in result.ends if end.outcome != "failed"},
+        death=_death(result),
+        problem=_problem(result),
+        wall=result.wall,
+    )
+
+
+def _problem(result: Result) -> str | None:
+    """Why the mutant was not in the program, if it was not."""
+    return next((f"{file}: {why}" for file, why in result.not_instrumented.items()), None)
+
+
+def _death(result: Result) -> Death | None:
+    """Set if the process did not run all its tests to their end; None if it did, or stopped at a verdict."""
+    text = None
+    if result.end is None:
+        text = death(result)
+    elif result.end.errors:
+        text = "; ".join(result.end.errors)
+    else:
+        missing = set(result.task.job.tests or ()) - {end.test for end in result.ends}
+        if missing:
+            text = f"{len(missing)} tests did not run, such as {min(missing)}"
+    if text is None:
+        return None
+    return Death(
+        text=text,
+        test=result.running,
+        signal=-result.exit_code if result.end is None and result.exit_code < 0 else None,
+        overdue=result.overdue is not None and (result.running is not None or "" in result.acted),
+        acted=not {result.running, ""}.isdisjoint(result.acted),
+        in_mutated_call=result.in_mutated_call,
+        where=result.where,
+    )

@@ -1,0 +1,1 @@
+"""Which mutants there are, and which of them to run."""

@@ -1,0 +1,83 @@
+"""Mutants of earlier campaigns: a campaign of a few mutants leaves the others as they were.
+
+They stay in the journal with their outcomes, and reports show them beside those of the last campaign.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from mutabot.campaign.baseline.program_text import family_of
+from mutabot.campaign.request import Request
+from mutabot.campaign.reuse.keys import Dependencies
+from mutabot.journal.journal import Journal
+from mutabot.journal.records import Kept
+from mutabot.model import Mutant
+
+
+def carry(
+    known: Iterable[Mutant], request: Request, planned: Sequence[Mutant], whole: Iterable[Mutant]
+) -> list[Mutant]:
+    """The mutants of earlier campaigns that the program still has and that are not planned now.
+
+    ``whole``: all that the program has now, of the families of this campaign, with their numbers. Mutants of
+    other families and orders are kept, for of these nothing is known now. A number that is taken gives way.
+    """
+    now = {mutant.id: mutant for mutant in whole}
+    done = {mutant.id for mutant in planned}
+    found = [
+        now.get(mutant.id, mutant)
+        for mutant in known
+        if mutant.id not in done and all(_may_be_there(single, now, request) for single in mutant.singles)
+    ]
+    return _renumbered(found, planned)
+
+
+def _may_be_there(single: Mutant, now: dict[str, Mutant], request: Request) -> bool:
+    return single.id in now or family_of(single.id) not in request.families
+
+
+def _renumbered(mutants: Sequence[Mutant], planned: Sequence[Mutant]) -> list[Mutant]:
+    taken = {(len(mutant.singles), mutant.number) for mutant in planned}
+    last = max((mutant.number for mutant in (*planned, *mutants)), default=0)
+    found = []
+    for mutant in sorted(mutants, key=lambda mutant: mutant.number):
+        if (len(mutant.singles), mutant.number) in taken:
+            last += 1
+            found.append(replace(mutant, number=last))
+        else:
+            found.append(mutant)
+        taken.add((len(mutant.singles), found[-1].number))
+    return found
+
+
+def note_outdated(journal: Journal, request: Request, dependencies: Dependencies) -> None:
+    """Find out which mutants of earlier campaigns depend on something that has changed since."""
+    known = [mutant for mutant, _ in journal.known()]
+    if not known:
+        return
+    kept = journal.kept()
+    journal.set_known(
+        [(mutant, _is_outdated(mutant, journal, kept, request, dependencies)) for mutant in known]
+    )
+    journal.add_parts(dependencies.new_parts())
+
+
+def _is_outdated(
+    mutant: Mutant,
+    journal: Journal,
+    kept: dict[tuple[str, int], Kept],
+    request: Request,
+    dependencies: Dependencies,
+) -> bool:
+    for round in range(request.rounds):
+        outcome = kept.get((mutant.id, round))
+        if outcome is None:
+            return True
+        if any(family_of(single.id) not in request.families for single in mutant.singles):
+            if not dependencies.still_hold(outcome.key, journal.parts(outcome.key.split()[1]) or {}):
+                return True
+        elif outcome.key not in dependencies.keys(mutant, round):
+            return True
+    return False

@@ -1,0 +1,219 @@
+"""The plan: operators at places make mutants; what cannot matter is left out, with the reason."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, replace
+from random import Random
+from typing import Any
+
+from mutabot.campaign.baseline.answers import NoAnswerError, idle_of
+from mutabot.campaign.baseline.baseline import Baseline, Hit
+from mutabot.campaign.baseline.places import Place
+from mutabot.errors import OperatorError
+from mutabot.journal.records import Drawing
+from mutabot.model import Call, LeftOut, Mutant, Operation, Reply, Vocabulary
+from mutabot.model.values.quantity import is_reading_of
+from mutabot.operators import Operator, Subject, load_all
+from mutabot.operators.passage import Passage, rehearse
+
+#: recorded calls per place that are tried out; calls of one place are much alike
+TRIED = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Mutants to run, and what is left out.
+
+    Attributes:
+        drawing: how the mutants were drawn from the selected ones; None if all of these are there.
+    """
+
+    mutants: list[Mutant]
+    left_out: list[LeftOut]
+    drawing: Drawing | None = None
+
+
+def make_plan(baseline: Baseline, vocabulary: Vocabulary, families: Collection[str] = ("robot",)) -> Plan:
+    """All mutants of these families: those of calls first, so that they keep their numbers."""
+    plan = _plan_of_calls(baseline, vocabulary) if "robot" in families else Plan([], [])
+    first = len(plan.mutants)
+    planted = baseline.program.planted.values()
+    of_text = [replace(one.mutant, number=first + one.mutant.number) for one in planted]
+    return Plan([*plan.mutants, *of_text], [*plan.left_out, *baseline.program.left_out])
+
+
+def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary) -> Plan:
+    """All mutants of all operators at all places that the tests reach."""
+    mutants: list[Mutant] = []
+    left_out: list[LeftOut] = []
+    taken: set[str] = set()
+    operators = load_all()
+    operations_at = Counter(site for site, _ in {(place.site, place.operation) for place in baseline.hits})
+    for place, hits in baseline.hits.items():
+        operation = vocabulary.operation(place.operation)
+        if operation is None:
+            continue
+        is_shared = operations_at[place.site] > 1
+        for subject, rule in _subjects(operators, operation, place):
+            mutant = _mutant(len(mutants) + 1, rule, subject, place)
+            mutant = _distinct(mutant, taken)
+            seen, reason = _foresee(rule, subject, hits)
+            if rule.asks_where and not _is_told(subject, vocabulary):
+                reason = f"{operation.current or 'no reading'} does not tell where it is"
+            mutant = replace(
+                mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
+            )
+            if rule.asks_idle and reason is None:
+                try:
+                    mutant = replace(
+                        mutant, idle=idle_of(operation, subject.pattern, baseline.answers[place])
+                    )
+                except NoAnswerError as error:
+                    reason = str(error)
+            if reason is None:
+                mutants.append(mutant)
+            else:
+                left_out.append(LeftOut(mutant.id, mutant.description, reason))
+    return Plan(mutants, left_out)
+
+
+def _subjects(
+    operators: Iterable[Operator], operation: Operation, place: Place
+) -> Iterator[tuple[Subject, Operator]]:
+    pattern = operation.pattern(place.pattern)
+    for rule in operators:
+        try:
+            subjects = list(rule.subjects(operation, pattern))
+        except Exception as error:  # a plug-in may fail in any way; the user needs to know which one it was
+            raise OperatorError(
+                f"operator {rule.name!r} fails on {operation.target}: {error!r}", operator=rule.name
+            ) from error
+        for subject in subjects:
+            yield subject, rule
+
+
+def _mutant(number: int, rule: Operator, subject: Subject, place: Place) -> Mutant:
+    return Mutant(
+        number=number,
+        family=rule.family,
+        operator=rule.name,
+        site=place.site,
+        operation=place.operation,
+        pattern=place.pattern,
+        quantity=subject.quantity.name if subject.quantity is not None else None,
+        variant=subject.variant,
+        description="",
+    )
+
+
+def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
+    """Two operations at one site (the object decides) may have quantities of the same name."""
+    if mutant.id in taken:
+        name = mutant.operation.partition(":")[2]
+        mutant = replace(mutant, variant="+".join(part for part in (mutant.variant, name) if part))
+    taken.add(mutant.id)
+    return mutant
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """A recorded value of the subject, and what it would become; None where nobody knows beforehand."""
+
+    before: Any = None
+    after: Any = None
+
+
+def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, str | None]:
+    """What the mutant would do to the recorded calls, and why it is left out, if it is."""
+    last = _Seen()
+    for hit in hits[:TRIED]:
+        before = _value(subject, hit)
+        try:
+            passage = _rehearsal(rule, subject, hit)
+        except LookupError:  # it asks where the robot is, which only the run can tell
+            return _Seen(before), None
+        if passage.acted:
+            return _Seen(before, _changed(subject, passage)), None
+        if last.before is None:
+            last = _Seen(before, before)
+    return last, _reason(subject, last.before, len(hits))
+
+
+def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
+    """Whether the vocabulary names a reading that tells where the subject's quantity is."""
+    reading = vocabulary.operation(subject.operation.current or "")
+    if reading is None or subject.quantity is None:
+        return False
+    return any(is_reading_of(part, subject.quantity) for part in reading.result)
+
+
+def _rehearsal(rule: Operator, subject: Subject, hit: Hit) -> Passage:
+    call = Call(subject.operation, subject.pattern, hit.written, idle=Reply())
+    try:
+        passage = rehearse(rule.middleware(subject, Random(1)), call, hit.read, operator=rule.name)
+    except (LookupError, OperatorError):
+        raise
+    except Exception as error:  # as above: a plug-in's own fault
+        raise OperatorError(
+            f"operator {rule.name!r} fails on {subject.operation.target}: {error!r}", operator=rule.name
+        ) from error
+    _check_promises(rule, subject, passage)
+    return passage
+
+
+def _check_promises(rule: Operator, subject: Subject, passage: Passage) -> None:
+    broken = None
+    if rule.does_nothing and passage.performed:
+        broken = "declares does_nothing, but makes the call"
+    elif not rule.asks_idle and not passage.performed and passage.received is passage.call.idle:
+        broken = "answers with call.idle, but does not declare asks_idle = True"
+    if broken is not None:
+        text = f"operator {rule.name!r} {broken} (on {subject.operation.target})"
+        raise OperatorError(text, operator=rule.name)
+
+
+def _value(subject: Subject, hit: Hit) -> Any:
+    if subject.quantity is None:
+        return None
+    return {**hit.read, **hit.written}.get(subject.quantity.name)
+
+
+def _changed(subject: Subject, passage: Passage) -> Any:
+    name = subject.quantity.name if subject.quantity is not None else ""
+    if passage.changed_reading and passage.received is not None:
+        return passage.received.values.get(name)
+    return passage.performed[0].values.get(name) if passage.performed else None
+
+
+def _reason(subject: Subject, value: Any, hits: int) -> str:
+    calls = "the call" if hits == 1 else f"any of {hits} calls"
+    if value is None:
+        return "the call gives no such value" if hits == 1 else f"none of {hits} calls gives such a value"
+    shown = subject.quantity.text(value) if subject.quantity is not None else str(value)
+    limited = subject.quantity is not None and (subject.quantity.range or subject.quantity.values)
+    within = " within the values that the vocabulary allows" if limited else ""
+    return f"would change nothing in {calls}{within} (value {shown})"
+
+
+def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen, *, is_shared: bool) -> str:
+    """What the mutant does, in one line; ``is_shared``: whether the site reaches several operations."""
+    operation = subject.operation
+    what = place.site.text
+    if not _names(what, operation.qualname, is_shared=is_shared):
+        what = f"{what} ({operation.name})"
+    if subject.pattern is not None:
+        name = subject.pattern.name
+        what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
+    return f"{what}: {rule.describe(subject, seen.before, seen.after)}"
+
+
+def _names(text: str, qualname: str, *, is_shared: bool) -> bool:
+    """Whether the text of a call says which operation it is: a variable, a table or a wrapper may not."""
+    wanted = qualname if is_shared else qualname.rpartition(".")[2]
+    return (
+        re.search(rf"(?<![\w.]){re.escape(wanted)}$" if is_shared else rf"\b{re.escape(wanted)}$", text)
+        is not None
+    )

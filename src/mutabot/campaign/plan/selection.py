@@ -1,0 +1,120 @@
+"""Which of the planned mutants to run."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from mutabot.errors import SelectionError, nearest_name
+from mutabot.model import LeftOut, Mutant
+from mutabot.model.selector import fits, is_like
+
+_WILD = re.compile(r"[*?]")
+
+
+def select(
+    mutants: Sequence[Mutant],
+    only: Iterable[str] = (),
+    skip: Iterable[str] = (),
+    selection_file: Path | None = None,
+    *,
+    left_out: Iterable[LeftOut] = (),
+) -> list[Mutant]:
+    """The mutants that a selection file, ``only`` and ``skip`` leave, in the order of their numbers.
+
+    A selection file holds one id (or an id with ``*`` and ``?``) per line; what follows ``#`` at the
+    beginning of a line or after a space is a comment. Its mutants are numbered 1, 2, 3 … in the order of
+    the file; otherwise numbers stay those of the plan. ``only`` and ``skip`` take ids (also with ``*`` and
+    ``?``), numbers (``3``, ``16-20``, ``3,16-20``), names of operators, families or roles, files, file globs,
+    and lines (``mission.py:22``, ``mission.py:20-30``).
+
+    Raises SelectionError for anything that fits no mutant, nor one that the plan leaves out.
+    """
+    only, skip, left_out = list(only), list(skip), list(left_out)
+    set_aside = [item.id for item in left_out]
+    chosen = numbered(mutants, selection_file, left_out=left_out)
+    wanted = _fitting(only, chosen, set_aside, "--only") if only else {mutant.id for mutant in chosen}
+    wanted -= _fitting(skip, chosen, set_aside, "--skip")
+    return [mutant for mutant in chosen if mutant.id in wanted]
+
+
+def numbered(
+    mutants: Sequence[Mutant], selection_file: Path | None, *, left_out: Iterable[LeftOut] = ()
+) -> list[Mutant]:
+    """The mutants of a selection file, numbered by it; all if there is none. Raises SelectionError."""
+    if selection_file is None:
+        return list(mutants)
+    return _from_file(selection_file, mutants, [item.id for item in left_out])
+
+
+def _from_file(file: Path, mutants: Sequence[Mutant], set_aside: Sequence[str]) -> list[Mutant]:
+    found: dict[str, Mutant] = {}
+    unknown: list[str] = []
+    by_id = {mutant.id: mutant for mutant in mutants}
+    for pattern in _patterns(file, by_id.keys() | {*set_aside}):
+        if pattern in by_id:  # as nearly all are, be there thousands; an id may hold signs that are wild
+            here = [by_id[pattern]]
+        else:
+            here = [mutant for mutant in mutants if is_like(pattern, mutant.id)]
+        if not here and not any(is_like(pattern, other) for other in set_aside):
+            unknown.append(pattern)
+        for mutant in here:
+            found.setdefault(mutant.id, mutant)
+    if unknown:
+        raise _nothing_fits(str(file), unknown, [*(mutant.id for mutant in mutants), *set_aside])
+    return [replace(mutant, number=number) for number, mutant in enumerate(found.values(), start=1)]
+
+
+def _of_id(pattern: str, mutants: Sequence[Mutant]) -> list[Mutant]:
+    """The mutant with exactly this id, which may hold signs that are wild elsewhere."""
+    return [mutant for mutant in mutants if mutant.id == pattern]
+
+
+def _patterns(file: Path, ids: Collection[str]) -> Iterator[str]:
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise SelectionError(f"cannot read the selection file {file}: {reason}") from error
+    for line in text.splitlines():
+        # An id of program text may hold anything; any other holds "#" too, but never after a space.
+        pattern = line.strip()
+        if pattern not in ids:
+            pattern = re.split(r"(?:^|\s)#", line, maxsplit=1)[0].strip()
+        if pattern:
+            yield pattern
+
+
+def _fitting(
+    patterns: Iterable[str], mutants: Sequence[Mutant], set_aside: Sequence[str], option: str
+) -> set[str]:
+    found: set[str] = set()
+    unknown = []
+    for pattern in patterns:
+        here = {mutant.id for mutant in _of_id(pattern, mutants) or mutants if fits(pattern, mutant)}
+        if not here and not any(is_like(pattern, other) for other in set_aside):
+            unknown.append(pattern)
+        found |= here
+    if unknown:
+        raise _nothing_fits(option, unknown, _names(mutants))
+    return found
+
+
+def _names(mutants: Sequence[Mutant]) -> list[str]:
+    names: dict[str, None] = {}
+    for mutant in mutants:
+        span = mutant.site.span
+        words = (mutant.operator, mutant.family, mutant.site.role.value, span.file, mutant.id)
+        names.update(dict.fromkeys(words))
+    return list(names)
+
+
+def _nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> SelectionError:
+    lines = []
+    for pattern in unknown:
+        nearest = nearest_name(pattern, known)
+        hint = f"the nearest is {nearest!r}" if nearest else "`mutabot list` shows what there is"
+        lines.append(f"{source}: no mutant fits {pattern!r}; {hint}")
+    return SelectionError("\n".join(lines), unknown=unknown)

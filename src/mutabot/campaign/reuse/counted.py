@@ -1,0 +1,132 @@
+"""Which files of a project outcomes depend on.
+
+All that tests could import or read, as far as anybody can tell. Of texts and logs, which people and tools
+leave everywhere, only those that something has to do with.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping, Set
+from pathlib import Path, PurePosixPath
+
+from mutabot.campaign.request import Request
+
+#: stands for the content of data that the unmutated tests write: results, not causes
+WRITTEN = "written by the tests themselves"
+#: names of what people and tools leave in a folder; any other file counts by its mere presence
+_NOTES = {
+    ".bak", ".diff", ".dot", ".err", ".gif", ".htm", ".html", ".log", ".md", ".mp4", ".orig", ".out",
+    ".patch", ".pdf", ".pid", ".prof", ".rst", ".svg", ".tex", ".tmp", ".txt", ".webm",
+}  # fmt: skip
+#: files that may name others, and bytes beyond which they are data
+_MAY_NAME, _LONGEST = re.compile(r".*\.(py|toml|cfg|ini|json|ya?ml|xml|urdf|xacro|feature|txt)"), 1 << 20
+_OWN_LINE = re.compile(r"\S+\.py:[^:]+:.+#\d+:.+")  # a mutant's id, as selection files hold them
+#: what our own pictures hold near their beginning; see ``mutabot.report.picture``
+_PICTURES, _PICTURE = {".svg", ".png"}, b"written by mutabot compare"
+#: how our own JSON begins, and reports of tests and their coverage
+_REPORTS = {
+    ".json": re.compile(rb'\{\s*"format": \d+,\s*"'),
+    ".xml": re.compile(rb".{0,200}<(testsuites?|coverage)\b", re.DOTALL),
+}
+
+
+def counted(
+    request: Request, digests: Mapping[str, str], written: Set[str], opened: Set[str] | None
+) -> dict[str, str]:
+    """The files that outcomes depend on, with their digests.
+
+    Those that the configuration itself consists of count by what they say. A note (``_NOTES``) counts if the
+    baseline opened it or one like it beside it, or if another file names it: a mutant might read it.
+
+    Args:
+        digests: all files of the project.
+        written: those that the baseline touched.
+        opened: those that anybody opened meanwhile; None if that is not known.
+    """
+    configuration = request.configuration
+    named = (configuration.selection or "", *configuration.vocabulary)
+    own = {configuration.file, "pyproject.toml", *(PurePosixPath(name).as_posix() for name in named)}
+    if request.selection is not None:
+        own.add(_relative(request.selection, request.root))
+    others = {name: digest for name, digest in digests.items() if name not in own}
+    ignored = _ignored(request.root, others, opened) if opened is not None else set()
+    found = {}
+    for name, digest in others.items():
+        if name not in ignored and not _is_ours(request.root / name):
+            is_result = name in written and not name.endswith(".py")
+            found[name] = WRITTEN if is_result else digest
+    return found
+
+
+def _ignored(root: Path, names: Iterable[str], opened: Set[str]) -> set[str]:
+    """Notes that nothing has to do with."""
+    names = list(names)
+    alike = {_kind(name) for name in opened}
+    notes = {
+        name
+        for name in names
+        if PurePosixPath(name).suffix.lower() in _NOTES
+        and _kind(name) not in alike
+        and not (root / name).is_symlink()  # it is opened elsewhere
+    }
+    if not notes:
+        return notes
+    for text in _texts(root, (name for name in names if name not in notes)):
+        notes = {name for name in notes if not _is_named(PurePosixPath(name), text)}
+    return notes
+
+
+def _kind(name: str) -> tuple[str, str]:
+    path = PurePosixPath(name)
+    return path.parent.as_posix(), path.suffix.lower()
+
+
+def _texts(root: Path, names: Iterable[str]) -> Iterator[bytes]:
+    for name in names:
+        if not _MAY_NAME.fullmatch(name):
+            continue
+        try:
+            path = root / name
+            if path.stat().st_size <= _LONGEST:
+                yield path.read_bytes()
+        except OSError:
+            continue
+
+
+def _is_named(note: PurePosixPath, text: bytes) -> bool:
+    """Whether a text holds the name of a file, or what comes before the suffix, in quotes."""
+    stem = note.stem.encode()
+    return note.name.encode() in text or any(quote + stem + quote in text for quote in (b"'", b'"'))
+
+
+def _relative(path: Path, root: Path) -> str:
+    return Path(os.path.relpath(path.resolve(), root)).as_posix()
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether it is a file for or by mutabot, or a report on tests, which no robot program reads."""
+    if path.suffix in _PICTURES:
+        return _begins(path, re.compile(b".*" + _PICTURE, re.DOTALL))
+    if path.suffix in _REPORTS:
+        return _begins(path, _REPORTS[path.suffix])
+    return path.suffix == ".txt" and _is_selection(path)
+
+
+def _begins(path: Path, pattern: re.Pattern[bytes]) -> bool:
+    try:
+        with path.open("rb") as file:
+            return pattern.match(file.read(1000)) is not None
+    except OSError:
+        return False
+
+
+def _is_selection(path: Path) -> bool:
+    try:
+        with path.open(encoding="utf-8") as file:
+            lines = [line for line in (file.readline(400) for _ in range(20)) if line.strip()]
+    except (OSError, UnicodeDecodeError):
+        return False
+    ids = [line for line in lines if not line.startswith("#")]
+    return bool(ids) and all(_OWN_LINE.match(line) for line in ids)

@@ -1,0 +1,128 @@
+"""Snapshots: what the files of a project hold, by content."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import stat
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from .counted import WRITTEN
+
+#: folders without anything that a test imports or reads; hidden ones are left out as well
+_FOLDERS = {"__pycache__", "node_modules", "site-packages"}
+
+
+_SUFFIXES = (".pyc", ".pyo", ".swp", "~", ".egg-info", ".dist-info")
+
+
+#: files for people and for other tools
+_FOR_PEOPLE = re.compile(
+    r"(README|CHANGELOG|CHANGES|CONTRIBUTING|LICEN[SC]E|AUTHORS)(\.(md|rst|txt|adoc))?", re.IGNORECASE
+)
+
+
+_FOR_TOOLS = {".gitignore", ".gitattributes", ".editorconfig", ".coverage", ".DS_Store"}
+
+
+_HASH = "#"
+
+
+@dataclass(frozen=True, slots=True)
+class _File:
+    """One file: what the system says about it, and the digest of its content."""
+
+    status: tuple[int, ...]
+    digest: str
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """The files of a project at one moment, by their path relative to its root."""
+
+    files: Mapping[str, _File]
+
+    @classmethod
+    def take(cls, root: Path, before: Snapshot | None = None) -> Snapshot:
+        """Read all files; those that the system says are untouched since ``before`` need not be read."""
+        known = before.files if before is not None else {}
+        found = {}
+        for name, path, status in _walk(root):
+            same = known.get(name)
+            if same is not None and same.status == status:
+                found[name] = same
+                continue
+            digest = _digest_of(path)
+            if digest is not None:
+                found[name] = _File(status, digest)
+        return cls(found)
+
+    @property
+    def folders(self) -> set[str]:
+        """The folders with files in them, relative to the root."""
+        return {PurePosixPath(name).parent.as_posix() for name in self.files} | {"."}
+
+    def edited_since(self, before: Mapping[str, str]) -> list[str]:
+        """Files that had another digest, or are gone."""
+        return [name for name, was in before.items() if was not in (WRITTEN, self._digest(name))]
+
+    def edited_programs(self, before: Snapshot) -> list[str]:
+        """Python files of ``before`` that have another content now, or are gone."""
+        programs = {name: file.digest for name, file in before.files.items() if name.endswith(".py")}
+        return self.edited_since(programs)
+
+    def touched_since(self, before: Snapshot) -> set[str]:
+        """Files that were written since ``before``, be it with the same content."""
+        known = before.files
+        return {
+            name
+            for name, file in self.files.items()
+            if name not in known or known[name].status != file.status
+        }
+
+    def _digest(self, name: str) -> str | None:
+        file = self.files.get(name)
+        return file.digest if file is not None else None
+
+
+def _walk(root: Path) -> Iterator[tuple[str, Path, tuple[int, ...]]]:
+    """The regular files that could matter, with what tells whether they were touched."""
+    for folder, folders, names in os.walk(root):
+        here = Path(folder)
+        folders[:] = sorted(name for name in folders if _is_folder_of_project(here / name))
+        for name in sorted(names):
+            if name.endswith(_SUFFIXES) or name in _FOR_TOOLS or _FOR_PEOPLE.fullmatch(name):
+                continue
+            path = here / name
+            try:
+                status = path.stat()
+            except OSError:
+                continue  # it is gone, or a link to nowhere
+            if stat.S_ISREG(status.st_mode):
+                times = (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
+                yield path.relative_to(root).as_posix(), path, times
+
+
+def _is_folder_of_project(folder: Path) -> bool:
+    name = folder.name
+    if name.startswith(".") or name in _FOLDERS or name.endswith(_SUFFIXES):
+        return False
+    return not (folder / "pyvenv.cfg").exists()
+
+
+def _digest_of(path: Path) -> str | None:
+    try:
+        with path.open("rb") as file:
+            return _HASH + hashlib.file_digest(file, _new_hash).hexdigest()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        return f"cannot be read: {error.strerror}"
+
+
+def _new_hash() -> Any:
+    return hashlib.blake2b(digest_size=12)

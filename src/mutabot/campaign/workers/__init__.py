@@ -1,0 +1,1 @@
+"""Processes that run jobs, as many at a time as they may."""

@@ -1,0 +1,386 @@
+"""Worker processes: each runs one job in a fresh Python and answers over a pipe.
+
+One thread looks after all of them: it waits for lines, for exits and for deadlines, and never for one
+worker alone. Workers are process groups of their own, so that ending one ends all it started.
+"""
+
+from __future__ import annotations
+
+import os
+import selectors
+import tempfile
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from mutabot.border import stack
+from mutabot.border.job import Job
+from mutabot.border.lines import (
+    Acted,
+    CalledAtImport,
+    Line,
+    MutatedCall,
+    NotInstrumented,
+    PlacesReached,
+    Problem,
+    SessionEnd,
+    SiteSeen,
+    TestEnd,
+    TestStart,
+    TextsSeen,
+    TokensHeld,
+    Watched,
+)
+from mutabot.errors import JournalError
+
+from .forkserver import Copy, ForkServer
+from .interruption import interruptible
+from .processes import Home, LineReader, Spawned, refuse_full_disk
+from .token_pool import TokenPool
+
+#: seconds a worker may take until its first test begins, at least
+STARTUP_SECONDS = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A job with what the controller needs to run it.
+
+    Attributes:
+        key: what the caller knows it by.
+        job: the job.
+        deadlines: wall-clock seconds each test may take; tests that are missing get ``deadline``.
+        deadline: wall-clock seconds for any other test.
+        startup: wall-clock seconds until the first test begins.
+        is_trunk: whether it branches: it then runs on a token of the pool.
+        may_share: whether it may begin as a copy of a fork server instead of in a fresh process.
+        alone: whether nothing may run beside it.
+    """
+
+    key: Any
+    job: Job
+    deadlines: Mapping[str, float] = field(default_factory=dict)
+    deadline: float = 600.0
+    startup: float = STARTUP_SECONDS
+    is_trunk: bool = False
+    may_share: bool = False
+    alone: bool = False
+
+
+@dataclass(slots=True)
+class Result:
+    """What became of a worker.
+
+    Attributes:
+        task: its task.
+        sites, ends, problems: what it reported.
+        acted: tests in which its mutant did something; the empty one stands for before any test.
+        reached: places of the program text by test, likewise.
+        called_at_import: trace of the operations that were called before any test.
+        seen: what a recording saw of the program text.
+        not_instrumented: files whose mutants cannot run, with the reason.
+        in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
+        held: tokens that it and its branches held when it was last heard of.
+        running: test that was under way when it ended, or None.
+        watched: limits of the suite's own that would end it during that test.
+        end: its orderly end; None if there was none.
+        exit_code: its exit code, negative for a signal.
+        overdue: which wall-clock limit it exceeded, in words, or None.
+        where: where it was then: its innermost calls; None if that is not known.
+        wall: seconds from its start to its end.
+        log: the last lines it printed.
+    """
+
+    task: Task
+    sites: list[SiteSeen] = field(default_factory=list)
+    ends: list[TestEnd] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+    acted: list[str] = field(default_factory=list)
+    reached: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    called_at_import: tuple[Any, ...] = ()
+    seen: TextsSeen | None = None
+    not_instrumented: dict[str, str] = field(default_factory=dict)
+    in_mutated_call: bool = False
+    held: int = 0
+    running: str | None = None
+    watched: list[Watched] = field(default_factory=list)
+    end: SessionEnd | None = None
+    exit_code: int = 0
+    overdue: str | None = None
+    where: str | None = None
+    wall: float = 0.0
+    log: str = ""
+
+    def take(self, line: Line) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
+        """Sort in one report line."""
+        match line:
+            case SiteSeen():
+                self.sites.append(line)
+            case TestStart():
+                self.running = line.test
+                self.watched.clear()
+            case Watched():
+                self.watched.append(line)
+            case Acted() if line.mutant is None:
+                self.acted.append(line.test)
+            case PlacesReached():
+                self.reached[line.test] = line.places
+            case CalledAtImport():
+                self.called_at_import = line.trace
+            case TextsSeen():
+                self.seen = line
+            case NotInstrumented():
+                self.not_instrumented[line.file] = line.reason
+            case MutatedCall() if line.mutant is None:
+                self.in_mutated_call = line.began
+            case TokensHeld():
+                self.held = line.held
+            case TestEnd():
+                self.ends.append(line)
+                self.running = None
+            case Problem():
+                self.problems.append(line)
+            case SessionEnd():
+                self.end = line
+
+    def find_overdue(self, now: float) -> None:
+        """Say so if a limit of the suite's own ended the process, by ``now`` (``time.monotonic``)."""
+        if self.end is None and self.overdue is None and self.running is not None and self.exit_code == 1:
+            self.overdue = next((one.text for one in self.watched if now >= one.until), None)
+
+
+class Workers:
+    """Runs tasks in up to ``jobs`` worker processes at a time.
+
+    Args:
+        root: the project's root; workers start there.
+        arguments: pytest arguments of the project.
+        jobs: how many run side by side.
+
+    Use as a context manager: leaving it ends whatever still runs and removes temporary files.
+
+    Attributes:
+        pool: the tokens of trunks and branches.
+        on_unshared: told why tasks that might begin as copies of a fork server do not, once that is known.
+    """
+
+    def __init__(self, root: Path, arguments: Iterable[str], jobs: int) -> None:
+        self._root = root
+        self._arguments = tuple(arguments)
+        self._jobs = max(1, jobs)
+        self._selector = selectors.DefaultSelector()
+        self._workers: list[_Worker] = []
+        self._servers: list[ForkServer] = []
+        self.on_unshared: Callable[[str], None] = lambda reason: None
+        self._may_share = True
+        self.pool = TokenPool(self._jobs)
+        home = root / ".mutabot"
+        try:
+            home.mkdir(exist_ok=True)
+            ignore = home / ".gitignore"
+            if not ignore.exists():
+                ignore.write_text("*\n", encoding="utf-8")
+            self._folder = tempfile.TemporaryDirectory(prefix="work-", dir=home)
+        except OSError as error:
+            raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        for worker in self._workers:
+            worker.kill()
+            worker.close(self._selector)
+        self._workers.clear()
+        for server in list(self._servers):
+            self._end_server(server)
+        self._selector.close()
+        self.pool.close()
+        self._folder.cleanup()
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
+        """Results in the order in which they end. Tasks are taken from the iterable as places free up."""
+        for event in self.events(tasks):
+            if isinstance(event, Result):
+                yield event
+
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
+        """Report lines as they come, with their task, and results in the order in which they end."""
+        waiting = iter(tasks)
+        next_task = next(waiting, None)
+        while True:
+            while next_task is not None and self._has_place(next_task):
+                self._start(next_task)
+                next_task = next(waiting, None)
+            if not self._workers:
+                return
+            yield from self._wait(for_token=next_task is not None and next_task.is_trunk)
+
+    def _has_place(self, task: Task) -> bool:
+        if len(self._workers) >= self._jobs or (self._workers and self._is_alone(task)):
+            return False
+        if not task.is_trunk:
+            return True
+        if not self._workers:
+            self.pool.refill()  # nobody is left who could hold one
+        return self.pool.take()
+
+    def _is_alone(self, task: Task) -> bool:
+        return task.alone or any(worker.task.alone for worker in self._workers)
+
+    def _start(self, task: Task) -> None:
+        home = Home.make(Path(self._folder.name), task.job)
+        reading, writing = os.pipe()
+        try:
+            worker = _Worker(task, home, reading, self._process(task, home, writing))
+        except BaseException:
+            os.close(reading)
+            raise
+        finally:
+            os.close(writing)
+        worker.watch(self._selector)
+        self._workers.append(worker)
+
+    def _process(self, task: Task, home: Home, writing: int) -> Spawned | Copy:
+        server = self._server_for(task) if task.may_share else None
+        copy = server.copy(home, writing) if server is not None else None
+        if copy is not None:
+            return copy
+        descriptors = self.pool.descriptors if task.is_trunk else ()
+        return Spawned(self._root, self._arguments, home, writing, descriptors)
+
+    def _server_for(self, task: Task) -> ForkServer | None:
+        """The fork server for such a task; None if there can be none."""
+        found = next((server for server in self._servers if server.serves(task.job)), None)
+        if found is not None or not self._may_share:
+            return found
+        for idle in [server for server in self._servers if server.is_idle]:
+            self._end_server(idle)  # what it was for is over
+        server = ForkServer(
+            task.job, self._root, self._arguments, Path(self._folder.name), self.pool.descriptors
+        )
+        self._servers.append(server)
+        self._selector.register(server.pipe, selectors.EVENT_READ, server)
+        reason = server.wait_until_ready(task.startup)
+        if reason is None:
+            return server
+        self._may_share = False
+        self.on_unshared(reason)
+        self._end_server(server)
+        return None
+
+    def _end_server(self, server: ForkServer) -> None:
+        self._selector.unregister(server.pipe)
+        self._servers.remove(server)
+        server.close()
+
+    def _wait(self, *, for_token: bool) -> Iterator[Result | tuple[Task, Line]]:
+        timeout = max(0.0, min(worker.until for worker in self._workers) - time.monotonic())
+        if any(worker.has_ended for worker in self._workers):
+            timeout = 0.0  # a fork server may have told so while it was asked for something else
+        if for_token and len(self._workers) < self._jobs:
+            self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
+        with interruptible():
+            ready = self._selector.select(timeout)
+        if self.pool.reading in self._selector.get_map():
+            self._selector.unregister(self.pool.reading)
+        for key, _ in ready:
+            if isinstance(key.data, ForkServer):
+                key.data.listen()
+            elif isinstance(key.data, _Worker) and key.fd == key.data.pipe:
+                for line in key.data.read():
+                    yield key.data.task, line
+        now = time.monotonic()
+        for worker in list(self._workers):
+            if now >= worker.until and not worker.has_ended:
+                worker.expire()
+            if worker.has_ended:
+                yield from self._finish(worker)
+
+    def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Line]]:
+        self._workers.remove(worker)
+        lines, result = worker.finish(self._selector)
+        for line in lines:
+            yield worker.task, line
+        if result.end is None:
+            refuse_full_disk(Path(self._folder.name))
+        if worker.task.is_trunk:
+            self.pool.give_back(result.held)  # what a trunk that died had not given back itself
+        yield result
+
+
+class _Worker:
+    """One running worker process."""
+
+    def __init__(self, task: Task, home: Home, pipe: int, process: Spawned | Copy) -> None:
+        self.task = task
+        self.result = Result(task, held=1 if task.is_trunk else 0)
+        self.pipe = pipe
+        self._lines = LineReader(pipe)
+        self._home, self._process = home, process
+        self._started = time.monotonic()
+        self.until = self._started + task.startup
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the process is gone."""
+        return self._process.exit_code is not None
+
+    def watch(self, selector: selectors.BaseSelector) -> None:
+        selector.register(self.pipe, selectors.EVENT_READ, self)
+        if self._process.pidfd is not None:
+            selector.register(self._process.pidfd, selectors.EVENT_READ, self)
+
+    def read(self) -> list[Line]:
+        """Take what the pipe holds."""
+        lines = self._lines.read()
+        for line in lines:
+            self._take(line)
+        return lines
+
+    def _take(self, line: Line) -> None:
+        self.result.take(line)
+        if isinstance(line, TestEnd):
+            self.until = time.monotonic() + self.task.startup
+        elif isinstance(line, TestStart) or self.task.is_trunk:
+            running = self.result.running or ""
+            self.until = time.monotonic() + self.task.deadlines.get(running, self.task.deadline)
+
+    def expire(self) -> None:
+        """The wall clock ran out: end the process group."""
+        if self.result.running is not None:
+            limit = self.task.deadlines.get(self.result.running, self.task.deadline)
+            self.result.overdue = f"no end after {limit:.0f} s of wall clock"
+        else:
+            self.result.overdue = f"no test begun or finished within {self.task.startup:.0f} s"
+        self.result.where = stack.ask(
+            self._process.pid, str(self._home.folder / stack.FILE), self.task.job.root
+        )
+        self._process.end()
+
+    def kill(self) -> None:
+        self._process.kill()
+
+    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Line], Result]:
+        """Collect the rest of a process that has ended: its last lines, and what became of it."""
+        self.result.exit_code = self._process.end()
+        lines = self.read()
+        self.result.find_overdue(time.monotonic())
+        self.result.wall = time.monotonic() - self._started + self._process.startup
+        self.result.log = self._home.log_text()
+        self.close(selector)
+        return lines, self.result
+
+    def close(self, selector: selectors.BaseSelector) -> None:
+        selector.unregister(self.pipe)
+        if self._process.pidfd is not None:
+            selector.unregister(self._process.pidfd)
+        os.close(self.pipe)
+        self._process.end()
+        self._process.release()
+        self._home.remove()

@@ -1,0 +1,1 @@
+"""The operators on program text, one file each."""

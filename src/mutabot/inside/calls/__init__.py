@@ -1,0 +1,1 @@
+"""A call of an operation on its way: found, understood, mutated, recorded."""

@@ -1,0 +1,197 @@
+"""Activation: one mutant at work at its site."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from random import Random
+from typing import Any
+
+from mutabot.border.idle import Idle
+from mutabot.errors import OperatorError
+from mutabot.inside.evidence import REFUSALS, Evidence
+from mutabot.inside.leaves import leaves
+from mutabot.model import Call, Middleware, Mutant, Operation, Reply, Span
+from mutabot.model.values.answer import restore
+from mutabot.operators import Operator, Subject, operator
+from mutabot.operators.control import FatalFault
+from mutabot.operators.passage import Carried, Passage, passed, run
+
+from .door import Door, here
+from .intercept import is_named
+
+
+@dataclass(slots=True)
+class Activation:
+    """A mutant in place.
+
+    Attributes:
+        mutant: the mutant.
+        operation: the operation it acts on.
+        refusals: names of exceptions that are refusals.
+        on_act: told when it changes something for the first time in a test.
+        on_call: told when a mutated call begins (True) and when it has returned or raised (False).
+        evidence: what it did in the running test.
+        rule: its operator.
+    """
+
+    mutant: Mutant
+    operation: Operation
+    refusals: frozenset[str]
+    on_act: Callable[[], None]
+    on_call: Callable[[bool], None]
+    evidence: Evidence = field(default_factory=Evidence)
+    rule: Operator = field(init=False)
+    _middleware: Middleware | None = None
+    _idle: Idle | None = None
+    _test: tuple[int, str] = (0, "")
+    _early: Evidence = field(default_factory=Evidence)
+
+    def keep_early(self) -> None:
+        """What it did before the first test counts in every test."""
+        self._early = self.evidence
+
+    def start(self, seed: int, round: int = 0, test: str = "") -> None:
+        """A new test begins; the mutant's randomness follows from ``seed`` alone."""
+        self.evidence = replace(self._early, away=dict(self._early.away))
+        self.rule = operator(self.mutant.operator)
+        self._middleware = self.rule.middleware(self._subject(), Random(seed))
+        self._idle = Idle.of(self.mutant.idle) if self.rule.asks_idle else None
+        self._test = (round, test)
+
+    def is_here(self, span: Span, target: str) -> bool:
+        """Whether calls of this operation at this place are the mutant's, bar the text command."""
+        return self.mutant.operation == target and self.mutant.site.span == span
+
+    def fits(self, call: Call) -> bool:
+        """Whether the call is the text command that the mutant is about."""
+        return (call.pattern.text if call.pattern is not None else None) == self.mutant.pattern
+
+    def run(self, door: Door, call: Call) -> tuple[Any, Reply | None]:
+        """Make a plain call as the mutant: (what the program receives, the robot's last answer)."""
+        return run(self.run_async(door, call, awaits=False), operator=self.mutant.operator)
+
+    async def run_async(self, door: Door, call: Call, *, awaits: bool = True) -> tuple[Any, Reply | None]:
+        """Make an async call as the mutant: (what the program receives, the robot's last answer)."""
+        assert self._middleware is not None
+        self.evidence.hits += 1
+        passage = Passage(call)
+        performer = _Performer(self, door, passage, awaits)
+        try:
+            if self._idle is not None:
+                passage.call = replace(call, idle=self._answer(self._idle, door, call))
+            reply = await passed(passage, self._middleware, performer.proceed)
+            self._note(passage)
+            last = passage.answered[-1] if passage.answered else None
+            return door.result(passage.call, reply, last), last
+        except BaseException as error:
+            self._note(passage)
+            if isinstance(error, FatalFault):
+                self.evidence.acted += 1
+            elif performer.raised is None and self.evidence.failure is None:
+                # neither the robot nor the program: the operator or the vocabulary is at fault
+                self.evidence.failure = f"operator {self.mutant.operator}: {type(error).__name__}: {error}"
+            raise
+
+    def _subject(self) -> Subject:
+        pattern = self.operation.pattern(self.mutant.pattern)
+        subject = Subject(self.operation, pattern, None, self.mutant.variant)
+        quantities = (*subject.written, *subject.read)
+        named = next((quantity for quantity in quantities if quantity.name == self.mutant.quantity), None)
+        return replace(subject, quantity=named)
+
+    def _answer(self, idle: Idle, door: Door, call: Call) -> Reply:
+        """What the command answers while the robot does nothing: what it answered here in the baseline.
+
+        Where that changed from call to call it tells something about the world, which stands still now: so
+        the robot's last answer in this test goes first, if it has given one.
+        """
+        if idle.is_varying(*self._test):
+            last = door.last_answer(call)
+            if last is not None:
+                return last
+        return Reply({}, restore(idle.first(*self._test), here(call)))
+
+    def _note(self, passage: Passage) -> None:
+        if not passage.acted:
+            if passage.away:
+                self.evidence.away[passage.away] = self.evidence.away.get(passage.away, 0) + 1
+            return
+        if not self.evidence.acted:
+            self.evidence.example = self._example(passage)
+            self.on_act()
+        self.evidence.acted += 1
+
+    def _example(self, passage: Passage) -> tuple[Any, ...]:
+        name = self.mutant.quantity
+        if name is None:
+            return (dict(passage.call.values), [dict(call.values) for call in passage.performed])
+        if passage.changed_command:
+            after = passage.performed[0].values.get(name) if passage.performed else None
+            return (passage.call.values.get(name), after)
+        received = passage.received.values.get(name) if passage.received is not None else None
+        return (passage.answered[-1].values.get(name), received)
+
+
+@dataclass(slots=True)
+class _Performer:
+    """Performs calls for a passage, and notes how the robot took the mutated ones."""
+
+    activation: Activation
+    door: Door
+    passage: Passage
+    awaits: bool
+    raised: BaseException | None = None
+
+    async def proceed(self, call: Call) -> Reply:
+        if self.activation.rule.does_nothing:
+            name = self.activation.mutant.operator
+            text = f"operator {name} is to do nothing, but would have made the call"
+            self.activation.evidence.failure = text
+            raise OperatorError(text, operator=name)
+        mutated = self.passage.changed_command
+        if mutated:
+            self.activation.on_call(True)
+        try:
+            result = self.door.perform(call, self.passage.call)
+            if self.awaits and inspect.isawaitable(result):
+                result = await result
+        except BaseException as error:
+            self.raised = error
+            self._judge(error)
+            if isinstance(error, StopIteration):
+                raise Carried(error) from None
+            raise
+        finally:
+            if mutated:
+                self.activation.on_call(False)
+        return self.door.reply(call, result)
+
+    def _judge(self, error: BaseException) -> None:
+        if not self.passage.changed_command:
+            return
+        evidence = self.activation.evidence
+        if is_refusal(error, self.activation.refusals):
+            evidence.refusals = with_refusal(evidence.refusals, error)
+        elif isinstance(error, TypeError) and _raised_at_the_call(error):
+            evidence.invalid = True
+
+
+def is_refusal(error: BaseException, names: Iterable[str]) -> bool:
+    """Whether an operation raised a refusal, or a group of nothing else."""
+    names = frozenset(names)
+    return all(is_named(leaf, names) for leaf in leaves(error))
+
+
+def with_refusal(refusals: tuple[BaseException, ...], error: BaseException) -> tuple[BaseException, ...]:
+    """The refusals of a test with a new one; a program that tries on and on leaves no endless list."""
+    return (*refusals, error)[-REFUSALS:]
+
+
+def _raised_at_the_call(error: BaseException) -> bool:
+    """Whether no code of the callable itself ran: its arguments did not fit."""
+    traceback = error.__traceback__
+    while traceback is not None and traceback.tb_next is not None:
+        traceback = traceback.tb_next
+    return traceback is not None and traceback.tb_frame.f_code is Door.perform.__code__

@@ -1,0 +1,224 @@
+"""Between Python calls and the ``Call`` and ``Reply`` that operators see.
+
+The door binds arguments to the vocabulary's quantities, writes changed values back into copies of the
+arguments, performs the call, and does the same with the result. The user's own objects are never changed.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from mutabot.errors import PathError
+from mutabot.model import Call, Operation, Pattern, Quantity, Reply
+from mutabot.model.values.answer import NotKeptError, keep, restore
+from mutabot.model.values.quantity import Value, is_reading_of, same
+
+from .answers import snapshot
+from .arguments import Arguments, signature_for
+from .intercept import resolve
+from .writer import Message, Writer
+
+
+@dataclass(slots=True)
+class Invocation:
+    """A call as Python made it: the door's payload in ``Call.payload``.
+
+    Attributes:
+        wrapped: the original callable, bound.
+        instance: the object it is bound to, or None.
+        args, kwargs: as the program gave them.
+        arguments: the same by name; None if they do not fit the signature.
+        message: what says which command it is, or None.
+    """
+
+    wrapped: Callable[..., Any]
+    instance: Any
+    args: tuple[Any, ...]
+    kwargs: dict[str, Any]
+    arguments: Arguments | None
+    message: Message | None = None
+
+
+class Door:
+    """Translates the calls of one operation.
+
+    Args:
+        operation: the operation.
+        reading: the operation that ``operation.current`` names, or None.
+        on_problem: told once about each path that does not fit: (key, error).
+
+    Attributes:
+        commands: how often the robot was made to do this, if it does anything.
+        calls: how often it was called.
+        handles: classes that are part of the robot API: their objects are never copied.
+    """
+
+    def __init__(
+        self,
+        operation: Operation,
+        reading: Operation | None,
+        on_problem: Callable[[str, PathError], None] = lambda key, error: None,
+    ) -> None:
+        self.operation = operation
+        self._reading = reading
+        self._on_problem = on_problem
+        self._signature: inspect.Signature | None = None
+        self._writer = Writer(operation, on_problem)
+        self._last_replies: dict[str | None, Any] = {}
+        self.commands = 0
+        self.calls = 0
+        self.handles: Collection[str] = ()
+
+    def reset(self) -> None:
+        """Forget earlier answers and commands: a new test begins."""
+        self._last_replies.clear()
+        self.commands = self.calls = 0
+
+    def call(
+        self, wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
+    ) -> Call:
+        """The call as operators see it."""
+        self.calls += 1
+        invocation = Invocation(wrapped, instance, args, kwargs, self._bind(wrapped, args, kwargs))
+        pattern, values = None, dict[str, Value]()
+        if invocation.arguments is not None:
+            invocation.message = self._writer.message(invocation.arguments, instance)
+            pattern, values = self._writer.read(invocation.arguments, invocation.message)
+
+        async def current(quantity: Quantity) -> float:
+            return await self._where(quantity, invocation)
+
+        return Call(self.operation, pattern, values, current=current, payload=invocation)
+
+    def perform(self, call: Call, original: Call) -> Any:
+        """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
+        invocation: Invocation = call.payload
+        fits = invocation.arguments is not None or self.operation.signature is not None
+        self.commands += self.operation.command and fits  # what does not fit never reaches the robot
+        is_text = call.pattern is not None and call.pattern.notation is not None
+        wrapped = self._opposite(invocation) if call.reversed and not is_text else invocation.wrapped
+        changed = {
+            name: value for name, value in call.values.items() if not same(value, original.values.get(name))
+        }
+        if invocation.arguments is None or (not changed and not call.reversed):
+            return wrapped(*invocation.args, **invocation.kwargs)
+        args, kwargs = self._writer.changed(call, changed, invocation.arguments, invocation.message)
+        return wrapped(*args, **kwargs)
+
+    def reply(self, call: Call, result: Any) -> Reply:
+        """The reply as operators see it."""
+        self._refuse_coroutine(result)
+        self._refuse_signature(call.payload)
+        values: dict[str, Value] = {}
+        for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
+            try:
+                value = quantity.path.get(result)
+            except PathError as error:
+                self._on_problem(f"result.{quantity.name}", error)
+                continue
+            if value is not None:
+                values[quantity.name] = value
+        if self.operation.command:
+            self._last_replies[_text_of(call.pattern)] = snapshot(result)
+        return Reply(values, result)
+
+    def result(self, call: Call, reply: Reply, original: Reply | None) -> Any:
+        """What the program receives: the result itself, or a copy with changed values."""
+        result = reply.payload
+        before: Mapping[str, Value] = original.values if original is not None else {}
+        for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
+            if quantity.name in reply.values:
+                value = reply.values[quantity.name]
+                if not same(value, before.get(quantity.name)):
+                    result = quantity.path.put(result, _typed_like(value, before.get(quantity.name)))
+        return result
+
+    def _refuse_coroutine(self, result: Any) -> None:
+        """A plain function that hands out a coroutine has done nothing yet: it cannot be mutated in place."""
+        if inspect.iscoroutine(result):
+            text = f"{self.operation.target} returns a coroutine but is no coroutine function"
+            error = PathError(
+                f"{text}; name the coroutine function behind it", path="", step="call", found="coroutine"
+            )
+            self._on_problem("call", error)
+
+    def _refuse_signature(self, invocation: Invocation) -> None:
+        """A call that went well, although the vocabulary's signature does not take it."""
+        if invocation.arguments is None and self.operation.signature is not None:
+            given = [*("…" for _ in invocation.args), *(f"{name}=…" for name in invocation.kwargs)]
+            text = f"{self.operation.signature} does not take the call ({', '.join(given)})"
+            self._on_problem("signature", PathError(text, path="", step="", found=""))
+
+    def _bind(
+        self, wrapped: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]
+    ) -> Arguments | None:
+        if self._signature is None:
+            self._signature = signature_for(self.operation.signature, wrapped)
+        return Arguments.of(self._signature, args, kwargs)  # None: the call itself will say what is wrong
+
+    def _opposite(self, invocation: Invocation) -> Callable[..., Any]:
+        assert self.operation.opposite is not None
+        opposite: Callable[..., Any] = self._other(self.operation.opposite, invocation.instance)
+        return opposite
+
+    def _other(self, target: str, instance: Any) -> Any:
+        """Another attribute of the same object, or of its module where that is not possible."""
+        module, _, qualname = target.partition(":")
+        name = qualname.rpartition(".")[2]
+        if instance is not None and "." in qualname and hasattr(type(instance), name):
+            return getattr(instance, name)
+        owner, name, _ = resolve(sys.modules[module], qualname)
+        return getattr(owner, name)
+
+    async def _where(self, quantity: Quantity, invocation: Invocation) -> float:
+        reading = self._reading
+        if reading is None:
+            raise LookupError(f"{self.operation.target} names no reading that tells where {quantity.name} is")
+        value = self._other(reading.target, invocation.instance)
+        if callable(value):
+            value = value()
+        if inspect.isawaitable(value):
+            value = await value
+        for part in reading.result:
+            if is_reading_of(part, quantity):
+                number = part.path.get(value)
+                return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
+        raise LookupError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
+
+    def last_answer(self, call: Call) -> Reply | None:
+        """What the robot answered last to this command in the running test; None if it has not yet.
+
+        A copy, so that the program cannot change it; the object itself where that cannot be copied safely.
+        """
+        if _text_of(call.pattern) not in self._last_replies:
+            return None
+        last = self._last_replies[_text_of(call.pattern)]
+        known = here(call)
+        try:
+            return Reply({}, restore(keep(last, known, self.handles), known))
+        except NotKeptError:
+            return Reply({}, last)
+
+
+def here(call: Call) -> dict[str, Any]:
+    """What a call knows before it is made, by name: the instance as ``self``, and the arguments."""
+    invocation: Invocation = call.payload
+    known = {} if invocation.instance is None else {"self": invocation.instance}
+    given = invocation.arguments.values if invocation.arguments is not None else {}
+    return {**given, **known}
+
+
+def _text_of(pattern: Pattern | None) -> str | None:
+    return pattern.text if pattern is not None else None
+
+
+def _typed_like(value: Value, original: Value) -> Value:
+    """``value`` in the type of the original, where that is a scalar of a numeric library."""
+    if hasattr(original, "dtype") and not hasattr(value, "dtype") and not getattr(original, "shape", None):
+        kind = type(original)
+        return kind(value) if getattr(original.dtype, "kind", "") == "f" else value
+    return value

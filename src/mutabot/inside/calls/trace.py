@@ -1,0 +1,81 @@
+"""Recording: which sites a test hits, in which order, with which values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from mutabot.border.lines import SiteSeen
+from mutabot.model import Role, Span
+
+from .answers import Answers, Returned
+
+#: hits per test that are reported with their values; a test is compared and planned from these
+TRACE_LIMIT = 5000
+
+
+@dataclass(slots=True)
+class Recorder:
+    """Sites of the session, and the trace of the running test.
+
+    Attributes:
+        on_site: told about each site when it is first reached.
+        answers: notes what commands answered, in the baseline; None in all other sessions.
+        trace: hits of the running test: site index, written values, read values, note of the answer.
+        truncated: whether hits were left out of the trace.
+        sites: all sites reached so far, in the order of their indexes.
+    """
+
+    on_site: Callable[[SiteSeen], None]
+    answers: Answers | None = None
+    trace: list[tuple[Any, ...]] = field(default_factory=list)
+    truncated: bool = False
+    sites: list[SiteSeen] = field(default_factory=list)
+    _indexes: dict[tuple[Span, str, str | None], int] = field(default_factory=dict)
+
+    def start(self) -> None:
+        """A new test begins."""
+        self.trace = []
+        self.truncated = False
+        if self.answers is not None:
+            self.answers.start()
+
+    def hit(
+        self,
+        span: Span,
+        role: Role,
+        operation: str,
+        pattern: str | None,
+        written: Mapping[str, Any],
+        read: Mapping[str, Any],
+        returned: Returned | None,
+    ) -> None:
+        """One call at a site has been made; ``returned`` is None if it raised."""
+        if len(self.trace) >= TRACE_LIMIT:
+            self.truncated = True
+            return
+        key = (span, operation, pattern)
+        index = self._indexes.get(key)
+        if index is None:
+            index = self._indexes[key] = len(self._indexes)
+            self.sites.append(SiteSeen(index, span, operation, pattern, role is Role.ORACLE))
+            self.on_site(self.sites[-1])
+        answer = self.answers.note(index, returned) if self.answers is not None else None
+        self.trace.append((index, _frozen(written), _frozen(read), answer))
+
+    def sites_of_trace(self) -> tuple[SiteSeen, ...]:
+        """The sites that the running test's trace refers to."""
+        return tuple(self.sites[index] for index in sorted({hit[0] for hit in self.trace}))
+
+
+def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values as they are now: a program may change its lists and arrays later."""
+    return {
+        name: value.tolist()
+        if hasattr(value, "tolist")
+        else list(value)
+        if isinstance(value, list)
+        else value
+        for name, value in values.items()
+    }

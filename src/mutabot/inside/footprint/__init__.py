@@ -1,0 +1,1 @@
+"""What a test shares with others: fixtures, state of the process, files."""

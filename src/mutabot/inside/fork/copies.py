@@ -1,0 +1,156 @@
+"""The fork server: a session that has collected its tests, and forks a copy of itself for each job.
+
+All that lies before the first test, such as imports and collection, is done once. A copy is cut off from
+what it would share, runs its job like a session of its own, and leaves without taking down what was there
+before the fork: others still need it.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import gc
+import os
+import select
+import signal
+import socket
+import sys
+import weakref
+from dataclasses import dataclass, field
+from typing import Any
+
+from mutabot.border.lines import Copied, CopyEnded, Serving
+from mutabot.inside.pipe import Pipe
+
+from .forkable import open_now, why_not
+from .isolate import isolate_files
+from .lifeline import die_with_parent
+
+_MESSAGE_BYTES = 1 << 12
+
+
+@dataclass(frozen=True, slots=True)
+class Commission:
+    """What a copy is to do.
+
+    Attributes:
+        home: its folder, with the job file in it.
+        descriptor: writing end of its pipe.
+    """
+
+    home: str
+    descriptor: int
+
+
+@dataclass(slots=True)
+class ForkServer:
+    """The server's side.
+
+    Attributes:
+        descriptor: a socket on which each message is the folder of a job, with the writing end of a pipe.
+        pipe: where the server itself reports.
+        log_file: what the server prints; every copy gets a file of its own.
+    """
+
+    descriptor: int
+    pipe: Pipe
+    log_file: str
+    _known: frozenset[int] = field(default_factory=open_now)
+    _copies: dict[int, int] = field(default_factory=dict)
+
+    def serve(self) -> Commission | None:
+        """Fork a copy for each job that comes, until no more can come.
+
+        Returns what to do in a copy; None in the server when it is done.
+        """
+        reason = why_not((), self._known)
+        if reason is not None:
+            self.pipe.send(Serving(reason))
+            return None
+        gc.collect()
+        gc.freeze()  # what is never looked at stays shared with all copies
+        self.pipe.send(Serving())
+        with socket.socket(fileno=self.descriptor) as jobs:
+            while True:
+                if self._wait(jobs):
+                    message, descriptors, _, _ = socket.recv_fds(jobs, _MESSAGE_BYTES, 1)
+                    if not message:
+                        break
+                    if self._fork(jobs):
+                        return self._commission(message.decode(), descriptors[0])
+                    os.close(descriptors[0])
+        for pidfd, pid in list(self._copies.items()):
+            self._bury(pidfd, pid)
+        return None
+
+    def _wait(self, jobs: socket.socket) -> bool:
+        """Sleep until there is a job (True) or copies have ended, and look after these."""
+        poll = select.poll()
+        poll.register(jobs, select.POLLIN)
+        for pidfd in self._copies:
+            poll.register(pidfd, select.POLLIN)
+        ready = {descriptor for descriptor, _ in poll.poll()}
+        for pidfd in ready & self._copies.keys():
+            self._bury(pidfd, self._copies[pidfd])
+        return jobs.fileno() in ready
+
+    def _bury(self, pidfd: int, pid: int) -> None:
+        """End whatever a copy has left running, before its number can go to another process."""
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(pid, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
+        _, status = os.waitpid(pid, 0)
+        os.close(pidfd)
+        del self._copies[pidfd]
+        self.pipe.send(CopyEnded(pid, os.waitstatus_to_exitcode(status)))
+
+    def _fork(self, jobs: socket.socket) -> bool:
+        """True in the copy."""
+        server = os.getpid()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        pid = os.fork()
+        if pid:
+            self._copies[os.pidfd_open(pid)] = pid
+            self.pipe.send(Copied(pid))
+            return False
+        os.setsid()
+        die_with_parent(server)
+        jobs.close()
+        for pidfd in self._copies:
+            os.close(pidfd)
+        os.close(self.pipe.descriptor)
+        forget_exit_handlers()
+        return True
+
+    def _commission(self, home: str, descriptor: int) -> Commission:
+        old = os.stat(self.log_file)
+        log = os.open(os.path.join(home, "log.txt"), os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
+        isolate_files((old.st_dev, old.st_ino), log)
+        os.close(log)
+        return Commission(home, descriptor)
+
+
+def forget_exit_handlers() -> None:
+    """In a copy: what was to be taken down at exit is the server's; what is registered from now on is not."""
+    finalize: Any = weakref.finalize
+    for finalizer in list(finalize._registry):
+        finalizer.atexit = False
+    finalize._registered_with_atexit = False
+    atexit._clear()
+    multiprocessing = sys.modules.get("multiprocessing.util")
+    if multiprocessing is not None:  # it knows by itself what another process has made
+        atexit.register(multiprocessing._exit_function)
+
+
+def leave(code: int) -> None:
+    """End a copy: run what it has registered for its exit itself, and nothing else."""
+    try:
+        with contextlib.suppress(Exception):
+            atexit._run_exitfuncs()
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(Exception):
+                stream.flush()
+    finally:
+        os._exit(code)

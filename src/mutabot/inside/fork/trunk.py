@@ -1,0 +1,287 @@
+"""Trunk and branches: run each test once as the original, and fork at the first moment a mutant differs.
+
+At a site with live mutants the trunk forks one child per mutant. The child inherits everything that came
+before, takes on its mutant, finishes the test it is in, reports, and leaves without taking down what it
+shares with the trunk. The trunk goes on as the original.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from mutabot.border.job import Branching
+from mutabot.border.lines import BranchDied, TokensHeld, Unbranched, Undiverged
+from mutabot.inside.pipe import Pipe
+from mutabot.inside.watchdogs import alarm_held
+from mutabot.model import Mutant, Span
+from mutabot.model.alternative import AT_ONCE
+
+from .forkable import open_now, why_not
+from .isolate import Foot, isolate_files
+from .lifeline import ALONE
+from .tokens import Tokens
+
+#: exit code of a branch whose test decides about its mutant: no other test needs to run. These codes are
+#: unlike any that a program would leave with by itself
+DECIDED = 113
+#: exit code of a branch that could not report
+FAILED = ALONE
+#: exit code of a branch whose test leaves its mutant alive
+ALIVE = 114
+#: exit code of a branch that stopped before it did what others would have noticed
+STOPPED = 116
+
+#: where a mutant is branched: a site with its operation and pattern, or a place of the program text
+Key = tuple[Span, str, str | None] | int
+
+
+@dataclass(slots=True)
+class Child:
+    """A branch that runs.
+
+    Attributes:
+        mutant: id of its mutant.
+        test: the test it is in.
+        pid, pidfd: its process.
+        until: moment (``time.monotonic``) at which its time is up.
+        limit: the seconds it was given.
+        overdue, where: whether its time was up, and where it was then.
+    """
+
+    mutant: str
+    test: str
+    pid: int
+    pidfd: int
+    until: float
+    limit: float
+    overdue: bool = False
+    where: str | None = None
+
+
+@dataclass(slots=True)
+class Trunk:
+    """The trunk's side of branching.
+
+    Attributes:
+        branching: what to branch.
+        pipe: where reports go.
+        log: device and inode of this process's log.
+        on_child: called first of all in every branch.
+        where_is: tells where a process is, in words, or None.
+    """
+
+    branching: Branching
+    pipe: Pipe
+    log: tuple[int, int] | None
+    on_child: Callable[[], None]
+    where_is: Callable[[int], str | None] = lambda _: None
+    _tokens: Tokens = field(init=False)
+    _live: dict[Key, list[Mutant]] = field(default_factory=dict)
+    _tests: dict[str, frozenset[str]] = field(default_factory=dict)
+    _decided: set[str] = field(default_factory=set)
+    _branched: set[str] = field(default_factory=set)
+    _children: dict[int, Child] = field(default_factory=dict)
+    _known: frozenset[int] = frozenset()
+    _test: str = ""
+    _pid: int = field(default_factory=os.getpid)
+    _forking: bool = False
+    _copied: bool = False
+
+    def __post_init__(self) -> None:
+        os.register_at_fork(before=self._note_copy)
+        reading, writing = self.branching.tokens
+        self._tokens = Tokens(reading, writing, lambda held: self.pipe.send(TokensHeld(held)))
+        self._tests = {mutant: frozenset(tests) for mutant, tests in self.branching.tests.items()}
+        self._known = open_now()
+        for mutant in self.branching.mutants:
+            for key in self._keys(mutant):
+                self._live.setdefault(key, []).append(mutant)
+
+    def _keys(self, mutant: Mutant) -> list[Key]:
+        """Where it is to be branched: wherever one of its parts is reached first."""
+        sites: list[Key] = [
+            (single.site.span, single.operation, single.pattern)
+            for single in mutant.singles
+            if single.operation
+        ]
+        return [*sites, *(choice.place for choice in self.branching.choices.get(mutant.id, ()))]
+
+    def start_test(self, test: str) -> None:
+        """A test begins."""
+        self._test = test
+        self._branched.clear()
+        self._copied = False
+
+    def branch(self, span: Span, operation: str, pattern: str | None) -> Mutant | None:
+        """Fork for every live mutant here that has no branch in this test yet.
+
+        Returns the mutant to become, in a branch; None in the trunk.
+        """
+        key = (span, operation, pattern)
+        return self._branch(key, self._live.get(key, ()))
+
+    def branch_at_place(self, place: int, indexes: frozenset[int]) -> Mutant | None:
+        """The same at a place of the program text, for the mutants that are these alternatives."""
+        here = self._live.get(place, ())
+        return self._branch(place, [one for one in here if self._index(one, place) in indexes])
+
+    def places(self) -> dict[int, frozenset[int]]:
+        """The alternatives of the program text that are live in the running test, by place."""
+        found = {place: [self._index(one, place) for one in self._judged_at(place)] for place in self._places}
+        return {place: frozenset(indexes) for place, indexes in found.items() if indexes}
+
+    def tell_undiverged(self, hits: Mapping[int, int]) -> None:
+        """The test is over: tell which mutants of the program text were no different from the original.
+
+        ``hits``: evaluations of each place in this test. If the test has forked copies of this process they
+        are not all: a mutant may have differed in one.
+        """
+        if self._copied:
+            return
+        same = {
+            mutant.id: hits[place]
+            for place in self._places
+            if hits.get(place)
+            for mutant in self._judged_at(place)
+            if self._index(mutant, place) >= 0 and self._is_due(mutant)
+        }
+        if same:
+            self.pipe.send(Undiverged(self._test, same))
+
+    @property
+    def _places(self) -> list[int]:
+        return [key for key in self._live if isinstance(key, int)]
+
+    def _judged_at(self, place: int) -> Iterator[Mutant]:
+        return (one for one in self._live[place] if self._test in self._tests.get(one.id, ()))
+
+    def _index(self, mutant: Mutant, place: int) -> int:
+        """Which alternative the mutant is; negative if it cannot wait until that changes something."""
+        choices = self.branching.choices[mutant.id]
+        is_alone = len(choices) == 1 and not any(single.operation for single in mutant.singles)
+        return choices[0].index if is_alone else AT_ONCE
+
+    def _branch(self, key: Key, here: Sequence[Mutant]) -> Mutant | None:
+        if not here or os.getpid() != self._pid:  # a copy that the test has forked for itself
+            return None
+        with alarm_held():
+            return self._branch_due(key, here)
+
+    def _branch_due(self, key: Key, here: Sequence[Mutant]) -> Mutant | None:
+        due = [mutant for mutant in here if self._is_due(mutant)]
+        self._live[key] = [one for one in self._live[key] if one.id not in self._decided]
+        if not due:
+            return None
+        reason = why_not((child.pid for child in self._children.values()), self._known)
+        if reason is not None:
+            self._branched.update(mutant.id for mutant in due)
+            self.pipe.send(Unbranched(self._test, tuple(mutant.id for mutant in due), reason))
+            return None
+        return self._fork_each(due)
+
+    def branch_at_start(self) -> Mutant | None:
+        """Fork for every live mutant of the test that begins, if that is asked for. As ``branch``."""
+        if not self.branching.at_start:
+            return None
+        with alarm_held():
+            return self._fork_each([mutant for mutant in self.branching.mutants if self._is_due(mutant)])
+
+    def finish(self) -> None:
+        """All tests are over: wait for the branches that still run, holding no token meanwhile."""
+        self._tokens.give_back()
+        while self._children:
+            if self._reap(self._wait()):
+                self._tokens.give_back()
+
+    def _is_due(self, mutant: Mutant) -> bool:
+        if mutant.id in self._branched or self._test not in self._tests.get(mutant.id, ()):
+            return False
+        if self.branching.every_test:
+            return True
+        while mutant.id not in self._decided and self._is_running(mutant.id):
+            # its branch in an earlier test decides whether it needs another one
+            if self._reap(self._wait()):
+                self._tokens.give_back()
+        return mutant.id not in self._decided
+
+    def _is_running(self, mutant: str) -> bool:
+        return any(child.mutant == mutant for child in self._children.values())
+
+    def _fork_each(self, mutants: list[Mutant]) -> Mutant | None:
+        for mutant in mutants:
+            self._branched.add(mutant.id)
+            foot = Foot()
+            self._forking = True
+            pid = os.fork()
+            self._forking = False
+            if pid == 0:
+                self._become_branch(foot)
+                return mutant
+            limit = self.branching.walls.get(self._test, self.branching.wall)
+            pidfd = os.pidfd_open(pid)
+            child = Child(mutant.id, self._test, pid, pidfd, time.monotonic() + limit, limit)
+            self._children[pidfd] = child
+            self._take_token()
+        return None
+
+    def _note_copy(self) -> None:
+        """This process is about to be forked, by whomever."""
+        self._copied = self._copied or not self._forking
+
+    def _become_branch(self, foot: Foot) -> None:
+        self.on_child()
+        for child in self._children.values():
+            os.close(child.pidfd)
+        self._children.clear()
+        isolate_files(self.log)
+        foot.restore()
+
+    def _take_token(self) -> None:
+        """The trunk's token went to the branch: wait for another, from the pool or from a branch's end."""
+        while not self._tokens.take():
+            if self._reap(self._wait(pool=True)):
+                return
+
+    def _wait(self, *, pool: bool = False) -> list[int]:
+        """Sleep until a branch ends, its time is up or (``pool``) there is a free token."""
+        poll = select.poll()
+        for pidfd in self._children:
+            poll.register(pidfd, select.POLLIN)
+        if pool:
+            poll.register(self._tokens.reading, select.POLLIN)
+        until = min((child.until for child in self._children.values()), default=None)
+        timeout = None if until is None else max(0.0, until - time.monotonic()) * 1e3 + 1.0
+        return [descriptor for descriptor, _ in poll.poll(timeout)]
+
+    def _reap(self, ready: list[int]) -> bool:
+        """Look after branches that ended or whose time is up. True if the trunk now has a token to spare.
+
+        One branch at a time: each brings one token.
+        """
+        now = time.monotonic()
+        for child in self._children.values():
+            if now >= child.until and not child.overdue:
+                child.overdue = True
+                child.where = self.where_is(child.pid)
+                os.kill(child.pid, signal.SIGKILL)
+        for descriptor in ready:
+            child_ended = self._children.pop(descriptor, None)
+            if child_ended is not None:
+                self._bury(child_ended)
+                return True
+        return False
+
+    def _bury(self, child: Child) -> None:
+        _, status = os.waitpid(child.pid, 0)
+        os.close(child.pidfd)
+        code = os.waitstatus_to_exitcode(status)
+        if code != ALIVE and not self.branching.every_test:
+            self._decided.add(child.mutant)
+        if code not in (ALIVE, DECIDED, STOPPED):
+            overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None
+            self.pipe.send(BranchDied(child.mutant, child.test, code, overdue, child.where))

@@ -1,0 +1,175 @@
+"""Probes: readings that mutabot itself takes, to compare a mutant's world with the original's."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
+from functools import cached_property
+from types import FunctionType
+from typing import Any
+
+from mutabot.errors import nearest_name
+from mutabot.inside.calls.intercept import resolve
+from mutabot.model import Probe
+
+from .instances import Instances
+
+#: parts reported per probe; a probe is meant to be a handful of numbers
+LIMIT = 200
+_MISSING = object()
+_PLAIN = frozenset({float, int, str, bool, type(None)})
+
+
+class UnreadableError(Exception):
+    """A probe cannot be read; the text says why, and what would be needed."""
+
+
+@dataclass(slots=True)
+class Reading:
+    """All probes at one moment.
+
+    Attributes:
+        values: flat, ``target.part`` to number, text or truth value; a probe of the second object of its
+            class is ``target#2``.
+        unread: target to why it could not be read, for the others.
+    """
+
+    values: dict[str, Any] = field(default_factory=dict)
+    unread: dict[str, str] = field(default_factory=dict)
+
+
+def take(probes: tuple[Probe, ...], instances: Instances) -> Reading:
+    """All probes as they are now. Whatever the user's probe does, the test's outcome stands."""
+    reading = Reading()
+    for probe in probes:
+        try:
+            for name, found in _read(probe.target, instances):
+                reading.values.update(flatten(found, name) if found is not None else {})
+        except UnreadableError as error:
+            reading.unread[probe.target] = str(error)
+        except Exception as error:  # as above
+            reading.unread[probe.target] = f"{type(error).__name__}: {error}"
+    return reading
+
+
+def _read(target: str, instances: Instances) -> Iterator[tuple[str, Any]]:
+    """The probe's values, each under its name."""
+    module_name, _, qualname = target.partition(":")
+    module = sys.modules.get(module_name)
+    if module is None:
+        raise UnreadableError(f"no test has imported its module {module_name!r}")
+    parent, _, name = qualname.rpartition(".")
+    owner: Any = module
+    if parent:
+        holder, last, _ = resolve(module, parent)
+        owner = getattr(holder, last)
+    if not isinstance(owner, type) or not is_bound(owner, name):
+        yield target, _value(_attribute(owner, name))
+        return
+    found = instances.of(f"{module_name}:{parent}")
+    if not found:
+        raise UnreadableError(f"no object of {owner.__name__} is known: the test makes none, and calls none")
+    for number, instance in enumerate(found, start=1):
+        yield target if number == 1 else f"{target}#{number}", _value(_attribute(instance, name))
+
+
+def is_bound(owner: type, name: str) -> bool:
+    """Whether what a class has under this name is read from one of its objects."""
+    raw = next((vars(base)[name] for base in owner.__mro__ if name in vars(base)), _MISSING)
+    if raw is _MISSING:
+        return not hasattr(owner, name)  # an attribute that its objects may have
+    while hasattr(raw, "__wrapped__") and not isinstance(raw, classmethod | staticmethod):
+        raw = raw.__wrapped__
+    if isinstance(raw, classmethod | staticmethod):
+        return False
+    return isinstance(raw, FunctionType | property | cached_property) or hasattr(type(raw), "__get__")
+
+
+def _attribute(owner: Any, name: str) -> Any:
+    try:
+        return getattr(owner, name)
+    except AttributeError:
+        if hasattr(type(owner), name):  # a property of its own accord
+            raise
+        near = nearest_name(name, [one for one in dir(owner) if not one.startswith("_")])
+        of = owner.__name__ if hasattr(owner, "__name__") else type(owner).__name__
+        hint = f"; did you mean {near!r}?" if near else ""
+        raise UnreadableError(f"{of} has no {name!r}{hint}") from None
+
+
+def _value(found: Any) -> Any:
+    """What a callable without arguments returns; anything else is a value itself."""
+    if not callable(found):
+        return found
+    needed = needed_arguments(found)
+    if needed:
+        raise UnreadableError(
+            f"it needs {', '.join(needed)}; a probe is called without arguments: name a function, method, "
+            "property or attribute that needs none"
+        )
+    value = found()
+    if inspect.iscoroutine(value):
+        value.close()
+        raise UnreadableError("it is a coroutine function; a probe must be a plain function")
+    return value
+
+
+def needed_arguments(found: Callable[..., Any]) -> list[str]:
+    """The arguments that must be given."""
+    if _needs_none(found):
+        return []
+    try:
+        parameters = inspect.signature(found).parameters.values()
+    except (TypeError, ValueError):  # a native function: its call will say
+        return []
+    variable = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    return [one.name for one in parameters if one.default is one.empty and one.kind not in variable]
+
+
+def _needs_none(found: Callable[..., Any]) -> bool:
+    """Whether that can be seen at a glance: probes are read often, and signatures are slow."""
+    function = getattr(found, "__func__", found)
+    if type(function) is not FunctionType or hasattr(function, "__wrapped__"):
+        return False
+    given = len(function.__defaults__ or ()) + (function is not found)
+    code = function.__code__
+    return code.co_argcount <= given and code.co_kwonlyargcount <= len(function.__kwdefaults__ or ())
+
+
+def flatten(value: Any, name: str) -> dict[str, Any]:
+    """A nested value as flat parts. Raises UnreadableError for what is no plain data."""
+    parts: dict[str, Any] = {}
+    for key, part in _parts(value, name):
+        parts[key] = part
+        if len(parts) >= LIMIT:
+            break
+    return parts
+
+
+def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
+    if type(value) in _PLAIN:  # the most of them
+        yield name, value
+        return
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if is_dataclass(value) and not isinstance(value, type):
+        value = {field.name: getattr(value, field.name) for field in fields(value)}
+    elif hasattr(value, "_asdict"):
+        value = value._asdict()
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            yield from _parts(item, f"{name}.{key}")
+    elif isinstance(value, list | tuple):
+        for index, item in enumerate(value):
+            yield from _parts(item, f"{name}[{index}]")
+    elif isinstance(value, int | float | str | bool | None):
+        yield name, value
+    elif "__repr__" not in {name for base in type(value).__mro__[:-1] for name in vars(base)}:
+        kind = f"{type(value).__module__}:{type(value).__qualname__}"
+        raise UnreadableError(
+            f"it reads an object of {kind}, which is no plain data such as numbers, texts, lists, dataclasses"
+        )
+    else:
+        yield name, repr(value)

@@ -1,0 +1,174 @@
+"""What ended a test: a check, an exception, a limit, a refusal, or a failure of the tool."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from types import FrameType
+
+import pytest
+
+from mutabot.errors import MutabotError
+from mutabot.inside import FOLDER
+from mutabot.inside.calls.intercept import is_named
+from mutabot.inside.calls.locate import Locator
+from mutabot.inside.evidence import Evidence
+from mutabot.inside.leaves import everything, is_due_to, leaves
+from mutabot.inside.limits import BudgetExceeded
+from mutabot.model import By, Role, Vocabulary
+
+from .doctests import mismatch, place_of_mismatch
+
+#: where an object lies in memory differs from run to run and says nothing
+_ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
+#: exceptions that are checks or time-outs wherever they were raised; their modules may not be loaded
+_CHECKS = ("doctest:DocTestFailure",)
+_TIMEOUTS = ("hypothesis.errors:DeadlineExceeded",)
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """Why a test failed; the fields are those of ``TestEnd`` with the same names.
+
+    ``is_syntax`` says that some text was no program.
+    """
+
+    by: By
+    phase: str
+    exception: str | None
+    message: str
+    place: str | None
+    timeout: str | None = None
+    failure: str | None = None
+    refused: str | None = None
+    is_syntax: bool = False
+
+    @property
+    def is_raised(self) -> bool:
+        """Whether an exception ended the test that is no refusal."""
+        return self.exception is not None and self.refused is None
+
+    @property
+    def is_mere_check(self) -> bool:
+        """Whether a check ended the test, and nothing else was the matter."""
+        return self.by is By.CHECK and self.timeout is None and self.failure is None
+
+
+def classify(
+    error: BaseException,
+    phase: str,
+    test_file: str,
+    locator: Locator,
+    vocabulary: Vocabulary,
+    evidence: Evidence,
+) -> Ending:
+    """The ending that this exception means.
+
+    Of exceptions that hold others, such as exception groups, what they hold decides: a refusal if all are, a
+    check if all are that are no refusals; a time-out or a failure if one is.
+
+    Args:
+        error: what pytest caught.
+        phase: ``setup``, ``call`` or ``teardown``.
+        test_file: file of the test; its folder holds the test's own helpers.
+    """
+    found = leaves(error)
+    culprits = frozenset(id(leaf) for refusal in evidence.refusals for leaf in (refusal, *leaves(refusal)))
+    is_refused = is_due_to(error, culprits)
+    counting = [leaf for leaf in found if is_refused or not is_due_to(leaf, culprits)]
+    no_checks = [leaf for leaf in counting if not _is_check(leaf, test_file, locator, vocabulary)]
+    overdue = next((leaf for leaf in found if _is_timeout(leaf)), None)
+    shown = overdue or (no_checks or counting)[0]
+    kind = type(shown)
+    return Ending(
+        by=By.EXCEPTION if no_checks else By.CHECK,
+        phase=phase,
+        exception=f"{kind.__module__}:{kind.__qualname__}",
+        message=_text(shown, len(found)),
+        place=_place(shown, locator),
+        timeout=_lines(shown)[0] if overdue is not None else None,
+        failure=_failure(error, vocabulary),
+        refused=evidence.refusal if is_refused else None,
+        is_syntax=all(isinstance(leaf, SyntaxError) for leaf in found),
+    )
+
+
+def unexpected_pass(reason: str) -> Ending:
+    """The ending of a test that was to fail and did not; ``reason`` is pytest's text."""
+    return Ending(By.CHECK, "call", None, reason, None)
+
+
+def _text(error: BaseException, count: int) -> str:
+    """What an exception says, shortly; ``count``: how many there are in its group."""
+    lines = _lines(error)[:12]
+    if count > 1:
+        lines.append(f"(one of {count} exceptions in a group)")
+    return "\n".join(lines)[:2000]
+
+
+def _lines(error: BaseException) -> list[str]:
+    text = mismatch(error) or str(error)
+    if isinstance(error, pytest.FixtureLookupError):
+        text = error.msg or f"fixture {error.argname!r} not found"
+    return _ADDRESS.sub("0x…", text).strip().splitlines() or [type(error).__name__]
+
+
+def _failure(error: BaseException, vocabulary: Vocabulary) -> str | None:
+    for link in everything(error):
+        if isinstance(link, MemoryError):
+            return "the memory limit was reached"
+        if isinstance(link, MutabotError) and not type(link).__module__.startswith("mutabot.cells"):
+            return f"{type(link).__name__}: {link}"
+        if is_named(link, vocabulary.failures):
+            return f"{type(link).__name__}: {link}"
+    return None
+
+
+def _is_timeout(error: BaseException) -> bool:
+    """Whether a limit ended the test: ours, or one of the suite's own."""
+    if isinstance(error, BudgetExceeded) or is_named(error, _TIMEOUTS):
+        return True
+    return isinstance(error, pytest.fail.Exception) and any(
+        frame.f_globals.get("__name__") == "pytest_timeout" for frame, _ in _from_the_raise(error)
+    )
+
+
+def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary: Vocabulary) -> bool:
+    if is_named(error, (*_CHECKS, *vocabulary.checks)) or isinstance(error, pytest.fail.Exception):
+        return True
+    if not isinstance(error, AssertionError):
+        return False
+    # An assertion is a check if the tests made it. Code of helper libraries says nothing, so the frame
+    # nearest to the raise decides that is the tests', the program's or an operation's.
+    folder = os.path.dirname(os.path.realpath(test_file)) + os.sep
+    for frame, _ in _from_the_raise(error):
+        filename = locator.real(frame.f_code.co_filename)
+        if filename.startswith(FOLDER):
+            return False
+        role = locator.role(filename)
+        if role is Role.PROGRAM:
+            return False
+        if role is Role.ORACLE or filename.startswith(folder) or filename.endswith("conftest.py"):
+            return True
+    return True
+
+
+def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
+    """The frames that the exception came through and the lines they were at, innermost first."""
+    frames = []
+    traceback = error.__traceback__
+    while traceback is not None:
+        frames.append((traceback.tb_frame, traceback.tb_lineno))
+        traceback = traceback.tb_next
+    return frames[::-1]
+
+
+def _place(error: BaseException, locator: Locator) -> str | None:
+    """The innermost line that is the user's own: the file lies under the root and is not installed."""
+    lines = [(frame.f_code.co_filename, line) for frame, line in _from_the_raise(error)]
+    for filename, line in [*lines, *place_of_mismatch(error)]:
+        relative = locator.relative(filename)
+        if not relative.startswith("..") and "site-packages" not in relative and not filename.startswith("<"):
+            return f"{relative}:{line}"
+    return None

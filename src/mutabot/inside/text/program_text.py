@@ -1,0 +1,164 @@
+"""The program text of a session: which alternatives stand in it, what they did, and what was seen of it."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from mutabot.border.job import Job
+from mutabot.border.lines import NotInstrumented, PlacesReached, TextsSeen
+from mutabot.inside.calls.activation import is_refusal, with_refusal
+from mutabot.inside.evidence import Evidence
+from mutabot.inside.pipe import Held, Pipe
+from mutabot.model import Call, Choice
+
+from .import_hook import ImportHook
+
+#: hits, and hits at which something changed, by place
+_Counts = dict[int, tuple[int, int]]
+
+
+class Texts:
+    """The program text of the job at hand.
+
+    What happens while the program is imported, before any test, holds for every test after it: each test
+    counts it as its own.
+
+    Args:
+        hook: what instruments the program's files.
+        pipe: where reports go; a copy of a fork server gets its own.
+        on_act: told when all active alternatives have changed something in a test.
+    """
+
+    def __init__(self, hook: ImportHook, pipe: Pipe | Held, on_act: Callable[[], None]) -> None:
+        self.hook = hook
+        self.pipe = pipe
+        self._on_act = on_act
+        self._test = ""
+        self._begun = False
+        self._early: _Counts = {}
+        self._early_example: tuple[Any, ...] | None = None
+        self._refusals: tuple[BaseException, ...] = ()
+        self._unknown = False
+        hook.alternatives.on_act = self._acted
+
+    @classmethod
+    def of(
+        cls,
+        job: Job,
+        pipe: Pipe | Held,
+        on_act: Callable[[], None],
+        finish: Callable[[ast.Module, str], None] = lambda tree, path: None,
+    ) -> Texts | None:
+        """Instrument the program from now on; None if the job leaves its text alone.
+
+        ``finish``: as the hook's.
+        """
+        if job.instrumentation is None:
+            return None
+
+        def tell(file: str, why: str) -> None:
+            texts.pipe.send(NotInstrumented(file, why))
+
+        texts = cls(ImportHook(job.root, job.instrumentation, tell, finish), pipe, on_act)
+        texts.hook.install()
+        return texts
+
+    @property
+    def is_mutant(self) -> bool:
+        """Whether an alternative is active."""
+        return bool(self.hook.alternatives.active)
+
+    def start_test(
+        self,
+        test: str,
+        branch: Callable[[int, frozenset[int]], None] | None,
+        live: Mapping[int, frozenset[int]],
+    ) -> None:
+        """A test begins. In a trunk, ``branch`` is told a place and which of its ``live`` alternatives are
+        about to change something.
+        """
+        if not self._begun:
+            self._note_early()
+        self._test, self._refusals, self._unknown = test, (), False
+        if self.hook.recording is not None:
+            self.hook.recording.start()
+            return
+        self.hook.alternatives.start()
+        if branch is not None:
+            self.hook.alternatives.on_place = branch
+            self.hook.alternatives.watch(live)
+
+    def end_test(self) -> None:
+        """The test is over."""
+        if self.hook.recording is not None:
+            self._tell_reached()
+        elif self.hook.alternatives.on_place is not None:
+            self.hook.alternatives.watch({})  # what is reached between tests belongs to none
+
+    def finish(self) -> None:
+        """All tests are over."""
+        if self.hook.recording is not None:
+            sightings = self.hook.recording.sightings()
+            self.pipe.send(TextsSeen(tuple(self.hook.imported), sightings))
+
+    def become(self, choices: tuple[Choice, ...]) -> None:
+        """In a branch that was just forked: let these alternatives stand in the text from now on."""
+        alternatives = self.hook.alternatives
+        alternatives.on_place = None
+        alternatives.watch({})
+        alternatives.activate(*choices)
+
+    @property
+    def hits(self) -> Mapping[int, int]:
+        """Evaluations in the running test of each place that was on."""
+        return self.hook.alternatives.hits
+
+    def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
+        """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
+        if self.is_mutant and self.has_acted and is_refusal(error, refusals):
+            self._refusals = with_refusal(self._refusals, error)
+            # the vocabulary says what commands there are; this is none of them
+            self._unknown = call.operation.message is not None and call.pattern is None
+
+    @property
+    def evidence(self) -> Evidence:
+        """What the mutant did in the running test. One of several alternatives acts if all of them did."""
+        counts = [self._count(place) for place in self.hook.alternatives.active]
+        examples = self.hook.alternatives.examples
+        return Evidence(
+            hits=min((hits for hits, _ in counts), default=0),
+            acted=min((acted for _, acted in counts), default=0),
+            is_partial=any(acted for _, acted in counts),
+            example=next(iter(examples.values()), self._early_example),
+            refusals=self._refusals,
+            is_of_text=True,
+            is_unknown=self._unknown,
+        )
+
+    def _note_early(self) -> None:
+        self._begun = True
+        alternatives = self.hook.alternatives
+        if self.hook.recording is not None:
+            self._tell_reached()
+        self._early = {place: self._count(place) for place in alternatives.active}
+        self._early_example = next(iter(alternatives.examples.values()), None)
+
+    def _tell_reached(self) -> None:
+        assert self.hook.recording is not None
+        self.pipe.send(PlacesReached(self._test, tuple(sorted(self.hook.recording.reached()))))
+
+    def _count(self, place: int) -> tuple[int, int]:
+        hits, acted = self._early.get(place, (0, 0))
+        alternatives = self.hook.alternatives
+        return hits + alternatives.hits.get(place, 0), acted + alternatives.acted(place)
+
+    @property
+    def has_acted(self) -> bool:
+        """Whether all active alternatives have changed something in this test, or before any."""
+        return all(self._count(place)[1] for place in self.hook.alternatives.active)
+
+    def _acted(self, place: int) -> None:
+        if self.has_acted:
+            self._on_act()

@@ -1,0 +1,1 @@
+"""Watching one plain run of the suite, for ``mutabot init``."""

@@ -1,0 +1,294 @@
+"""Watching one plain run of the suite for ``mutabot init``: which calls the program makes, with which values.
+
+A pytest plug-in of its own: ``-p mutabot.inside.watching.watch``, told by the environment what to look at. It
+changes nothing that the program can see; what it found is written to a file as JSON.
+"""
+
+from __future__ import annotations
+
+import builtins
+import functools
+import inspect
+import json
+import os
+import sys
+import time
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+import pytest
+
+from mutabot.border.watch import WATCH_VARIABLE
+
+from .callee import Callee, exception_name, facts, function_of, method_of
+from .described import Leaves
+from .told_apart import ToldApart
+from .watched_text import METHOD, NAME, READ, watch_imports
+
+#: calls of one callable whose values are looked at; more are only counted
+MOST_CALLS = 300
+#: least seconds between two writings of what was found so far
+_PAUSE = 2.0
+#: packages that talk to no robot
+_NO_ROBOTS = frozenset(
+    {
+        "_pytest", "pytest", "pluggy", "mutabot", "numpy", "scipy", "pandas", "matplotlib", "hypothesis",
+        "yaml", "loguru", "attr", "attrs", "pydantic", "typing_extensions", "torch", "jax", "sympy", "rich",
+        "networkx", "click", "typer", "PIL", "math3d", "transforms3d",
+    }
+)  # fmt: skip
+
+
+@dataclass
+class _Seen:
+    """A callable and what was seen of it."""
+
+    callee: Callee
+    own: bool
+    of_tests: bool
+    sites: dict[int, int] = field(default_factory=dict)
+    arguments: dict[str, Leaves] = field(default_factory=dict)
+    positional: Leaves = field(default_factory=Leaves)
+    result: Leaves = field(default_factory=Leaves)
+    given: dict[str, int] = field(default_factory=dict)
+    raised: dict[str, None] = field(default_factory=dict)
+    told_apart: ToldApart = field(default_factory=ToldApart)
+    looked_at: int = 0
+    answered: int = 0
+    is_coroutine: bool = False
+    returns_coroutine: bool = False
+    signature: inspect.Signature | None = None
+
+
+class Watch:
+    """What is seen of the calls in some files.
+
+    Args:
+        program, tests: real paths to names for people.
+    """
+
+    def __init__(self, program: dict[str, str], tests: dict[str, str]) -> None:
+        self._program, self._tests = program, tests
+        self._places: list[tuple[str, int]] = []
+        self._numbers: dict[tuple[str, int], int] = {}
+        self._seen: dict[tuple[str, bool], _Seen] = {}
+        self._known: dict[tuple[Any, str], Callee | None] = {}
+
+    def install(self) -> None:
+        """Watch what is imported from now on."""
+        setattr(builtins, METHOD, self.method)
+        setattr(builtins, NAME, self.named)
+        setattr(builtins, READ, self.read)
+        watch_imports({**self._program, **self._tests}, self._place)
+
+    def method(self, value: Any, name: str, place: int) -> Any:
+        """``value.name`` is about to be called."""
+        found = getattr(value, name)
+        if isinstance(found, type):
+            return found
+        return self._wrapped(found, self._of(self._method(value, name), place), place)
+
+    def named(self, function: Any, place: int) -> Any:
+        """A function is about to be called by its name."""
+        if isinstance(function, type):
+            return function
+        return self._wrapped(function, self._of(function_of(function), place), place)
+
+    def read(self, value: Any, name: str, place: int) -> Any:
+        """``value.name`` is read."""
+        found = getattr(value, name)
+        raw = inspect.getattr_static(type(value), name, None)
+        if isinstance(raw, property | functools.cached_property):
+            seen = self._of(method_of(value, name), place)
+            if seen is not None and self._counts(seen, place):
+                self._answer(seen, found)
+        return found
+
+    def data(self) -> list[dict[str, Any]]:
+        """All callables that were seen, for JSON."""
+        return [self._data(seen) for seen in self._seen.values()]
+
+    def _place(self, file: str, line: int) -> int:
+        if (file, line) not in self._numbers:
+            self._numbers[file, line] = len(self._places)
+            self._places.append((file, line))
+        return self._numbers[file, line]
+
+    def _method(self, value: Any, name: str) -> Callee | None:
+        """A method by its name; looked up once for each class."""
+        if inspect.ismodule(value) or isinstance(value, super) or name in getattr(value, "__dict__", ()):
+            return method_of(value, name)
+        key = (value if isinstance(value, type) else type(value), name)
+        if key not in self._known:
+            self._known[key] = method_of(value, name)
+        return self._known[key]
+
+    def _of(self, callee: Callee | None, place: int) -> _Seen | None:
+        """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
+        if callee is None:
+            return None
+        key = (callee.target, self._is_of_tests(place))
+        known = self._seen.get(key)
+        if known is None:
+            top = callee.target.partition(":")[0].partition(".")[0]
+            if top in sys.stdlib_module_names or top in _NO_ROBOTS or top.startswith("pytest"):
+                return None
+            known = self._seen[key] = _Seen(callee, callee.file in self._program, key[1])
+            known.signature = callee.signature
+            known.is_coroutine = inspect.iscoroutinefunction(getattr(callee.raw, "__func__", callee.raw))
+        return known
+
+    def _wrapped(self, function: Any, seen: _Seen | None, place: int) -> Any:
+        if seen is None or not self._counts(seen, place):
+            return function
+
+        instance = getattr(function, "__self__", None)
+
+        def watched(*args: Any, **kwargs: Any) -> Any:
+            which: str | None = None
+            with suppress(Exception):  # looking at values must not disturb the program
+                values = self._arguments(seen, args, kwargs)
+                which = seen.told_apart.see(instance, seen.callee.target, values)
+            try:
+                result = function(*args, **kwargs)
+            except Exception as error:
+                seen.raised[exception_name(type(error))] = None
+                raise
+            if inspect.iscoroutine(result):
+                seen.returns_coroutine = not seen.is_coroutine
+                return self._awaited(seen, which, result)
+            self._answer(seen, result, which)
+            return result
+
+        return watched
+
+    async def _awaited(self, seen: _Seen, which: str | None, waiting: Any) -> Any:
+        try:
+            result = await waiting
+        except Exception as error:
+            seen.raised[exception_name(type(error))] = None
+            raise
+        self._answer(seen, result, which)
+        return result
+
+    def _counts(self, seen: _Seen, place: int) -> bool:
+        """Count a call; whether its values are to be looked at."""
+        if seen.of_tests and (seen.own or seen.callee.file in self._tests):
+            return False
+        seen.sites[place] = seen.sites.get(place, 0) + 1
+        seen.looked_at += 1
+        return seen.looked_at <= MOST_CALLS
+
+    def _is_of_tests(self, place: int) -> bool:
+        return self._places[place][0] in self._tests.values()
+
+    def _arguments(self, seen: _Seen, args: tuple[Any, ...], kwargs: dict[str, Any]) -> dict[str, Any]:
+        """Look at the arguments of a call, and return those whose names are known."""
+        values = dict(kwargs)
+        if seen.signature is None:
+            for index, value in enumerate(args):
+                seen.positional.see(value, f"#{index}")
+        else:
+            try:
+                bound = seen.signature.bind(*args, **kwargs)
+            except TypeError:
+                return {}
+            bound.apply_defaults()
+            values = dict(bound.arguments)
+            for name, parameter in seen.signature.parameters.items():
+                if parameter.kind is inspect.Parameter.VAR_KEYWORD:
+                    values.update(values.pop(name, {}))
+        for name, value in values.items():
+            seen.given[name] = seen.given.get(name, 0) + 1
+            seen.arguments.setdefault(name, Leaves()).see(value, name)
+        return values
+
+    def _answer(self, seen: _Seen, result: Any, which: str | None = None) -> None:
+        seen.answered += 1
+        with suppress(Exception):
+            seen.result.see(result)
+            seen.told_apart.answer(which, result)
+
+    def _raised(self, target: str) -> list[str]:
+        """What a callable raised, whoever called it: tests make robots refuse."""
+        sides = (self._seen.get((target, of_tests)) for of_tests in (False, True))
+        return list(dict.fromkeys(name for side in sides if side is not None for name in side.raised))
+
+    def _data(self, seen: _Seen) -> dict[str, Any]:
+        found = facts(seen.callee)
+        if seen.returns_coroutine:
+            found["problem"] = "it returns a coroutine but is no coroutine function: name the one behind it"
+        return {
+            **found,
+            "own": seen.own,
+            "of_tests": seen.of_tests,
+            "sites": [[*self._places[place], count] for place, count in seen.sites.items()],
+            "given": seen.given,
+            "arguments": {name: leaves.data() for name, leaves in seen.arguments.items()},
+            "positional": seen.positional.data(),
+            "result": seen.result.data(),
+            "answered": seen.answered,
+            "raised": self._raised(seen.callee.target),
+            "told_apart": seen.told_apart.data(),
+        }
+
+
+class _Plugin:
+    """Pytest's hooks: when to write down what was found, and what became of the tests."""
+
+    def __init__(self, watch: Watch, output: str) -> None:
+        self._watch, self._output = watch, output
+        self._outcomes: dict[str, str] = {}
+        self._problems: list[str] = []
+        self._written = time.monotonic()
+
+    def pytest_collectreport(self, report: Any) -> None:
+        """A file that cannot be collected."""
+        if report.failed:
+            self._problems.append(f"{report.nodeid}: {_last_line(report.longreprtext)}")
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        """A phase of a test is over."""
+        if report.failed:
+            self._problems.append(f"{report.nodeid}: {_last_line(report.longreprtext)}")
+        if report.when == "call" or report.outcome != "passed":
+            self._outcomes[report.nodeid] = report.outcome
+
+    def pytest_runtest_logfinish(self) -> None:
+        """A test is over: the run may be cut short in the next one."""
+        if time.monotonic() - self._written > _PAUSE:
+            self._write()
+
+    def pytest_sessionfinish(self) -> None:
+        """All tests are over."""
+        self._write()
+
+    def _write(self) -> None:
+        outcomes = list(self._outcomes.values())
+        counts = {one: outcomes.count(one) for one in dict.fromkeys(outcomes)}
+        found = {"calls": self._watch.data(), "outcomes": counts, "problems": self._problems[:20]}
+        with open(f"{self._output}.new", "w", encoding="utf-8") as file:
+            json.dump(found, file, default=str)
+        os.replace(f"{self._output}.new", self._output)
+        self._written = time.monotonic()
+
+
+def _last_line(text: str) -> str:
+    """The line of a traceback that says what went wrong."""
+    lines = [line.strip().removeprefix("E").strip() for line in text.splitlines() if line.startswith("E ")]
+    plain = [line.strip() for line in text.splitlines() if line.strip()]
+    return (lines or plain[-1:] or ["no message"])[-1][:300]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_load_initial_conftests(early_config: Any) -> None:
+    """Before any of the user's code is imported."""
+    path = os.environ.pop(WATCH_VARIABLE, None)
+    if path is None:
+        return
+    with open(path, encoding="utf-8") as file:
+        order = json.load(file)
+    watch = Watch(order["program"], order["tests"])
+    watch.install()
+    early_config.pluginmanager.register(_Plugin(watch, order["output"]), "mutabot-watch")

@@ -1,0 +1,222 @@
+"""What journals hold beside mutants and outcomes, as plain data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mutabot.border.lines import TestEnd
+from mutabot.model import Outcome
+from mutabot.model.outcome import same_end
+
+
+@dataclass(frozen=True, slots=True)
+class BaselineTest:
+    """One test of the baseline.
+
+    Attributes:
+        round: 0-based round.
+        repetition: 0-based repetition of that round.
+        test: what the process reported.
+    """
+
+    round: int
+    repetition: int
+    test: TestEnd
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """An outcome of an earlier campaign.
+
+    Attributes:
+        key: what it depends on.
+        is_sound: whether it says anything about the mutant, and not about the tool or the machine.
+    """
+
+    key: str
+    is_sound: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ControlEnd:
+    """How a control mutant ended.
+
+    Attributes:
+        test_file: the test file it was run for.
+        control: ``identity`` or ``fatal``.
+        ok: whether it ended as it must.
+        detail: one line about how it ended.
+    """
+
+    test_file: str
+    control: str
+    ok: bool
+    detail: str
+
+
+#: key of the journal's meta
+DRAWING = "drawing"
+
+
+@dataclass(frozen=True, slots=True)
+class Stratum:
+    """The mutants of one family in one role, of which some were drawn.
+
+    Attributes:
+        family, role: which.
+        population: how many there were.
+        drawn: how many were drawn.
+    """
+
+    family: str
+    role: str
+    population: int
+    drawn: int
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """How the mutants of a campaign were drawn from the selected ones.
+
+    Attributes:
+        sample: the size that was asked for; None for all.
+        one_per_site: whether one mutant per site was drawn before; the sample is of those.
+        selected: how many mutants there were before anything was drawn.
+        strata: one per family and role; the population is what the sample was drawn from.
+    """
+
+    sample: str | None
+    one_per_site: bool
+    selected: int
+    strata: tuple[Stratum, ...]
+
+    def stratum(self, family: str, role: str) -> Stratum | None:
+        """That of a family in a role."""
+        return next((one for one in self.strata if (one.family, one.role) == (family, role)), None)
+
+
+#: keys of the journal's meta
+VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
+
+
+@dataclass(frozen=True, slots=True)
+class Disagreement:
+    """An outcome that came out otherwise in a fresh process.
+
+    Attributes:
+        mutant, number: id and number of the mutant.
+        round: 0-based round.
+        first, second: how it ended in the campaign and in the fresh process, in words.
+    """
+
+    mutant: str
+    number: int
+    round: int
+    first: str
+    second: str
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """What ``--verify`` found.
+
+    Attributes:
+        wanted: how many outcomes were to be looked at.
+        checked: how many were; fewer if the campaign has no more that any test was run for.
+        disagreements: those that came out otherwise.
+    """
+
+    wanted: int
+    checked: int
+    disagreements: tuple[Disagreement, ...] = ()
+
+    @property
+    def agreed(self) -> int:
+        """How many came out the same."""
+        return self.checked - len(self.disagreements)
+
+
+@dataclass(frozen=True, slots=True)
+class Flaky:
+    """Tests that cannot be relied on: they differ between equal runs of the original, or fail in one round.
+
+    Attributes:
+        tests: one line each: test, round and reason.
+        known: number of (test, round) that could have been.
+    """
+
+    tests: tuple[str, ...] = ()
+    known: int = 0
+
+    @property
+    def share(self) -> float:
+        """The share of tests that are flaky."""
+        return len(self.tests) / self.known if self.known else 0.0
+
+    def text(self, limit: float) -> str:
+        """Why this is too much."""
+        shown = "".join(f"\n  {line}" for line in self.tests[:10])
+        more = f"\n  … and {len(self.tests) - 10} more" if len(self.tests) > 10 else ""
+        counts = f"{len(self.tests)} of {self.known} tests cannot be relied on ({self.share:.0%})"
+        return f"{counts}; the limit is {limit:.0%} (unstable_limit):{shown}{more}"
+
+
+@dataclass(frozen=True, slots=True)
+class Replayed:
+    """One mutant in one round, run again.
+
+    Attributes:
+        round: 0-based round.
+        first: its outcome in the journal; None if it has none.
+        second: its outcome now.
+    """
+
+    round: int
+    first: Outcome | None
+    second: Outcome
+
+    @property
+    def agrees(self) -> bool | None:
+        """Whether both ended alike; None if there is nothing to compare with."""
+        return None if self.first is None else same_end(self.first, self.second)
+
+
+#: key of the journal's meta
+REPEATS = "repeats"
+
+
+@dataclass(frozen=True, slots=True)
+class Repeated:
+    """Outcomes of one kind, and what repeats of them came to.
+
+    Attributes:
+        outcomes: how many there were before any was repeated.
+        repeated: how many of them were run once more.
+        changed: how many of these ended otherwise.
+    """
+
+    outcomes: int = 0
+    repeated: int = 0
+    changed: int = 0
+
+    @property
+    def left(self) -> int:
+        """How many were not run once more."""
+        return self.outcomes - self.repeated
+
+
+@dataclass(frozen=True, slots=True)
+class Repeats:
+    """What is known from repeats about false kills and false survivors.
+
+    Attributes:
+        doubted: kills that may be chance.
+        others: kills that are not in doubt, by tests that are not known to be deterministic.
+        certain: number of kills by deterministic tests, and of those that earlier campaigns repeated.
+        survivors: mutants that survived.
+    """
+
+    doubted: Repeated = Repeated()
+    others: Repeated = Repeated()
+    certain: int = 0
+    survivors: Repeated = Repeated()

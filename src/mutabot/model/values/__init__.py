@@ -1,0 +1,1 @@
+"""What arguments and results mean, and the values they have."""

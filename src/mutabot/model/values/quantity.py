@@ -1,0 +1,249 @@
+"""Quantities: what one argument, or one part of a result, means."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from math import isclose
+from typing import Any
+
+from .path import Path
+from .rotation import Quaternion, to_quaternion, to_values
+from .units import Dimension, convert
+
+#: digits that tell any two numbers apart
+_MOST_DIGITS = 17
+#: A value a quantity can have, in the quantity's own unit.
+Value = Any
+
+
+class Kind(StrEnum):
+    """The physical meaning of a quantity."""
+
+    TRANSLATION = "translation"
+    ROTATION = "rotation"
+    OPENING = "opening"
+    OUTPUT = "output"
+    DURATION = "duration"
+    POSITION = "position"
+    ORIENTATION = "orientation"
+    ANGLE = "angle"
+    DISTANCE = "distance"
+    ROTATION_VECTOR = "rotation_vector"
+    QUATERNION = "quaternion"
+    EULER = "euler"
+    LABEL = "label"
+    FLAG = "flag"
+
+
+class Mode(StrEnum):
+    """Whether a commanded amount is relative or an absolute target."""
+
+    BY = "by"
+    TO = "to"
+
+
+#: orientations as a whole: several numbers that mean something only together; written and read
+WHOLE = frozenset({Kind.ROTATION_VECTOR, Kind.QUATERNION, Kind.EULER})
+#: kinds that are written to the robot
+WRITTEN = frozenset({Kind.TRANSLATION, Kind.ROTATION, Kind.OPENING, Kind.OUTPUT, Kind.DURATION, *WHOLE})
+#: kinds that are read from the robot
+READ = frozenset({Kind.POSITION, Kind.ORIENTATION, Kind.ANGLE, Kind.DISTANCE, Kind.LABEL, Kind.FLAG, *WHOLE})
+#: kinds whose values are numbers on a scale, with a unit
+MEASURED = frozenset(
+    {
+        Kind.TRANSLATION,
+        Kind.ROTATION,
+        Kind.DURATION,
+        Kind.POSITION,
+        Kind.ORIENTATION,
+        Kind.ANGLE,
+        Kind.DISTANCE,
+        *WHOLE,
+    }
+)
+#: what each kind measures; kinds that are missing carry no unit
+DIMENSIONS: dict[Kind, frozenset[Dimension]] = {
+    Kind.TRANSLATION: frozenset({Dimension.LENGTH}),
+    Kind.ROTATION: frozenset({Dimension.ANGLE}),
+    Kind.OPENING: frozenset({Dimension.RATIO, Dimension.LENGTH}),
+    Kind.DURATION: frozenset({Dimension.TIME}),
+    Kind.POSITION: frozenset({Dimension.LENGTH}),
+    Kind.ORIENTATION: frozenset({Dimension.ANGLE}),
+    Kind.ANGLE: frozenset({Dimension.ANGLE}),
+    Kind.DISTANCE: frozenset({Dimension.LENGTH}),
+    Kind.ROTATION_VECTOR: frozenset({Dimension.ANGLE}),
+    Kind.EULER: frozenset({Dimension.ANGLE}),
+}
+#: the reading that tells where a written kind is now
+READING_OF: dict[Kind, Kind] = {Kind.TRANSLATION: Kind.POSITION, Kind.ROTATION: Kind.ORIENTATION}
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """The meaning of one argument, or of one part of a result.
+
+    Attributes:
+        name: how ids and reports call it (``dx``, ``.pose.x``, ``height``, ``result``).
+        path: where it lies, starting at the argument's name, the result, or the field of a text command.
+        kind: its physical meaning.
+        axis: ``x``, ``y``, ``z``, or ``j1`` … for a joint; None where it has none.
+        unit: a key of ``units.UNITS``; None for kinds without one. All values below are in this unit.
+        frame: name of the frame it is given in, or None if the vocabulary does not say.
+        mode: relative or absolute; None for quantities that are not commanded motions.
+        values: the allowed values of a discrete quantity, or None for a continuous one.
+        range: least and greatest allowed value, or None for no limit.
+        clip: what the robot or its environment limits a value to that is sent: values beyond are taken for
+            the nearer end; None if it does not.
+        noise: standard deviation of the sensor noise to plant, or None for the operator's default.
+        order: of the parts of a quaternion (``wxyz`` or ``xyzw``), or the axes of Euler angles; else None.
+    """
+
+    name: str
+    path: Path
+    kind: Kind
+    axis: str | None = None
+    unit: str | None = None
+    frame: str | None = None
+    mode: Mode | None = None
+    values: tuple[Value, ...] | None = None
+    range: tuple[float, float] | None = None
+    noise: float | None = None
+    clip: tuple[float, float] | None = None
+    order: str | None = None
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether its values are numbers on a scale."""
+        return self.kind in MEASURED
+
+    def allows(self, value: Value) -> bool:
+        """Whether the robot API would take this value, as far as the vocabulary says."""
+        if self.values is not None and value not in self.values:
+            return False
+        if self.range is not None:
+            return bool(self.range[0] <= self.clipped(value) <= self.range[1])
+        return True
+
+    def clipped(self, value: Value) -> Value:
+        """A number, or each number of a vector, as it counts after ``clip``; other values as they are."""
+        if self.clip is None or isinstance(value, str | bytes | bool | None):
+            return value
+        if hasattr(value, "__len__"):
+            return [self.clipped(item) for item in value]
+        return min(max(value, self.clip[0]), self.clip[1])
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether its value is an orientation as a whole."""
+        return self.kind in WHOLE
+
+    @property
+    def full_turn(self) -> float | None:
+        """A full turn in its unit, where that makes no difference; None for all else, joints included."""
+        is_joint = self.axis is not None and self.axis.startswith("j")
+        is_target = self.kind is Kind.ROTATION and self.mode is Mode.TO
+        if is_joint or not (is_target or self.kind in (Kind.ORIENTATION, Kind.ANGLE)):
+            return None
+        return self.from_unit(2.0 * math.pi, "rad")
+
+    def orientation(self, value: Value) -> Quaternion | None:
+        """The orientation that a value means, as a unit quaternion; None if it means none."""
+        if not self.is_whole:
+            return None
+        return to_quaternion(
+            value, self.kind, self.order, lambda angle: convert(angle, self.unit or "rad", "rad")
+        )
+
+    def numbers(self, orientation: Quaternion) -> list[float]:
+        """An orientation as this quantity writes it."""
+        return to_values(orientation, self.kind, self.order, lambda angle: self.from_unit(angle, "rad"))
+
+    def from_unit(self, value: float, unit: str) -> float:
+        """``value`` in ``unit``, expressed in this quantity's own unit."""
+        return convert(value, unit, self.unit) if self.unit is not None else value
+
+    def text(self, value: Value, digits: int = 6) -> str:
+        """A value as reports print it, with its unit."""
+        if self.is_whole and isinstance(value, list | tuple):
+            parts = [f"{part:.{digits}g}" if isinstance(part, int | float) else str(part) for part in value]
+            return f"({', '.join(parts)}){f' {self.unit}' if self.unit else ''}"
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            return str(value)
+        number = f"{value:.{digits}g}"
+        return f"{number} {self.unit}" if self.unit not in (None, "fraction") else number
+
+    def texts(self, one: Value, other: Value) -> tuple[str, str]:
+        """Two values as reports print them side by side."""
+        return told_apart(one, other, self.text, 6)
+
+
+def told_apart(one: Value, other: Value, text: Callable[[Value, int], str], digits: int) -> tuple[str, str]:
+    """Two values as texts, with as many significant digits as tell them apart, but at least ``digits``."""
+    usual = text(one, digits), text(other, digits)
+    if usual[0] != usual[1] or text(one, _MOST_DIGITS) == text(other, _MOST_DIGITS):
+        return usual
+    for more in range(digits, _MOST_DIGITS + 1):
+        texts = text(one, more), text(other, more)
+        if texts[0] != texts[1]:
+            return texts
+    return usual
+
+
+def is_reading_of(reading: Quantity, written: Quantity) -> bool:
+    """Whether a reading tells where a commanded motion starts from: same axis, no other frame."""
+    frames = {reading.frame, written.frame} - {None}
+    if reading.axis != written.axis or len(frames) > 1:
+        return False
+    is_joint = written.axis is not None and written.axis.startswith("j")
+    return reading.kind is READING_OF.get(written.kind) or (
+        is_joint and written.kind is Kind.ROTATION and reading.kind is Kind.ANGLE
+    )
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value is a number; a truth value is none."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def value_text(value: Any, digits: int = 4) -> str:
+    """A value as divergence lines print it."""
+    if value is None:
+        return "nothing"
+    if is_number(value):
+        return f"{value:.{digits}g}"
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key}: {value_text(item, digits)}" for key, item in value.items()) + "}"
+    if isinstance(value, list | tuple):
+        return "(" + ", ".join(value_text(item, digits) for item in value) + ")"
+    return str(value)
+
+
+def same_values(one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
+    """Whether two sets of values are equal, vectors and arrays included."""
+    return one.keys() == other.keys() and all(same(one[name], other[name]) for name in one)
+
+
+def same(one: Value, other: Value) -> bool:
+    """Whether two values are equal; arrays by their elements, not-a-number equal to itself.
+
+    A difference that is but rounding of the computation is none: no robot could show it.
+    """
+    if one is other:
+        return True
+    if (
+        isinstance(one, float)
+        and isinstance(other, float)
+        and isclose(one, other, rel_tol=1e-9, abs_tol=1e-12)
+    ):
+        return True
+    if hasattr(one, "tolist"):
+        one = one.tolist()
+    if hasattr(other, "tolist"):
+        other = other.tolist()
+    try:
+        return bool(one == other) or bool(one != one and other != other)  # noqa: PLR0124  # NaN
+    except Exception:  # a value of the user's may compare in any way; what cannot be compared differs
+        return False

@@ -1,0 +1,139 @@
+"""Running an operator's middleware around a call, and telling whether it changed anything.
+
+Middleware is written as a coroutine function. Around a plain operation nothing ever suspends, so one
+``send`` runs it to its end; around an async operation it is awaited like any other coroutine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Coroutine, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from mutabot.errors import OperatorError
+from mutabot.model import Call, Middleware, Proceed, Quantity, Reply
+from mutabot.model.values.quantity import Value, same_values
+
+T = TypeVar("T")
+
+
+class Carried(BaseException):
+    """Carries an exception that a coroutine must not see: it turns StopIteration into RuntimeError."""
+
+    def __init__(self, error: BaseException) -> None:
+        super().__init__(error)
+        self.error = error
+
+
+def run(coroutine: Coroutine[Any, Any, T], *, operator: str) -> T:
+    """The result of a coroutine that never suspends.
+
+    Raises OperatorError if it does suspend: the operator awaited something other than ``proceed``
+    or ``call.current``.
+    """
+    try:
+        coroutine.send(None)
+    except StopIteration as end:
+        result: T = end.value
+        return result
+    except Carried as carried:
+        raise carried.error from None
+    coroutine.close()
+    raise OperatorError(
+        f"operator {operator!r} waits for something in a plain call; "
+        "it may await proceed and call.current only",
+        operator=operator,
+    )
+
+
+@dataclass(slots=True)
+class Passage:
+    """What happened while one call went through a mutant.
+
+    Attributes:
+        call: the original call.
+        performed: the calls that reached the robot.
+        answered: the robot's answers to them.
+        received: what the program received; None while the mutant is still at work.
+    """
+
+    call: Call
+    performed: list[Call] = field(default_factory=list)
+    answered: list[Reply] = field(default_factory=list)
+    received: Reply | None = None
+
+    @property
+    def acted(self) -> bool:
+        """Whether the mutant changed anything that the robot or the program could notice."""
+        return self.changed_command or self.changed_reading
+
+    @property
+    def away(self) -> str:
+        """Why the mutant changed nothing, if its operator says so."""
+        if self.acted or self.received is None:
+            return ""
+        return self.received.away or (self.performed[-1].away if self.performed else "")
+
+    @property
+    def changed_command(self) -> bool:
+        """Whether the robot was told something else than the program said."""
+        if len(self.performed) != 1:
+            return bool(self.performed) or self.received is not None
+        performed = self.performed[0]
+        return performed.reversed != self.call.reversed or not same_values(performed.values, self.call.values)
+
+    @property
+    def changed_reading(self) -> bool:
+        """Whether the program was told something else than the robot answered."""
+        if self.received is None or not self.answered:
+            return False
+        return not same_values(self.received.values, self.answered[-1].values)
+
+
+def recording(passage: Passage, proceed: Proceed) -> Proceed:
+    """``proceed`` that notes in ``passage`` what goes through it."""
+
+    async def noted(call: Call) -> Reply:
+        passage.performed.append(call)
+        reply = await proceed(call)
+        passage.answered.append(reply)
+        return reply
+
+    return noted
+
+
+async def passed(passage: Passage, middleware: Middleware, proceed: Proceed) -> Reply:
+    """Send the passage's call through the mutant."""
+    passage.received = await middleware(passage.call, recording(passage, proceed))
+    return passage.received
+
+
+def rehearse(
+    middleware: Middleware,
+    call: Call,
+    replied: Mapping[str, Value],
+    *,
+    current: Mapping[str, float] | None = None,
+    operator: str,
+) -> Passage:
+    """Send a recorded call through a mutant, with a robot that always answers ``replied``.
+
+    LookupError from ``call.current`` passes through when ``current`` does not say where the robot is.
+    """
+
+    async def where(quantity: Quantity) -> float:
+        if current is None or quantity.name not in current:
+            raise LookupError(f"where {quantity.name} is was not recorded")
+        return current[quantity.name]
+
+    async def answer(call: Call) -> Reply:
+        return Reply(dict(replied))
+
+    rehearsed = Call(call.operation, call.pattern, call.values, call.reversed, where, call.idle, call.payload)
+    passage = Passage(rehearsed)
+    run(_rehearsed(passage, middleware, answer), operator=operator)
+    return passage
+
+
+async def _rehearsed(passage: Passage, middleware: Middleware, answer: Proceed) -> Reply:
+    return await passed(passage, middleware, answer)

@@ -1,0 +1,117 @@
+"""Two common shapes of operators: one that changes a written value, one that changes a read value."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterable
+from random import Random
+
+from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Quantity, Reply
+from mutabot.model.values.quantity import Value, same
+from mutabot.operators.operator import Operator, Subject
+
+#: why an operator stays away from a call without a value
+NOT_GIVEN = "the call gives no such value"
+
+
+class WrittenValueOperator(Operator):
+    """Changes the value of one written quantity before the robot hears it."""
+
+    @abstractmethod
+    def fits(self, quantity: Quantity) -> bool:
+        """Whether the operator has something to say about this quantity."""
+
+    @abstractmethod
+    def change(self, quantity: Quantity, value: Value) -> Value | None:
+        """The new value, or None to stay away."""
+
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
+        whole = Subject(operation, pattern)
+        return [Subject(operation, pattern, quantity) for quantity in whole.written if self.fits(quantity)]
+
+    def middleware(self, subject: Subject, random: Random) -> Middleware:
+        quantity = quantity_of(subject)
+
+        async def mutated(call: Call, proceed: Proceed) -> Reply:
+            if quantity.name not in call.values:
+                return await proceed(call.as_is(NOT_GIVEN))
+            before = call.values[quantity.name]
+            value = self.change(quantity, before)
+            why = why_away(quantity, before, value)
+            return await proceed(call.as_is(why) if why else call.with_value(quantity, value))
+
+        return mutated
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        return f"{label(quantity)} {' → '.join(quantity.texts(before, after))}"
+
+
+class ReadValueOperator(Operator):
+    """Changes the value of one read quantity before the program hears it."""
+
+    @abstractmethod
+    def fits(self, quantity: Quantity) -> bool:
+        """Whether the operator has something to say about this quantity."""
+
+    @abstractmethod
+    def change(self, subject: Subject, value: Value, random: Random) -> Value | None:
+        """The new value, or None to stay away."""
+
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
+        whole = Subject(operation, pattern)
+        return [Subject(operation, pattern, quantity) for quantity in whole.read if self.fits(quantity)]
+
+    def middleware(self, subject: Subject, random: Random) -> Middleware:
+        quantity = quantity_of(subject)
+
+        async def mutated(call: Call, proceed: Proceed) -> Reply:
+            reply = await proceed(call)
+            if quantity.name not in reply.values:
+                return reply.as_is(NOT_GIVEN)
+            before = reply.values[quantity.name]
+            value = self.change(subject, before, random)
+            why = why_away(quantity, before, value)
+            return reply.as_is(why) if why else reply.with_value(quantity, value)
+
+        return mutated
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        return f"reads {label(quantity)} {' instead of '.join(quantity.texts(after, before))}"
+
+
+def quantity_of(subject: Subject) -> Quantity:
+    """The subject's quantity; an operator on quantities never gets a subject without one."""
+    assert subject.quantity is not None
+    return subject.quantity
+
+
+def label(quantity: Quantity) -> str:
+    """How descriptions call a quantity: its axis where it has one, and its name."""
+    name = quantity.name.lstrip(".")
+    if quantity.axis is None or name == quantity.axis or quantity.axis in name.split("_"):
+        return name
+    return f"{name} ({quantity.axis})"
+
+
+def why_away(quantity: Quantity, before: Value, after: Value | None) -> str:
+    """Why a new value is not put in place of another one; empty if it can be."""
+    if after is None:
+        return f"its value is none that {'can be ' if quantity.is_measured else ''}changed"
+    if not allowed(quantity, after):
+        if quantity.range is None:
+            return "the value would be none of those that the vocabulary allows"
+        return "the value would leave the range [{:g}, {:g}]".format(*quantity.range)
+    if same(before, after):
+        return "the value would stay the same"
+    if quantity.clip is not None and same(quantity.clipped(before), quantity.clipped(after)):
+        return "both values are limited to the same one by clip = [{:g}, {:g}]".format(*quantity.clip)
+    return ""
+
+
+def allowed(quantity: Quantity, value: Value) -> bool:
+    """Whether the robot API takes the value, or each component of a vector."""
+    if hasattr(value, "__len__") and not isinstance(value, str | bytes):
+        return all(quantity.allows(item) for item in value)
+    return quantity.allows(value)

@@ -1,0 +1,98 @@
+"""reverse: a translation or rotation goes the other way."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import ClassVar
+
+from mutabot.model import Kind, Mode, Operation, Path, Quantity
+from mutabot.model.values.quantity import Value
+from mutabot.operators.operator import Example, Subject, map_numbers
+
+from ._orientation import the_other_way
+from ._values import WrittenValueOperator
+
+_DY = Quantity("dy", Path("dy"), Kind.TRANSLATION, "y", "m", "base", Mode.BY)
+_YAW = Quantity("yaw", Path("yaw"), Kind.ROTATION, "z", "deg", "base", Mode.BY)
+_TURN = Quantity("angle", Path("angle"), Kind.ROTATION, "z", "deg", None, Mode.TO, range=(0.0, 360.0))
+_LIFT = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.5))
+_PUSH = Quantity("push", Path("push"), Kind.TRANSLATION, "x", "m", None, Mode.BY, range=(-1.0, 1.0))
+_LIMITED = replace(_PUSH, clip=(-1.0, 1.0))
+_MOVE = Operation("robot:Arm.move_by", (_DY, _YAW))
+_TURN_TO = Operation("robot:Arm.turn_to", (_TURN,))
+_STEP = Operation("env:Env.step", (_PUSH,))
+_CLIPPED = Operation("env:Env.step", (_LIMITED,))
+_ROTVEC = Quantity("rotation", Path("rotation"), Kind.ROTATION_VECTOR, unit="rad")
+_ORIENT = Operation("robot:Arm.orient", (_ROTVEC,))
+_LIFT_TO = Operation("robot:Arm.lift_to", (_LIFT,))
+
+
+class Reverse(WrittenValueOperator):
+    """Negates one translation or rotation component."""
+
+    name = "reverse"
+    summary = "A translation or rotation goes the other way: one component is negated."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(
+            Subject(_MOVE, quantity=_DY),
+            {"dy": 0.2, "yaw": 0.0},
+            performed=({"dy": -0.2, "yaw": 0.0},),
+            note="translate forward by δ: translate backwards by δ",
+        ),
+        Example(Subject(_MOVE, quantity=_DY), {"dy": -0.9}, performed=({"dy": 0.9},)),
+        Example(
+            Subject(_MOVE, quantity=_YAW),
+            {"dy": 0.0, "yaw": 80},
+            performed=({"dy": 0.0, "yaw": -80},),
+            note="rotate left by θ: rotate right by θ",
+        ),
+        Example(Subject(_MOVE, quantity=_DY), {"dy": [0.1, -0.2]}, performed=({"dy": [-0.1, 0.2]},)),
+        Example(
+            Subject(_TURN_TO, quantity=_TURN),
+            {"angle": 90},
+            performed=({"angle": 270},),
+            note="an angle limited to a full turn stays within it",
+        ),
+        Example(
+            Subject(_ORIENT, quantity=_ROTVEC),
+            {"rotation": [0.0, 0.5, 0.0]},
+            performed=({"rotation": [0.0, -0.5, 0.0]},),
+            note="an orientation as a whole: the inverse rotation",
+        ),
+        Example(
+            Subject(_CLIPPED, quantity=_LIMITED),
+            {"push": 1.7},
+            performed=({"push": -1.7},),
+            note="the vocabulary says that the robot limits it: clip = [−1, 1]",
+        ),
+        Example(Subject(_STEP, quantity=_PUSH), {"push": 1.7}, away="−1.7 m is outside the range [−1, 1]"),
+        Example(
+            Subject(_ORIENT, quantity=_ROTVEC),
+            {"rotation": [0.0, math.pi, 0.0]},
+            away="half a turn the other way is the same orientation",
+        ),
+        Example(Subject(_MOVE, quantity=_DY), {"dy": 0.0}, away="a zero has no other way"),
+        Example(Subject(_MOVE, quantity=_DY), {"yaw": 80}, away="the call does not give this component"),
+        Example(Subject(_LIFT_TO, quantity=_LIFT), {"z": 0.3}, away="−0.3 m is outside the allowed range"),
+    )
+
+    def fits(self, quantity: Quantity) -> bool:
+        return quantity.kind in (Kind.TRANSLATION, Kind.ROTATION) or quantity.is_whole
+
+    def change(self, quantity: Quantity, value: Value) -> Value | None:
+        if quantity.is_whole:
+            return the_other_way(quantity, value)
+        return map_numbers(value, lambda number: _within_turn(quantity, -number))
+
+
+def _within_turn(quantity: Quantity, angle: float) -> float:
+    if quantity.kind is not Kind.ROTATION or quantity.range is None or quantity.allows(angle):
+        return angle
+    turn = quantity.from_unit(2.0 * math.pi, "rad")
+    turn = round(turn, 9) if quantity.unit == "deg" else turn
+    low, high = quantity.range
+    if abs((high - low) - turn) > 1e-6 * turn:
+        return angle
+    wrapped = angle + (turn if angle < low else -turn)
+    return int(wrapped) if isinstance(angle, int) and wrapped.is_integer() else wrapped

@@ -1,0 +1,198 @@
+"""Everything about one mutant on the terminal, for ``mutabot show``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+from rich.console import Console, RenderableType
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from mutabot.analysis.divergence import change_text
+from mutabot.analysis.results import MutantResult
+from mutabot.analysis.score import KillRate
+from mutabot.journal.records import Replayed
+from mutabot.model import Kind, Mutant, Outcome, Quantity
+from mutabot.model.outcome import end_in_words
+
+from .console import between, heading, make_table, percent, plain
+from .excerpt import excerpt
+from .marks import mark_of
+
+#: facts that a mutant of the program text has not
+_OF_CALLS = ("operation", "quantity")
+_NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
+
+
+def print_mutant(console: Console, result: MutantResult, source: str | None) -> None:
+    """Print one mutant; ``source`` is the text of its file, or None if it is not known."""
+    for part in _parts(result, source):
+        console.print(part)
+
+
+def print_replayed(console: Console, mutant: Mutant, rounds: Iterable[Replayed]) -> None:
+    """Print how a mutant ended when it was run again, beside what the journal says."""
+    console.print(Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold"))
+    for one in rounds:
+        state = {
+            True: "as in the journal",
+            False: "otherwise than in the journal",
+            None: "not in the journal",
+        }
+        console.print(heading(f"Round {one.round + 1}: {state[one.agrees]}"))
+        console.print(_replayed_line("now", one.second))
+        if one.first is not None and not one.agrees:
+            console.print(_replayed_line(f"in the journal ({one.first.engine})", one.first))
+
+
+def _replayed_line(name: str, outcome: Outcome) -> RenderableType:
+    parts = [f"{name}: {end_in_words(outcome)}", *_evidence(outcome)]
+    return Padding(Text(plain("\n".join(parts)), overflow="fold"), (0, 0, 0, 2), expand=False)
+
+
+def _parts(result: MutantResult, source: str | None) -> Iterator[RenderableType]:
+    mutant = result.mutant
+    yield Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold")
+    yield _facts(result)
+    lines = excerpt(source, mutant.site.span) if source is not None else []
+    if lines:
+        yield Text("\n" + "\n".join(plain(line) for line in lines), no_wrap=True, overflow="ellipsis")
+    change = next(filter(None, (change_text(mutant, one, result.quantity) for one in result.outcomes)), None)
+    if change is not None:
+        yield Text(f"\nWhere it first acted, the program {plain(change)}.")
+    yield heading("Rounds")
+    groups: dict[Any, list[int]] = {}
+    for number, outcome in enumerate(result.rounds):
+        groups.setdefault(_alike(outcome), []).append(number)
+    for numbers in groups.values():
+        yield from _ended(numbers, result.rounds)
+
+
+def _facts(result: MutantResult) -> Table:
+    mutant, rate = result.mutant, result.kill_rate
+    table = make_table(header=False)
+    table.add_column(style="dim", no_wrap=True)
+    table.add_column(overflow="fold")
+    facts = {
+        "id": mutant.id,
+        "place": "; ".join(f"{one.site.place} in {one.site.span.function}" for one in mutant.singles),
+        "role": mutant.site.role.value,
+        "operator": f"{mutant.operator} ({mutant.family})",
+        "operation": mutant.operation + (f", command {mutant.pattern_name}" if mutant.pattern else ""),
+        "quantity": _quantity_text(mutant.quantity, result.quantity),
+        "killed": f"in {rate.killed} of the {rate.valid} rounds in which it was valid{_interval_text(rate)}",
+        "result": result.why,
+    }
+    for name, text in facts.items():
+        if mutant.operation or name not in _OF_CALLS:
+            table.add_row(name, plain(text))
+    return table
+
+
+def _interval_text(rate: KillRate) -> str:
+    if rate.interval is None:
+        return ""
+    return f": {percent(rate.rate)}, 95 % interval {between(rate.interval)}"
+
+
+def _quantity_text(name: str | None, quantity: Quantity | None) -> str:
+    if name is None:
+        return "the call as a whole"
+    if quantity is None:
+        return name
+    turned = quantity.kind in (Kind.ROTATION, Kind.ORIENTATION, Kind.ANGLE)
+    words = [
+        quantity.kind.value,
+        quantity.axis and f"{'about' if turned else 'along'} {quantity.axis}",
+        quantity.unit and f"in {quantity.unit}",
+    ]
+    frame = f"frame {quantity.frame}" if quantity.frame else None
+    return f"{name}: {', '.join(word for word in (*words, frame) if word)}"
+
+
+def _alike(outcome: Outcome | None) -> Any:
+    """Equal for rounds that ended alike: numbers in texts may differ."""
+    if outcome is None:
+        return None
+    texts = (outcome.message or "", *outcome.divergence)
+    return (
+        outcome.verdict, outcome.by, outcome.test, outcome.exception, outcome.place,
+        outcome.indistinguishable, outcome.gaps, outcome.acted == outcome.hits, tuple(outcome.away),
+        *(_NUMBER.sub("0", text) for text in texts),
+    )  # fmt: skip
+
+
+def _ended(numbers: list[int], rounds: Sequence[Outcome | None]) -> Iterator[RenderableType]:
+    """Rounds that ended alike, by their 0-based numbers; what differs a little is told of the first."""
+    outcomes = [outcome for number in numbers if (outcome := rounds[number]) is not None]
+    mark = mark_of(outcomes[0] if outcomes else None)
+    name = f"round{'s' if len(numbers) > 1 else ''} {_numbers(numbers)}:"
+    line = Text.assemble(f"  {name} ", mark.text, f" {mark.words}")
+    if outcomes and outcomes[0].test is not None:
+        line.append(f" in {outcomes[0].test}")
+    yield line
+    if not outcomes:
+        return
+    *texts, effort = _evidence(outcomes[0])
+    if any([*_evidence(other)][:-1] != texts for other in outcomes):
+        texts.insert(0, f"such as in round {numbers[0] + 1}:")
+    if any(_effort(other, with_time=False) != _effort(outcomes[0], with_time=False) for other in outcomes):
+        effort = _all_effort(outcomes)
+    elif len(outcomes) > 1:
+        effort = f"{_effort(outcomes[0], with_time=False)}, {_seconds(outcomes)}"
+    for text in (*texts, effort):
+        yield Padding(Text(plain(text), overflow="fold"), (0, 0, 0, 8), expand=False)
+
+
+def _numbers(numbers: Sequence[int]) -> str:
+    """1-based numbers of rounds: ``1–3, 5``."""
+    parts: list[list[int]] = []
+    for number in numbers:
+        if parts and number == parts[-1][-1] + 1:
+            parts[-1].append(number)
+        else:
+            parts.append([number])
+    return ", ".join(f"{part[0] + 1}–{part[-1] + 1}" if len(part) > 1 else f"{part[0] + 1}" for part in parts)
+
+
+def _all_effort(outcomes: Sequence[Outcome]) -> str:
+    acted = _between(sorted(outcome.acted for outcome in outcomes))
+    hits = _between(sorted(outcome.hits for outcome in outcomes))
+    tests = _between(sorted(outcome.tests for outcome in outcomes))
+    return f"acted at {acted} of {hits} hits, {tests} tests run, {_seconds(outcomes)}"
+
+
+def _between(values: Sequence[int]) -> str:
+    return str(values[0]) if values[0] == values[-1] else f"{values[0]} to {values[-1]}"
+
+
+def _seconds(outcomes: Sequence[Outcome]) -> str:
+    low, high = (f"{pick(outcome.wall for outcome in outcomes):.1f}" for pick in (min, max))
+    return f"{low} s" if low == high else f"{low} to {high} s"
+
+
+def _evidence(outcome: Outcome) -> Iterator[str]:
+    if outcome.message:
+        exception = f"{outcome.exception.rpartition(':')[2]}: " if outcome.exception else ""
+        yield f"{exception}{outcome.message.rstrip()}"
+    if outcome.place is not None:
+        yield f"at {outcome.place}"
+    if outcome.compared is not None:
+        equal = ": nothing differs (indistinguishable)" if outcome.indistinguishable else ""
+        yield f"compared with the original: {outcome.compared.text}{equal}"
+    yield from outcome.divergence
+    yield from (f"not compared: {gap}" for gap in outcome.gaps)
+    yield from (f"stayed away at {_hits(count)}: {why}" for why, count in outcome.away.items())
+    yield _effort(outcome)
+
+
+def _hits(count: int) -> str:
+    return "1 hit" if count == 1 else f"{count} hits"
+
+
+def _effort(outcome: Outcome, *, with_time: bool = True) -> str:
+    text = f"acted at {outcome.acted} of {outcome.hits} hits, {outcome.tests} tests run"
+    return f"{text}, {outcome.wall:.1f} s" if with_time else text

@@ -1,0 +1,358 @@
+"""The configuration: ``[tool.mutabot]`` in ``pyproject.toml``, or ``mutabot.toml``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path, PurePosixPath
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+from mutabot.errors import ConfigurationError, nearest_name
+
+from .document import Document
+from .mistakes import Check, raise_errors
+from .toml_lines import Place
+
+_PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
+_INIT = "run `mutabot init` to propose one"
+_MEMORY = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
+_PREFIXES = {"": 0, "k": 1, "m": 2, "g": 3, "t": 4}
+_LEAST_MEMORY = 100_000_000
+_WILD = re.compile(r"[*?\[]")
+
+
+def parse_memory(value: Any) -> Any:
+    """Bytes in a text such as ``4 GB`` or ``512 MiB``; whole numbers are bytes already."""
+    if isinstance(value, str):
+        match = _MEMORY.fullmatch(value)
+        if match is None:
+            raise _fault(f"{value!r} is no amount of memory; write it like '4 GB'")
+        unit = match[2].lower().removesuffix("b")
+        base = 1024 if unit.endswith("i") else 1000
+        value = round(float(match[1]) * base ** _PREFIXES[unit.removesuffix("i")])
+    if isinstance(value, int) and not isinstance(value, bool) and value < _LEAST_MEMORY:
+        raise _fault(f"{value} bytes are too little for Python and pytest; write it like '4 GB'")
+    return value
+
+
+def _fault(text: str) -> PydanticCustomError:
+    return PydanticCustomError("mutabot", "{text}", {"text": text})
+
+
+_Texts = Annotated[tuple[str, ...], Field(strict=False)]
+_SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
+_Families = Annotated[tuple[Literal["robot", "classical", "text"], ...], Field(strict=False, min_length=1)]
+_Share = Annotated[float, Field(ge=0, le=1)]
+
+
+class Settings(BaseModel):
+    """The keys a user can write.
+
+    The text below each key, with its example, is what docs/configuration.md says.
+    """
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+    program: _SomeTexts
+    """Files and folders of the robot program; globs may be used. Calls in them are mutated, in the role
+    `program`.
+
+        program = ["mission.py", "cell/*.py"]
+    """
+    oracle: _Texts = ()
+    """The same for code of the tests that takes readings for their own checks. Calls
+    in it are mutated in the role `oracle`, whose score is a score of its own. No file can be both.
+
+        oracle = ["tests/sensors.py"]
+    """
+    tests: _SomeTexts = ("tests",)
+    """Pytest's arguments that say which tests there are: folders, files,
+    node ids.
+
+        tests = ["tests", "acceptance/test_cell.py"]
+    """
+    vocabulary: _SomeTexts
+    """Vocabulary files of the project, or names of vocabularies that come with
+    mutabot; see [vocabulary](vocabulary.md).
+
+        vocabulary = ["robot.toml"]
+    """
+    rounds: Annotated[int, Field(ge=1)] = 1
+    """How often everything is repeated, each time with other
+    seeds. `--rounds` goes before it.
+
+        rounds = 5
+    """
+    seed: Annotated[int, Field(ge=0)] = 1
+    """The campaign's seed, from which those of all rounds and tests
+    come. `--seed` goes before it.
+
+        seed = 42
+    """
+    jobs: Annotated[int, Field(ge=1)] | None = None
+    """Processes at a time. Without it, one per core that
+    may be used. `--jobs` goes before it.
+
+        jobs = 1
+    """
+    selection: str | None = None
+    """File with the ids of the mutants to run, one per line; they are
+    numbered in its order. Without it, all are run. `--selection` goes before it.
+
+        selection = "published.txt"
+    """
+    timeout_factor: Annotated[float, Field(gt=1)] = 10.0
+    """How many times the operations and the simulated
+    time of the original a mutant may use in a test.
+
+        timeout_factor = 3.0
+    """
+    timeout_seconds: Annotated[float, Field(gt=0)] = 60.0
+    """Seconds of wall clock that every test gets at
+    least, be the original ever so quick: the safety net for mutants that neither operations nor simulated
+    time can end.
+
+        timeout_seconds = 300.0
+    """
+    private_files: bool = True
+    """Whether each run of the tests keeps to itself what it does to
+    the project's and the temporary files, and finds them as they were before any run. That needs a mount
+    namespace; where the system refuses it, you are told if it matters.
+
+        private_files = false
+    """
+    memory: Annotated[int, BeforeValidator(parse_memory)] = 4_000_000_000
+    """Address space of a process, as
+    a text with a unit or in bytes.
+
+        memory = "16 GB"
+    """
+    unstable_limit: _Share = 0.1
+    """Share of outcomes that may be unstable; above it, `run` ends with 4.
+
+        unstable_limit = 0.0
+    """
+    timeout_limit: _Share = 1.0
+    """Share of outcomes that may be time-outs; above it, `run` ends with 5.
+
+        timeout_limit = 0.2
+    """
+    error_limit: _Share = 0.0
+    """Share of outcomes that may be errors, in which nothing is known of the
+    mutant; above it, `run` ends with 4.
+
+        error_limit = 0.05
+    """
+    min_score: Annotated[float, Field(ge=0, le=100)] | None = None
+    """Least score in percent, for each
+    family and role by itself; below it, `run` ends with 1. `--min-score` goes before it.
+
+        min_score = 80.0
+    """
+    pytest_args: _Texts = ()
+    """Further arguments for pytest.
+
+        pytest_args = ["-m", "not slow"]
+    """
+    families: _Families = ("robot",)
+    """Families of mutants to plant: `robot` in calls, `classical` and
+    `text` in the program's text. `--family` goes before it.
+
+        families = ["robot", "classical"]
+    """
+    order: Literal[1, 2] = 1
+    """How many mutants are planted at once. `--order` goes before it.
+
+        order = 2
+    """
+    pairs: Annotated[int, Field(ge=1)] = 200
+    """How many pairs are planted where `order` is 2, chosen by
+    the seed. `--pairs` goes before it.
+
+        pairs = 1000
+    """
+    baseline_repetitions: Annotated[int, Field(ge=1)] | None = None
+    """How often the original is run per round; without it, as often as the engine
+    needs. More runs find more of the tests that fail at random. `--baseline` goes before it.
+
+        baseline_repetitions = 10
+    """
+
+
+class Configuration(Settings):
+    """What a campaign is to do: the settings, with paths expanded and sorted.
+
+    Attributes:
+        root: absolute path of the project.
+        file: the file it was read from, relative to ``root``.
+    """
+
+    root: Path
+    file: str
+
+
+def load_configuration(folder: Path) -> Configuration:
+    """The configuration of the project in ``folder``.
+
+    Raises ConfigurationError or UnknownNameError: the first mistake, with a message that tells about all.
+    """
+    document, place = _find(folder)
+    raw = _child(document.data, place)
+    check = Check(document)
+    if document.file == _OWN and isinstance(raw.get("tool"), dict) and "mutabot" in raw["tool"]:
+        raise document.error(
+            ("tool", "mutabot"), f"in {_OWN} the keys stand at the top, without [tool.mutabot]"
+        )
+    settings = check.table(Settings, raw, place, salvage=True)
+    if settings is None:
+        raise_errors(check.errors)
+        raise AssertionError("a table without a mistake is refused")
+    paths = _Paths(check, place, folder.resolve())
+    program, oracle = paths.sources("program", settings.program), paths.sources("oracle", settings.oracle)
+    paths.refuse_overlap(program, oracle)
+    paths.check_tests(settings.tests, "tests" in raw)
+    paths.check_rest(settings)
+    raise_errors(check.errors)
+    changed = {"program": program, "oracle": oracle, "root": folder.resolve(), "file": document.file}
+    return Configuration(**{**dict(settings), **changed})
+
+
+def _find(folder: Path) -> tuple[Document, Place]:
+    """The document with the configuration, and where in it the keys stand."""
+    if not folder.is_dir():
+        raise ConfigurationError("there is no such folder", file=str(folder))
+    found: list[tuple[Document, Place]] = []
+    hint = ""
+    if (folder / _PYPROJECT).exists():
+        document = Document.read(folder / _PYPROJECT, _PYPROJECT, ConfigurationError)
+        tool = document.data.get("tool", {})
+        if isinstance(tool, dict) and "mutabot" in tool:
+            found.append((document, ("tool", "mutabot")))
+        near = nearest_name("mutabot", tool) if isinstance(tool, dict) else None
+        hint = f" (there is [tool.{near}]; did you mean [tool.mutabot]?)" if near else ""
+    if (folder / _OWN).exists():
+        found.append((Document.read(folder / _OWN, _OWN, ConfigurationError), ()))
+    if not found:
+        problem = f"no [tool.mutabot] in {_PYPROJECT} and no {_OWN} in {folder}{hint}; {_INIT}"
+        raise ConfigurationError(problem)
+    if len(found) > 1:
+        line = found[0][0].line(("tool", "mutabot"))
+        problem = f"there is also {_OWN}; keep the configuration in one of the two"
+        raise ConfigurationError(problem, file=_PYPROJECT, key="tool.mutabot", line=line)
+    return found[0]
+
+
+def _child(data: dict[str, Any], place: Place) -> Any:
+    node: Any = data
+    for part in place:
+        node = node[part]
+    return node
+
+
+class _Paths:
+    """The paths of a configuration: inside the project, and really there."""
+
+    def __init__(self, check: Check, place: Place, root: Path) -> None:
+        self.check, self.place, self.root = check, place, root
+
+    def sources(self, key: str, names: tuple[str, ...]) -> tuple[str, ...]:
+        """Files and folders, relative to the root, sorted; globs expanded."""
+        found: set[str] = set()
+        for index, name in enumerate(names):
+            where = (*self.place, key, index)
+            if not self.is_inside(where, name):
+                continue
+            if _WILD.search(name) and not (self.root / name).exists():
+                found.update(self._expanded(where, name))
+            elif self.exists(where, name):
+                found.add(PurePosixPath(name).as_posix())
+        return tuple(sorted(found))
+
+    def is_inside(self, where: Place, name: str) -> bool:
+        """Whether a path lies in the project; if not, that is noted."""
+        path = PurePosixPath(name)
+        if not name.strip():
+            self.check.error(where, "is an empty path")
+        elif "\0" in name:
+            self.check.error(where, f"{name!r} is no path")
+        elif path.is_absolute() or name.startswith("~"):
+            self.check.error(where, f"{name!r} must be relative to the project's folder")
+        elif ".." in path.parts or not (self.root / path).resolve().is_relative_to(self.root):
+            self.check.error(where, f"{name!r} leads out of the project's folder")
+        else:
+            return True
+        return False
+
+    def exists(self, where: Place, name: str) -> bool:
+        """Whether there is such a file or folder; if not, that is noted."""
+        if (self.root / name).exists():
+            return True
+        near = self._nearest(name)
+        self.check.error(where, f"there is no {name!r}{f'; did you mean {near!r}?' if near else ''}")
+        return False
+
+    def refuse_overlap(self, program: tuple[str, ...], oracle: tuple[str, ...]) -> None:
+        """Note each part of the oracle that is a part of the program as well."""
+        for path in oracle:
+            for other in program:
+                shared = PurePosixPath(path), PurePosixPath(other)
+                if shared[0].is_relative_to(shared[1]) or shared[1].is_relative_to(shared[0]):
+                    text = f"{path!r} overlaps program ({other!r}); a call is the program's or the tests'"
+                    self.check.error((*self.place, "oracle"), text)
+
+    def check_tests(self, tests: tuple[str, ...], given: bool) -> None:
+        """Note each path among pytest's arguments that does not exist."""
+        for index, argument in enumerate(tests):
+            after_option = index > 0 and tests[index - 1].startswith("-")
+            if argument.startswith("-") or after_option:
+                continue
+            where = (*self.place, "tests", *((index,) if given else ()))
+            name = argument.partition("::")[0]
+            if not self.is_inside(where, name) or (self.root / name).exists():
+                continue
+            if given:
+                self.exists(where, name)
+            else:
+                self.check.error(
+                    where, f'there is no folder {name!r}; say where the tests are: tests = ["…"]'
+                )
+
+    def check_rest(self, settings: Settings) -> None:
+        """Note what is wrong with the vocabulary's and the selection's paths."""
+        for index, name in enumerate(settings.vocabulary):
+            self.is_inside((*self.place, "vocabulary", index), name)
+        where = (*self.place, "selection")
+        if settings.selection is not None and self.is_inside(where, settings.selection):
+            self.exists(where, settings.selection)
+
+    def _expanded(self, where: Place, pattern: str) -> list[str]:
+        try:
+            matches = list(self.root.glob(pattern))
+        except ValueError as error:
+            self.check.error(where, f"{pattern!r} is no pattern of paths: {error}")
+            return []
+        relative = [match.relative_to(self.root) for match in matches]
+        found = [path.as_posix() for path in relative if _is_source(self.root, path)]
+        if not found:
+            what = "no Python file or folder" if relative else "nothing"
+            self.check.error(where, f"{pattern!r} matches {what}")
+        return found
+
+    def _nearest(self, name: str) -> str | None:
+        folder = (self.root / name).parent
+        while not folder.is_dir():
+            folder = folder.parent
+        known = [path.relative_to(self.root).as_posix() for path in _visible(folder)]
+        return nearest_name(name, known)
+
+
+def _is_source(root: Path, path: Path) -> bool:
+    hidden = any(part.startswith(".") or part == "__pycache__" for part in path.parts)
+    return not hidden and (path.suffix == ".py" or (root / path).is_dir())
+
+
+def _visible(folder: Path) -> Iterator[Path]:
+    return (path for path in sorted(folder.iterdir()) if not path.name.startswith((".", "__")))

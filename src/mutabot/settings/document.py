@@ -1,0 +1,119 @@
+"""A TOML file together with where its keys stand."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from mutabot.errors import ConfigurationError, VocabularyError
+
+from .toml_lines import Place, key_lines
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+_AT_LINE = re.compile(r" \(at line (\d+), column (\d+)\)$")
+
+
+@dataclass(frozen=True)
+class Document:
+    """A TOML file that could be read.
+
+    Attributes:
+        file: the file as the user named it.
+        data: its content.
+        lines: 1-based line of each key.
+        error_type: what mistakes in this file are raised as.
+    """
+
+    file: str
+    data: dict[str, Any]
+    lines: Mapping[Place, int] = field(repr=False)
+    error_type: type[ConfigurationError] = VocabularyError
+
+    @classmethod
+    def read(cls, path: Path, file: str, error_type: type[ConfigurationError] = VocabularyError) -> Document:
+        """Read ``path``, which the user knows as ``file``.
+
+        Raises ``error_type`` if it cannot be read or is no TOML.
+        """
+        text = _text_of(path, file, error_type)
+        try:
+            data = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise _syntax_error(str(error), text, file, error_type) from None
+        return cls(file, data, key_lines(text), error_type)
+
+    def line(self, place: Place) -> int | None:
+        """Line of the key, or of the nearest one around it."""
+        for length in range(len(place), 0, -1):
+            if place[:length] in self.lines:
+                return self.lines[place[:length]]
+        return None
+
+    def error(self, place: Place, problem: str) -> ConfigurationError:
+        """The error for a problem at this place."""
+        return self.error_type(problem, file=self.file, key=self.key(place), line=self.line(place))
+
+    def key(self, place: Place) -> str | None:
+        """The place as an engineer would say it: ``robot:Arm.move_by · arguments.dx.unit``."""
+        chunks: list[str] = []
+        dotted = ""
+        node: Any = self.data
+        for part in place:
+            node = _child(node, part)
+            if isinstance(part, str):
+                dotted += ("." if dotted else "") + (part if _BARE.fullmatch(part) else f'"{part}"')
+                continue
+            label = _label(node)
+            if label is None:
+                dotted += f"#{part + 1}"
+            else:
+                chunks.append(label if dotted == "operation" else f"{dotted} {label!r}")
+                dotted = ""
+        return " · ".join([*chunks, dotted] if dotted else chunks) or None
+
+
+def _text_of(path: Path, file: str, error_type: type[ConfigurationError]) -> str:
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        problem = f"is not UTF-8 text (byte {error.start + 1})"
+        raise error_type(problem, file=file) from None
+    except FileNotFoundError:
+        raise error_type("there is no such file", file=file) from None
+    except OSError as error:
+        raise error_type(f"cannot be read: {error.strerror or error}", file=file) from None
+    return text.replace("\r\n", "\n")
+
+
+def _syntax_error(
+    message: str, text: str, file: str, error_type: type[ConfigurationError]
+) -> ConfigurationError:
+    match = _AT_LINE.search(message)
+    if match is None:  # "(at end of document)"
+        line = text.rstrip().count("\n") + 1
+        return error_type(f"is no valid TOML: {message}", file=file, line=line)
+    line, column = int(match[1]), int(match[2])
+    hint = ""
+    if message.startswith("Invalid initial character for a key") and column > len(text.split("\n")[line - 1]):
+        hint = "; a table in braces { … } must stand on one line"
+    problem = f"is no valid TOML: {message[: match.start()]} at column {column}{hint}"
+    return error_type(problem, file=file, line=line)
+
+
+def _child(node: Any, part: str | int) -> Any:
+    try:
+        return node[part]
+    except (KeyError, IndexError, TypeError):
+        return None
+
+
+def _label(node: Any) -> str | None:
+    """What names an element of a list of tables."""
+    if not isinstance(node, dict):
+        return None
+    label = node.get("call", node.get("text"))
+    return label if isinstance(label, str) and label else None

@@ -1,0 +1,115 @@
+"""Comparing worlds: what counts as equal, and what is said about a difference."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from mutabot.campaign.comparing.observation import (
+    OTHER_WORLD,
+    Comparison,
+    Event,
+    Observation,
+    compare,
+    farthest,
+)
+from mutabot.model import Probe
+
+BOX = Probe("scene:box", tolerance=0.001)
+
+
+def seen(*events: Event, truncated: bool = False, **probes: Any) -> Observation:
+    values = {f"scene:box.{name}" if name != "box" else "scene:box": value for name, value in probes.items()}
+    return Observation(events, values, truncated)
+
+
+def test_equal_worlds_are_indistinguishable() -> None:
+    one = seen(Event("a", {"x": 1.0}, {"y": 2.0}), x=1.0, colour="red")
+    assert compare(one, one, [BOX]) == Comparison(True, 0.0, ())
+
+
+def test_a_difference_within_the_tolerance_is_none() -> None:
+    found = compare(seen(x=1.0), seen(x=1.0009), [BOX])
+    assert found.indistinguishable
+    assert found.distance == pytest.approx(0.9)
+    assert found.divergence == ()
+
+
+def test_distance_is_the_worst_probe_in_multiples_of_its_tolerance() -> None:
+    found = compare(seen(x=-0.3253, y=0.0), seen(x=-0.3187, y=0.002), [BOX])
+    assert not found.indistinguishable
+    assert found.distance == pytest.approx(6.6)
+    assert found.divergence[0] == "box.x: -0.3187 instead of -0.3253 (off by 0.0066)"
+    assert found.divergence[1].startswith("box.y")
+
+
+def test_each_probe_has_its_own_tolerance_and_the_longest_name_fits_best() -> None:
+    probes = [
+        Probe("scene:box", tolerance=1.0),
+        Probe("scene:box.x", tolerance=0.1),
+        Probe("scene:bo", tolerance=9),
+    ]
+    assert compare(seen(x=0.0), seen(x=0.5), probes).distance == pytest.approx(5.0)
+    assert compare(seen(y=0.0), seen(y=0.5), probes).distance == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [("red", "blue"), (True, False), (1.0, math.nan), (1.0, "1.0"), (1.0, None), ([1.0], [1.0, 2.0])],
+)
+def test_what_is_no_difference_of_numbers_counts_as_another_world(before: object, after: object) -> None:
+    found = compare(seen(box=before), seen(box=after), [BOX])
+    assert found.distance == OTHER_WORLD
+    assert not found.indistinguishable
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, "red", None, [1.0, {"a": 2}]])
+def test_equal_values_of_any_kind_are_equal(value: object) -> None:
+    assert compare(seen(box=value), seen(box=value), [BOX]).indistinguishable
+
+
+def test_a_probe_that_only_one_side_has_is_a_difference() -> None:
+    found = compare(seen(x=1.0), seen(), [BOX])
+    assert found.divergence == ("box.x: nothing instead of 1",)
+
+
+def test_without_probes_there_is_no_distance() -> None:
+    assert compare(seen(), seen()) == Comparison(True, None, ())
+
+
+@pytest.mark.parametrize(
+    ("mutant", "line"),
+    [
+        ([Event("a", {"x": 1.0}, {"y": 2.5})], "call 1, a: read {y: 2.5} instead of {y: 2}"),
+        ([Event("a", {"x": -1.0}, {"y": 2.0})], "call 1, a: wrote {x: -1} instead of {x: 1}"),
+        ([Event("b")], "call 1: b instead of a"),
+        ([], "1 call fewer"),
+        ([Event("a", {"x": 1.0}, {"y": 2.0}), Event("c")], "1 call more"),
+    ],
+)
+def test_the_first_call_that_differs_is_told(mutant: list[Event], line: str) -> None:
+    found = compare(seen(Event("a", {"x": 1.0}, {"y": 2.0})), seen(*mutant))
+    assert not found.indistinguishable
+    assert found.divergence == (line,)
+
+
+def test_traces_that_were_cut_off_are_compared_as_far_as_they_go() -> None:
+    assert compare(seen(Event("a")), seen(Event("a"), Event("b"), truncated=True)).indistinguishable
+
+
+def test_several_tests_of_a_mutant_are_as_far_as_the_farthest() -> None:
+    near, far = Comparison(True, 0.5, ()), Comparison(False, 7.0, ("x", "y"))
+    bare = Comparison(False, None, ("1 call fewer",))
+    assert farthest([near, bare, far]) == Comparison(False, 7.0, ("x", "y", "1 call fewer"))
+    assert farthest([near, near]) == near
+    assert farthest([]) == Comparison(True, None, ())
+
+
+def test_values_that_differ_late_are_printed_with_as_many_digits_as_it_takes() -> None:
+    line = compare(seen(x=-0.32741), seen(x=-0.32744), [Probe("scene:box", tolerance=1e-6)]).divergence[0]
+    assert line == "box.x: -0.32744 instead of -0.32741 (off by 3e-05)"
+    before, after = ([1.0, 2.00001], [1.0, 2.00002])
+    (call,) = compare(seen(Event("a", {"x": before})), seen(Event("a", {"x": after}))).divergence
+    assert call == "call 1, a: wrote {x: (1, 2.00002)} instead of {x: (1, 2.00001)}"

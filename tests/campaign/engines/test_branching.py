@@ -1,0 +1,421 @@
+"""The branch engine agrees with replay on all kinds of tests, falls back where it must, leaves nothing."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+import pytest
+
+from mutabot.campaign.run import check, run_campaign
+from mutabot.model import Outcome, Verdict
+from tests.campaign.project import CONFIGURATION, ROBOT, Quiet, outcomes, request_for, write_project
+
+MISSION = """
+    def approach(arm):
+        arm.move_by(0.25)
+
+    def back_off(arm):
+        arm.move_by(-0.125)
+
+    def look(arm):
+        return arm.position()
+
+    def run(arm):
+        approach(arm)
+        back_off(arm)
+        return look(arm)
+"""
+FACTS = (
+    "verdict", "by", "test", "message", "exception", "place", "hits", "acted", "example",
+    "indistinguishable", "distance", "divergence", "gaps", "compared", "simulated",
+)  # fmt: skip
+
+
+def facts(outcome: Outcome) -> dict[str, object]:
+    """Everything about an outcome but what it cost."""
+    return {name: getattr(outcome, name) for name in FACTS}
+
+
+def both_engines(folder: Path, **changes: Any) -> dict[tuple[str, int], Outcome]:
+    """Outcomes of the branch engine, after comparing each with replay's."""
+    found = {}
+    for engine in ("auto", "replay"):
+        path = run_campaign(request_for(folder, engine=engine, **changes), Quiet())
+        found[engine] = {(outcome.mutant, outcome.round): outcome for outcome in outcomes(path)}
+    assert found["auto"].keys() == found["replay"].keys()
+    for key, outcome in found["auto"].items():
+        assert facts(outcome) == facts(found["replay"][key]), key
+    assert {outcome.engine for outcome in found["auto"].values()} <= {"branch", "replay"}
+    return found["auto"]
+
+
+SUITES = {
+    "fixtures of every scope": """
+        import mission
+        import pytest
+        from robot import Arm
+
+        TORN_DOWN = []
+
+        @pytest.fixture(scope="session")
+        def cell():
+            yield "cell"
+            TORN_DOWN.append("cell")
+
+        @pytest.fixture(scope="module")
+        def station(cell):
+            yield "station"
+            TORN_DOWN.append("station")
+
+        @pytest.fixture(scope="class")
+        def shift(station):
+            yield "shift"
+            TORN_DOWN.append("shift")
+
+        @pytest.fixture
+        def arm(shift):
+            arm = Arm()
+            yield arm
+            assert arm.x < 0.2, "left standing in the way"
+
+        class TestMission:
+            def test_approach(self, arm):
+                assert "cell" not in TORN_DOWN
+                mission.run(arm)
+
+            def test_look(self, arm):
+                assert "cell" not in TORN_DOWN
+                assert mission.look(arm) == 0
+
+        def test_after_the_class(arm):
+            assert "cell" not in TORN_DOWN
+            mission.back_off(arm)
+            assert arm.x == -0.125
+    """,
+    "parametrised": """
+        import mission
+        import pytest
+        from robot import Arm
+
+        @pytest.mark.parametrize("start", [0.0, 0.125])
+        @pytest.mark.parametrize("times", [1, 2])
+        def test_moves(start, times):
+            arm = Arm(start)
+            for _ in range(times):
+                mission.run(arm)
+            assert arm.x == start + times * 0.125
+    """,
+    "unittest": """
+        import unittest
+
+        import mission
+        from robot import Arm
+
+        class MissionTest(unittest.TestCase):
+            @classmethod
+            def setUpClass(cls):
+                cls.arms = []
+
+            def setUp(self):
+                self.arm = Arm()
+                self.arms.append(self.arm)
+
+            def tearDown(self):
+                self.assertLess(self.arm.x, 0.2)
+
+            def test_run(self):
+                self.assertEqual(mission.run(self.arm), 0.125)
+
+            def test_twice(self):
+                mission.run(self.arm)
+                with self.subTest("again"):
+                    mission.back_off(self.arm)
+                self.assertEqual(self.arm.x, 0.0)
+    """,
+    "captured output": """
+        import os
+        import sys
+
+        import mission
+        from robot import Arm
+
+        def test_prints(capsys):
+            print("before")
+            mission.run(Arm())
+            print("after", file=sys.stderr)
+            out, err = capsys.readouterr()
+            assert (out, err) == ("before\\n", "after\\n")
+
+        def test_writes_to_descriptors(capfd):
+            os.write(1, b"before")
+            mission.run(Arm())
+            os.write(1, b"after")
+            assert capfd.readouterr().out == "beforeafter"
+
+        def test_logs(caplog, tmp_path):
+            import logging
+            logging.warning("here")
+            mission.run(Arm())
+            assert caplog.messages == ["here"]
+    """,
+    "random numbers": """
+        import random
+
+        import mission
+        from robot import Arm
+
+        def test_random_start(mutabot_seed):
+            arm = Arm(random.uniform(-0.3, 0.3))
+            mission.approach(arm)
+            again = random.uniform(-0.3, 0.3)
+            mission.back_off(arm)
+            assert mission.look(arm) <= 0.45, f"{arm.x} {again} {mutabot_seed}"
+    """,
+    "loops and generators": """
+        import mission
+        from robot import Arm
+
+        def steps(arm):
+            for _ in range(4):
+                yield mission.look(arm)
+                mission.back_off(arm)
+
+        def test_goes_down():
+            arm = Arm(0.75)
+            seen = list(steps(arm))
+            assert seen == sorted(seen, reverse=True)
+            assert arm.x == 0.25
+    """,
+}
+
+
+#: suites whose tests share what a branch must not touch
+SHARING = ("fixtures of every scope", "unittest")
+
+
+@pytest.mark.parametrize("suite", SUITES)
+def test_both_engines_agree(tmp_path: Path, suite: str) -> None:
+    write_project(tmp_path, MISSION, SUITES[suite])
+    found = both_engines(tmp_path)
+    expected = "replay" if suite in SHARING else "branch"
+    assert {outcome.engine for outcome in found.values()} == {expected}
+    assert {outcome.verdict for outcome in found.values()} & {Verdict.KILLED, Verdict.SURVIVED}
+
+
+def test_settings_of_the_users_own_do_not_disturb(tmp_path: Path) -> None:
+    more = {
+        "pytest.ini": "[pytest]\naddopts = -x -s -v --strict-markers\nfilterwarnings = error\n",
+        "tests/conftest.py": """
+            import pytest
+
+            @pytest.hookimpl(wrapper=True)
+            def pytest_runtest_call(item):
+                print("calling", item.name)
+                return (yield)
+
+            @pytest.fixture(autouse=True)
+            def always():
+                print("set up")
+                yield
+                print("taken down")
+        """,
+    }
+    tests = SUITES["parametrised"].replace(
+        '@pytest.mark.parametrize("times"', '@pytest.mark.parametrize("times"'
+    )
+    write_project(tmp_path, MISSION, tests, more=more)
+    assert len(both_engines(tmp_path)) > 5
+
+
+UNSAFE = {
+    "1 more thread": (
+        "import threading, time",
+        "thread = threading.Thread(target=time.sleep, args=(0.4,)); thread.start()",
+        "thread.join()",
+    ),
+    "starts a process": ("import subprocess", "child = subprocess.Popen(['sleep', '0.5'])", "child.wait()"),
+    "open socket": ("import socket", "ends = socket.socketpair()", "[end.close() for end in ends]"),
+}
+
+
+@pytest.mark.parametrize("reason", UNSAFE)
+def test_where_forking_is_unsafe_the_test_falls_back_to_replay(tmp_path: Path, reason: str) -> None:
+    imports, before, after = UNSAFE[reason]
+    tests = f"""
+        {imports}
+        import mission
+        from robot import Arm
+
+        def test_unsafe():
+            {before}
+            arm = Arm()
+            mission.approach(arm)
+            {after or "pass"}
+            assert arm.x == 0.25
+
+        def test_safe():
+            arm = Arm()
+            mission.back_off(arm)
+            assert arm.x == -0.125
+    """
+    write_project(tmp_path, MISSION, tests)
+    progress = Quiet()
+    path = run_campaign(request_for(tmp_path, engine="auto"), progress)
+    engines = {outcome.mutant.split(":")[1]: outcome.engine for outcome in outcomes(path)}
+    assert engines == {"approach": "replay", "back_off": "branch"}, progress.lines
+    assert any("test_unsafe" in line and reason in line for line in progress.lines)
+    report = check(request_for(tmp_path, engine="auto"), Quiet())
+    assert any("test_unsafe" in line and reason in line for line in report.lines)
+
+
+def test_a_running_event_loop_falls_back_to_replay(tmp_path: Path) -> None:
+    tests = """
+        import asyncio
+
+        import mission
+        from robot import Arm
+
+        def test_async():
+            arm = Arm()
+
+            async def work():
+                mission.approach(arm)
+
+            asyncio.run(work())
+            assert arm.x == 0.25
+    """
+    write_project(tmp_path, MISSION, tests)
+    found = both_engines_by_auto(tmp_path)
+    assert {outcome.engine for outcome in found} == {"replay"}
+
+
+def both_engines_by_auto(folder: Path) -> list[Outcome]:
+    path = run_campaign(request_for(folder, engine="auto"), Quiet())
+    return outcomes(path)
+
+
+def test_asked_for_branches_alone_an_unsafe_test_is_an_error_and_no_kill(tmp_path: Path) -> None:
+    tests = """
+        import subprocess
+        import mission
+        from robot import Arm
+
+        def test_unsafe():
+            child = subprocess.Popen(["sleep", "0.5"])
+            mission.approach(Arm())
+            child.wait()
+    """
+    write_project(tmp_path, MISSION, tests)
+    path = run_campaign(request_for(tmp_path, engine="branch"), Quiet())
+    assert {outcome.verdict for outcome in outcomes(path)} == {Verdict.ERROR}
+
+
+def test_a_trunk_that_dies_leaves_its_mutants_to_replay(tmp_path: Path) -> None:
+    tests = dedent("""
+        import os
+        import pathlib
+
+        import mission
+        from robot import Arm
+
+        COUNTER = pathlib.Path(__file__).parent.parent / ".mutabot" / "counter"
+
+        def test_a():
+            arm = Arm()
+            mission.back_off(arm)
+            assert arm.x == -0.125
+
+        def test_b():
+            COUNTER.write_text(str(int(COUNTER.read_text() if COUNTER.exists() else 0) + 1))
+            if COUNTER.read_text() == "2":  # the baseline is the first, the trunk the second
+                os._exit(3)
+            arm = Arm()
+            mission.approach(arm)
+            mission.look(arm)
+            assert arm.x == 0.25
+    """)
+    write_project(tmp_path, MISSION, tests)
+    progress = Quiet()
+    path = run_campaign(request_for(tmp_path, engine="auto"), progress)
+    found = {outcome.mutant.split(":")[1]: outcome for outcome in outcomes(path)}
+    assert any("trunk of round 1 died" in line for line in progress.lines)
+    # branches die with their trunk, so what it shared with test_b may or may not have been settled
+    assert {found["approach"].engine, found["look"].engine} == {"replay"}
+    assert Verdict.ERROR not in {outcome.verdict for outcome in found.values()}
+
+
+def test_a_test_that_fails_in_the_trunk_judges_no_mutant(tmp_path: Path) -> None:
+    tests = """
+        import pathlib
+
+        import mission
+        from robot import Arm
+
+        COUNTER = pathlib.Path(__file__).parent.parent / ".mutabot" / "counter"
+
+        def test_flaky():
+            COUNTER.write_text(str(int(COUNTER.read_text() if COUNTER.exists() else 0) + 1))
+            mission.approach(Arm())
+            assert COUNTER.read_text() == "1"
+
+        def test_sound():
+            arm = Arm()
+            mission.back_off(arm)
+            assert arm.x == -0.125
+    """
+    write_project(tmp_path, MISSION, tests)
+    path = run_campaign(request_for(tmp_path, engine="auto"), Quiet())
+    verdicts = {outcome.mutant.split(":")[1]: outcome.verdict for outcome in outcomes(path)}
+    assert verdicts == {"approach": Verdict.UNSTABLE, "back_off": Verdict.KILLED}
+
+
+BUSY = """
+    import os
+    import pathlib
+    import time
+
+    import mission
+    from robot import Arm
+
+    FOLDER = pathlib.Path(__file__).parent.parent / ".mutabot" / "busy"
+
+    def test_busy():
+        arm = Arm()
+        mission.run(arm)
+        FOLDER.mkdir(exist_ok=True)
+        mark = FOLDER / str(os.getpid())
+        mark.touch()
+        running = len(list(FOLDER.iterdir()))
+        end = time.monotonic() + 0.05
+        while time.monotonic() < end:
+            running = max(running, len(list(FOLDER.iterdir())))
+        mark.unlink()
+        assert running <= 2, f"{running} at once"
+        assert arm.x == 0.125
+"""
+
+
+def test_never_more_processes_compute_than_asked_for(tmp_path: Path) -> None:
+    write_project(tmp_path, MISSION, BUSY, configuration=CONFIGURATION + "    rounds = 3\n")
+    path = run_campaign(request_for(tmp_path, engine="branch", jobs=2), Quiet())
+    found = outcomes(path)
+    assert len(found) > 20
+    assert not [outcome for outcome in found if "at once" in (outcome.message or "")]
+
+
+def children() -> set[str]:
+    with open(f"/proc/self/task/{os.getpid()}/children", encoding="ascii") as file:  # noqa: PTH123
+        return set(file.read().split())
+
+
+def test_nothing_is_left_running_or_open_or_on_disk(tmp_path: Path) -> None:
+    write_project(tmp_path, MISSION, SUITES["parametrised"], robot=ROBOT)
+    run_campaign(request_for(tmp_path, engine="branch"), Quiet())
+    descriptors, before = set(Path("/proc/self/fd").iterdir()), children()
+    run_campaign(request_for(tmp_path, engine="branch"), Quiet())
+    assert set(Path("/proc/self/fd").iterdir()) == descriptors
+    assert children() == before
+    assert not [path for path in (tmp_path / ".mutabot").iterdir() if path.name.startswith("work-")]

@@ -1,0 +1,115 @@
+"""A control that ends wrongly is tried again in a fresh process, and says where it hung."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from mutabot.border import stack
+from mutabot.campaign.run import run_campaign
+from mutabot.campaign.workers.workers import Task
+from mutabot.errors import BaselineError, ControlError
+from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
+
+#: hangs in what is neither the baseline nor a trunk: once, or always
+MISSION = """
+    import os
+    import pathlib
+    import time
+
+    HERE = pathlib.Path(__file__).parent / ".mutabot"
+    IMPORTED_BY = os.getpid()
+    BASELINES, ALWAYS = {baselines}, {always}
+
+    def count():
+        file = HERE / "runs"
+        file.write_text(str(int(file.read_text() if file.exists() else 0) + 1))
+        return int(file.read_text())
+
+    def is_mutant():
+        if os.getpid() == IMPORTED_BY:
+            return count() > BASELINES
+        return os.getppid() != IMPORTED_BY
+
+    def get_stuck():
+        (HERE / "stuck").touch()
+        time.sleep(3600)
+
+    def run(arm):
+        arm.move_by(0.5)
+        if is_mutant() and (ALWAYS or not (HERE / "stuck").exists()):
+            get_stuck()
+"""
+TESTS = """
+    import mission
+    from robot import Arm
+
+    def test_moves():
+        arm = Arm()
+        mission.run(arm)
+        assert arm.x == 0.5
+"""
+
+
+def where() -> str:
+    lines = MISSION.splitlines()
+    sleeps, stuck = (
+        next(n for n, line in enumerate(lines, 1) if text in line) for text in (".sleep", "  get_stuck()")
+    )
+    called = f"called from mission.py:{stuck} run, called from tests/test_mission.py:7 test_moves"
+    return f"it was at mission.py:{sleeps} get_stuck, {called}"
+
+
+ENGINES = pytest.mark.parametrize(("engine", "baselines"), [("replay", 2), ("branch", 0)])
+
+
+def project(folder: Path, mission: str) -> None:
+    write_project(folder, mission, TESTS, configuration=CONFIGURATION + "    timeout_seconds = 2\n")
+
+
+@ENGINES
+def test_a_control_that_hangs_once_does_not_end_the_campaign(
+    tmp_path: Path, engine: str, baselines: int
+) -> None:
+    project(tmp_path, MISSION.format(baselines=baselines, always=False))
+    progress = Quiet()
+    run_campaign(request_for(tmp_path, engine=engine, only=("*:reverse",)), progress)
+    (line,) = [line for line in progress.lines if "ended wrongly once" in line]
+    assert line.startswith("the identity control of tests/test_mission.py::test_moves ended wrongly once")
+    assert where() in line
+
+
+def test_a_control_that_hangs_twice_ends_the_campaign_and_says_where(tmp_path: Path) -> None:
+    project(tmp_path, MISSION.format(baselines=0, always=True))
+    with pytest.raises(ControlError, match="no verdict of this campaign could be believed") as caught:
+        run_campaign(request_for(tmp_path, engine="branch", only=("*:reverse",)), Quiet())
+    assert where() in str(caught.value)
+
+
+def test_the_calls_of_a_stack_are_told_innermost_first_without_those_of_the_test_runner() -> None:
+    text = """Thread 0x00007f0000000001 (most recent call first):
+  File "/usr/lib/python3.11/threading.py", line 320 in wait
+
+Current thread 0x00007f0000000002 (most recent call first):
+  File "/home/me/cell/robot.py", line 7 in wait
+  File "/usr/lib/python3.11/contextlib.py", line 81 in inner
+  File "/home/me/cell/tests/test_a.py", line 3 in test_it
+  File "/venv/site-packages/_pytest/python.py", line 159 in pytest_pyfunc_call
+  File "/venv/site-packages/pluggy/_callers.py", line 121 in _multicall
+"""
+    assert stack.in_words(text, "/home/me/cell") == (
+        "robot.py:7 wait, called from contextlib.py:81 inner, called from tests/test_a.py:3 test_it"
+    )
+    assert stack.in_words("", "/home/me/cell") is None
+
+
+def test_a_baseline_that_hangs_says_where(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mission = "import time\n\ndef run(arm):\n    arm.move_by(0.5)\n    time.sleep(3600)\n"
+    write_project(tmp_path, mission, TESTS)
+    monkeypatch.setattr("mutabot.campaign.baseline.baseline.Task", partial(Task, deadline=2.0))
+    with pytest.raises(
+        BaselineError, match=r"it was at mission\.py:5 run, called from tests/test_mission\.py"
+    ):
+        run_campaign(request_for(tmp_path), Quiet())

@@ -1,0 +1,206 @@
+"""Kills that may be chance are run once more, and count no longer if they do not come out again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.analysis.chance import false_kills
+from mutabot.analysis.results import Results, read_results
+from mutabot.border.lines import TestEnd
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.baseline.places import Place
+from mutabot.campaign.baseline.sharing import Sharing
+from mutabot.campaign.engines import repeats
+from mutabot.campaign.engines.doubt import Doubts
+from mutabot.campaign.run import run_campaign
+from mutabot.journal.journal import Journal
+from mutabot.journal.records import Repeated
+from mutabot.model import By, Mutant, Outcome, Role, Site, Span, Verdict
+from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+
+#: the test fails once for one of the mutants: in its branch, or in the first fresh process that runs it
+MISSION = """
+    import os
+    import pathlib
+
+    MARK = pathlib.Path(__file__).parent / ".mutabot" / "mark"
+    IMPORTED_BY = os.getpid()
+
+    def is_first():
+        if os.getpid() != IMPORTED_BY:
+            return True
+        first = not MARK.exists()
+        MARK.touch()
+        return first
+
+    def run(arm):
+        arm.move_by(0.25)
+        arm.move_by(-0.0625)
+        arm.move_by(0.03125)
+"""
+TESTS = """
+    import mission
+    from robot import Arm
+
+    def test_flaky():
+        arm = Arm()
+        mission.run(arm)
+        assert arm.x != 0.34375 or not mission.is_first()
+"""
+FLAKY = "tests/test_mission.py::test_flaky"
+#: the one that takes the arm to 0.34375
+FALSE = "mission.py:run:arm.move_by#2:dx:reverse"
+ENGINES = pytest.mark.parametrize("engine", ["replay", "branch"])
+
+
+def campaign(folder: Path, **changes: Any) -> tuple[Results, dict[str, Outcome], Quiet]:
+    if changes.get("engine") == "branch":
+        (folder / ".mutabot").mkdir(exist_ok=True)
+        (folder / ".mutabot" / "mark").touch()
+    progress = Quiet()
+    path = run_campaign(request_for(folder, **changes), progress)
+    with Journal.open(path) as journal:
+        found = read_results(journal)
+    return found, {one.mutant: one for one in outcomes(path)}, progress
+
+
+@ENGINES
+def test_a_kill_in_doubt_that_does_not_come_out_again_is_unstable(tmp_path: Path, engine: str) -> None:
+    write_project(tmp_path, MISSION, TESTS)
+    results, found, progress = campaign(tmp_path, engine=engine, repeats=True)
+    assert {one.verdict for mutant, one in found.items() if mutant != FALSE} == {Verdict.SURVIVED}
+    assert found[FALSE].verdict is Verdict.UNSTABLE
+    message = found[FALSE].message or ""
+    assert message.startswith(f"killed by check in {FLAKY}: assert ")
+    assert message.endswith("; run once more: survived")
+    assert "repeats: 0 of 1 kills in doubt come out again" in progress.lines
+    assert results.repeats.doubted == Repeated(1, 1, 1)
+    estimate = false_kills(results.repeats)
+    assert estimate is not None
+    assert (estimate.expected, estimate.low, estimate.high, estimate.known) == (0.0, 0, 0, 0)
+
+
+def test_confirm_looks_at_kills_too(tmp_path: Path) -> None:
+    write_project(tmp_path, MISSION, TESTS)
+    results, found, _ = campaign(tmp_path, engine="branch", confirm=True)
+    assert found[FALSE].verdict is Verdict.UNSTABLE
+    assert results.confirmation == {"checked": len(found), "unstable": 1}
+    assert {one.repeats for mutant, one in found.items() if mutant != FALSE} == {1}
+
+
+def test_repeats_beyond_their_time_are_left_and_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(repeats, "SECONDS", 0.0)
+    monkeypatch.setattr(repeats, "SHARE", 0.0)
+    write_project(tmp_path, MISSION, TESTS)
+    results, found, progress = campaign(tmp_path, engine="branch", repeats=True)
+    assert found[FALSE].verdict is Verdict.KILLED
+    assert any("1 were left, as repeats may take 0 s" in line for line in progress.lines)
+    assert (results.repeats.doubted, false_kills(results.repeats)) == (Repeated(1, 0, 0), None)
+
+
+def test_a_kill_that_came_out_again_is_not_repeated_by_the_next_campaign(tmp_path: Path) -> None:
+    write_project(tmp_path, MISSION, TESTS.replace("or not mission.is_first()", ""))
+    _, found, progress = campaign(tmp_path, repeats=True)
+    assert (found[FALSE].verdict, found[FALSE].repeats) == (Verdict.KILLED, 1)
+    assert "repeats: 1 of 1 kills in doubt come out again" in progress.lines
+    results, found, progress = campaign(tmp_path, repeats=True)
+    assert (found[FALSE].verdict, found[FALSE].repeats) == (Verdict.KILLED, 1)
+    assert not [line for line in progress.lines if line.startswith("repeats:")]
+    assert results.repeats.certain == 1
+
+
+def test_more_runs_of_the_baseline_find_a_test_that_fails_at_random(tmp_path: Path) -> None:
+    tests = """
+        import pathlib
+
+        import mission
+        from robot import Arm
+
+        COUNTER = pathlib.Path(__file__).parent.parent / ".mutabot" / "counter"
+
+        def test_third_time():
+            COUNTER.write_text(str(int(COUNTER.read_text() if COUNTER.exists() else 0) + 1))
+            assert COUNTER.read_text() != "3"
+
+        def test_moves():
+            arm = Arm()
+            mission.run(arm)
+            assert arm.x == 0.21875
+    """
+    write_project(tmp_path, MISSION, tests, configuration=CONFIGURATION + "    unstable_limit = 0.5\n")
+    _, _, progress = campaign(tmp_path, only=("*:reverse",), baseline=3)
+    assert any(
+        "set aside in round 1: tests/test_mission.py::test_third_time" in one for one in progress.lines
+    )
+
+
+# What is in doubt
+
+SITE = Site(Span("m.py", 1, 0, 1, 9, "run"), "arm.move", 1, Role.PROGRAM)
+PLACE = Place(SITE, "robot:Arm.move")
+
+
+def doubts(
+    kills: dict[str, list[tuple[int, int]]], mutants: int, rounds: int = 1, clock: float | None = None
+) -> Doubts:
+    """Mutants of which each test kills some, given as (mutant, round); all tests judge all of them."""
+    baseline = Baseline(tests=[list(kills)] * rounds, sharing=[Sharing() for _ in range(rounds)])
+    for round in range(rounds):
+        baseline.reaching[round, PLACE] = list(kills)
+        for test in kills:
+            baseline.ends[round, test] = TestEnd(test, "passed", wall=1.0, simulated=clock)
+    made = [Mutant(n, "robot", "skip", SITE, PLACE.operation, None, None, str(n), "") for n in range(mutants)]
+    by = {pair: test for test, pairs in kills.items() for pair in pairs}
+    found = {}
+    for number, mutant in enumerate(made):
+        for round in range(rounds):
+            test = by.get((number, round))
+            verdict = Verdict.SURVIVED if test is None else Verdict.KILLED
+            found[mutant.id, round] = Outcome(
+                mutant.id, round, verdict, By.CHECK if test else None, test, tests=len(kills)
+            )
+    return Doubts(baseline, {mutant.id: mutant for mutant in made}, found)
+
+
+def numbers(found: Doubts) -> list[tuple[int, int]]:
+    by_id = {mutant.id: number for number, mutant in enumerate(found.mutants.values())}
+    return sorted((by_id[mutant], round) for mutant, round in found.in_doubt())
+
+
+def test_few_kills_of_a_test_without_a_clock_are_in_doubt() -> None:
+    assert numbers(doubts({"t": [(3, 0), (7, 0)]}, 10)) == [(3, 0), (7, 0)]
+    assert numbers(doubts({"t": [(n, 0) for n in range(3)]}, 10)) == []
+    assert numbers(doubts({"t": [(n, 0) for n in range(9)]}, 99)) == [(n, 0) for n in range(9)]
+
+
+def test_kills_in_simulated_time_are_in_doubt_only_where_equal_runs_were_not_equal() -> None:
+    found = doubts({"t": [(3, 0)]}, 10, clock=2.0)
+    assert numbers(found) == []
+    assert found.is_certain(next(iter(found.kills())))
+    found.baseline.unequal.add((0, "t"))
+    again = Doubts(found.baseline, found.mutants, found.outcomes)
+    assert numbers(again) == [(3, 0)]
+    assert not again.is_certain(next(iter(again.kills())))
+
+
+def test_a_mutant_that_a_test_kills_in_several_rounds_is_not_in_doubt() -> None:
+    kills = [(3, 0), (3, 1), (7, 1)]
+    assert numbers(doubts({"t": kills}, 10, rounds=2)) == [(7, 1)]
+
+
+def test_all_kills_of_a_test_that_was_seen_to_be_unreliable_are_in_doubt() -> None:
+    kills = [(n, 0) for n in range(8)]
+    found = doubts({"t": kills, "u": [(9, 0), (8, 0)]}, 20)
+    assert numbers(found) == [(8, 0), (9, 0)]
+    found.unreliable.add("t")
+    assert numbers(found) == [(n, 0) for n in range(10)]
+    found.baseline.unstable[1, "v"] = "fails on the unmutated program with seed 3"
+    assert Doubts(found.baseline, found.mutants, found.outcomes).unreliable == set()
+
+
+def test_the_cheapest_repeats_come_first() -> None:
+    found = doubts({"t": [(1, 0)], "u": [(0, 0)]}, 10)
+    assert [found.cost(key) for key in sorted(found.kills())] == [2.0, 1.0]

@@ -1,0 +1,271 @@
+"""A second look at outcomes: real projects, some of which are not the same twice on purpose."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.analysis.gate import decide
+from mutabot.analysis.results import Results, read_results
+from mutabot.campaign.engines.second_look import choose, unconfirmed
+from mutabot.campaign.run import run_campaign
+from mutabot.cli.app import main
+from mutabot.errors import UnstableError
+from mutabot.journal.journal import Journal
+from mutabot.model import By, Outcome, Verdict
+from mutabot.model.outcome import same_end
+from tests.campaign.project import CONFIGURATION, DEPENDENT, Quiet, outcomes, request_for, write_project
+
+MISSION = """
+    def run(arm):
+        arm.move_by(0.5)
+        arm.move_by(-0.25)
+        arm.position()
+"""
+TESTS = """
+    import mission
+    from robot import Arm
+
+    def test_moves():
+        arm = Arm()
+        mission.run(arm)
+        assert arm.x == 0.25
+"""
+#: the last command ends elsewhere in one process of its kind than in the next
+RESTLESS = """
+    import pathlib
+
+    COUNTER = pathlib.Path(__file__).parent / ".mutabot" / "counter"
+
+    def times():
+        number = int(COUNTER.read_text()) + 1 if COUNTER.exists() else 1
+        COUNTER.write_text(str(number))
+        return number
+
+    def run(arm):
+        arm.move_by(0.5)
+        if arm.x < 0 and times() > 1:
+            raise RuntimeError("it went wrong this time")
+"""
+RESTLESS_TESTS = """
+    import mission
+    from robot import Arm
+
+    def test_runs():
+        mission.run(Arm())
+"""
+ENGINES = pytest.mark.parametrize("engine", ["replay", "branch"])
+
+
+def campaign(folder: Path, **changes: Any) -> tuple[Results, Quiet]:
+    progress = Quiet()
+    path = run_campaign(request_for(folder, **changes), progress)
+    with Journal.open(path) as journal:
+        return read_results(journal), progress
+
+
+@ENGINES
+def test_verify_agrees_on_a_deterministic_program(tmp_path: Path, engine: str) -> None:
+    write_project(tmp_path, MISSION, TESTS)
+    results, progress = campaign(tmp_path, engine=engine, verify=100, only=("*:reverse", "*:negate"))
+    assert results.verification is not None
+    assert results.verification.checked == results.done
+    assert results.verification.disagreements == ()
+    assert f"verify: {results.done} of {results.done} outcomes agree" in progress.lines
+    assert decide(results, max_unstable=0.0).exit_code == 0
+
+
+@ENGINES
+def test_verify_finds_an_outcome_that_a_second_run_does_not_have(tmp_path: Path, engine: str) -> None:
+    write_project(tmp_path, RESTLESS, RESTLESS_TESTS)
+    results, _ = campaign(tmp_path, engine=engine, verify=100, only=("*:reverse",))
+    assert results.verification is not None
+    (wrong,) = results.verification.disagreements
+    assert wrong.first == "survived"
+    assert wrong.second == "killed by exception in tests/test_mission.py::test_runs: it went wrong this time"
+    assert results.mutants[0].outcomes[0].verdict is Verdict.SURVIVED  # what was found first stays
+    decision = decide(results)
+    assert decision.exit_code == 4
+    assert any(wrong.mutant in line for line in decision.lines)
+
+
+@ENGINES
+def test_confirm_makes_what_a_second_run_does_not_have_unstable(tmp_path: Path, engine: str) -> None:
+    write_project(tmp_path, RESTLESS, RESTLESS_TESTS)
+    results, _ = campaign(tmp_path, engine=engine, confirm=True, only=("*:reverse",))
+    (outcome,) = results.mutants[0].outcomes
+    assert outcome.verdict is Verdict.UNSTABLE
+    assert outcome.message == (
+        "survived; run once more: "
+        "killed by exception in tests/test_mission.py::test_runs: it went wrong this time"
+    )
+    assert results.confirmation == {"checked": 1, "unstable": 1}
+    assert decide(results, max_unstable=0.1).exit_code == 4
+
+
+def test_confirm_leaves_survivors_that_survive_again_as_they_are(tmp_path: Path) -> None:
+    write_project(tmp_path, MISSION, TESTS)
+    only = ("*:skip", "*:negate")
+    before, _ = campaign(tmp_path, only=only)
+    found = [one.verdict for one in outcomes(tmp_path / ".mutabot/journal.sqlite")]
+    survivors, kills = found.count(Verdict.SURVIVED), found.count(Verdict.KILLED)
+    results, _ = campaign(tmp_path, confirm=True, only=only)
+    assert survivors > 0
+    assert results.confirmation == {"checked": survivors + kills, "unstable": 0}
+    assert [one.outcomes[0].verdict for one in results.mutants] == [
+        one.outcomes[0].verdict for one in before.mutants
+    ]
+
+
+def test_a_time_out_that_does_not_come_again_is_unstable(tmp_path: Path) -> None:
+    mission = RESTLESS.replace(
+        'and times() > 1:\n            raise RuntimeError("it went wrong this time")',
+        "and times() == 1:\n            while True:\n                arm.position()",
+    )
+    write_project(tmp_path, mission, RESTLESS_TESTS)
+    results, _ = campaign(tmp_path, confirm=True, only=("*:reverse",))
+    (outcome,) = results.mutants[0].outcomes
+    assert outcome.verdict is Verdict.UNSTABLE
+    assert (outcome.message or "").startswith("timeout in tests/test_mission.py::test_runs")
+    assert "run once more: survived" in (outcome.message or "")
+
+
+def test_tests_that_pass_only_together_are_verified_together(tmp_path: Path) -> None:
+    write_project(tmp_path, *DEPENDENT)
+    results, _ = campaign(tmp_path, engine="replay", verify=100, only=("*:reverse", "*:negate"))
+    assert results.verification is not None
+    assert results.verification.checked == 2
+    assert results.verification.disagreements == ()
+
+
+def flaky_project(folder: Path, limit: float) -> None:
+    tests = """
+        import pathlib
+
+        import mission
+        from robot import Arm
+
+        COUNTER = pathlib.Path(__file__).parent.parent / ".mutabot" / "counter"
+
+        def test_flaky():
+            COUNTER.write_text(str(int(COUNTER.read_text() if COUNTER.exists() else 0) + 1))
+            mission.run(Arm())
+            assert COUNTER.read_text() == "1"
+
+        def test_sound():
+            arm = Arm()
+            mission.run(arm)
+            assert arm.x == 0.25
+    """
+    configuration = f"{CONFIGURATION}    unstable_limit = {limit}\n"
+    write_project(folder, MISSION, tests, configuration=configuration)
+
+
+def test_flaky_tests_beyond_the_limit_stop_the_run_before_any_mutant(tmp_path: Path) -> None:
+    flaky_project(tmp_path, 0.4)
+    with pytest.raises(
+        UnstableError, match=r"1 of 2 tests cannot be relied on \(50%\)(.|\n)*test_flaky"
+    ) as caught:
+        campaign(tmp_path, engine="replay")
+    assert caught.value.exit_code == 4
+    assert caught.value.tests == ("tests/test_mission.py::test_flaky",)
+    assert outcomes(tmp_path / ".mutabot" / "journal.sqlite") == []
+
+
+def test_flaky_tests_that_a_trunk_finds_beyond_the_limit_fail_the_run(tmp_path: Path) -> None:
+    flaky_project(tmp_path, 0.4)
+    results, progress = campaign(tmp_path, engine="branch")
+    assert any("set aside as flaky" in line and "test_flaky" in line for line in progress.lines)
+    decision = decide(results, max_unstable=0.4)
+    assert decision.exit_code == 4
+    assert "test_flaky in round 1" in decision.lines[0]
+
+
+@ENGINES
+def test_flaky_tests_within_the_limit_are_named_in_the_results(tmp_path: Path, engine: str) -> None:
+    flaky_project(tmp_path, 0.5)
+    results, _ = campaign(tmp_path, engine=engine)
+    assert [line.partition(" in ")[0] for line in results.flaky.tests] == [
+        "tests/test_mission.py::test_flaky"
+    ]
+    assert results.flaky.share == 0.5
+
+
+def test_the_command_line_verifies_and_replays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_project(tmp_path, RESTLESS, RESTLESS_TESTS)
+    assert main(["-C", str(tmp_path), "run", "--only", "*:reverse", "--verify", "5"]) == 4
+    out, err = capsys.readouterr()
+    assert "Verified: 0 of 1 outcomes end the same in fresh processes" in out
+    assert "mutant 1 (mission.py:run:arm.move_by#1:dx:reverse), round 1" in err
+    assert main(["-C", str(tmp_path), "replay", "1", "--round", "1"]) == 4
+    out, _ = capsys.readouterr()
+    assert "Round 1: otherwise than in the journal" in out
+    assert "it went wrong this time" in out
+    assert main(["-C", str(tmp_path), "replay", "1", "--json"]) == 4
+    (one,) = json.loads(capsys.readouterr().out)["rounds"]
+    assert (one["round"], one["agrees"]) == (1, False)
+    assert (one["journal"]["verdict"], one["replay"]["verdict"]) == ("survived", "killed")
+    (tmp_path / ".mutabot" / "counter").unlink()
+    assert main(["-C", str(tmp_path), "replay", "1"]) == 0
+    assert "Round 1: as in the journal" in capsys.readouterr().out
+    assert main(["-C", str(tmp_path), "replay", "1", "--round", "2"]) == 2
+
+
+def test_replay_finds_a_mutant_that_edits_elsewhere_have_moved(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_project(tmp_path, MISSION, TESTS)
+    assert main(["-C", str(tmp_path), "run", "--only", "*:reverse"]) == 0
+    program = tmp_path / "mission.py"
+    program.write_text("# a new line\n" + program.read_text())
+    assert main(["-C", str(tmp_path), "replay", "1"]) == 0
+    program.write_text("def run(arm):\n    arm.x = 0.25\n    arm.position()\n")
+    capsys.readouterr()
+    assert main(["-C", str(tmp_path), "replay", "1"]) == 2
+    assert "the program has changed" in capsys.readouterr().err
+
+
+def ended(mutant: str, verdict: Verdict = Verdict.KILLED, **more: Any) -> Outcome:
+    return Outcome(mutant, 0, verdict, **{"by": By.CHECK, "test": "t", "tests": 1, **more})
+
+
+def test_the_choice_is_random_and_always_the_same() -> None:
+    some = [ended(str(number)) for number in range(50)]
+    chosen = choose(some, 10, seed=1)
+    assert chosen == choose(reversed(some), 10, seed=1)
+    assert len(set(chosen)) == 10
+    assert chosen != choose(some, 10, seed=2)
+    assert len(choose(some, 100, seed=1)) == 50
+
+
+def test_outcomes_without_a_run_are_not_chosen() -> None:
+    assert choose([Outcome("m", 0, Verdict.NOT_COVERED)], 5, seed=1) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "same"),
+    [
+        ({}, True),
+        ({"wall": 3.0, "engine": "branch"}, True),
+        ({"message": "<Arm at 0x7f0000aaaaaa> in /tmp/pytest-of-me/pytest-7/x"}, True),
+        ({"message": "<Leg at 0x7f0000aaaaaa> in /tmp/pytest-of-me/pytest-7/x"}, False),
+        ({"by": By.EXCEPTION}, False),
+        ({"test": "other"}, False),
+        ({"verdict": Verdict.TIMEOUT}, False),
+    ],
+)
+def test_two_ends_are_the_same_in_verdict_by_test_and_message(change: dict[str, Any], same: bool) -> None:
+    message = "<Arm at 0x7f1234567890> in /tmp/pytest-of-me/pytest-3/x"
+    first = ended("m", message=message)
+    assert same_end(first, ended("m", **{"message": message, **change})) is same
+
+
+def test_an_unconfirmed_outcome_says_both_ends() -> None:
+    first = Outcome("m", 0, Verdict.SURVIVED, indistinguishable=True, distance=0.0)
+    outcome = unconfirmed(first, ended("m", message="assert 1 == 2\nmore"))
+    assert (outcome.verdict, outcome.by, outcome.test) == (Verdict.UNSTABLE, None, "t")
+    assert outcome.message == "survived; run once more: killed by check in t: assert 1 == 2"
+    assert outcome.indistinguishable is None

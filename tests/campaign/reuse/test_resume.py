@@ -1,0 +1,585 @@
+"""Resuming: what still holds is taken over, what depends on a change runs again, and nothing is ever lost."""
+
+from __future__ import annotations
+
+import copy
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Collection
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import mutabot
+from campaign.project import Quiet, request_for, write_project
+from mutabot.analysis.results import Results, read_results
+from mutabot.campaign import run as campaign
+from mutabot.campaign.request import Request
+from mutabot.campaign.reuse.keys import changes
+from mutabot.campaign.reuse.snapshot import Snapshot
+from mutabot.campaign.run import run_campaign
+from mutabot.errors import BaselineError, JournalError, NothingToDoError, SelectionError
+from mutabot.journal.journal import Journal
+from mutabot.model import Mutant, Outcome, Verdict
+
+MISSION = """
+    def left(arm):
+        arm.move_by(0.2)
+
+    def right(arm):
+        arm.move_by(0.3)
+        return arm.position()
+"""
+LEFT = """
+    from robot import Arm
+    import mission
+
+    def test_left():
+        arm = Arm()
+        mission.left(arm)
+        assert arm.x > 0
+"""
+RIGHT = """
+    from robot import Arm
+    import mission
+
+    def test_right():
+        assert mission.right(Arm()) > 0
+"""
+BENCHMARK = Path(__file__).parents[3] / "benchmarks" / "kill_and_resume.py"
+Pair = tuple[str, int]
+
+
+class Project:
+    """A project whose campaigns run one after another."""
+
+    def __init__(self, folder: Path) -> None:
+        more = {"tests/test_right.py": RIGHT, "scene.json": "{}\n", "README.md": "It moves.\n"}
+        self.folder = write_project(folder, MISSION, LEFT, more=more)
+        self.progress = Quiet()
+
+    @property
+    def journal(self) -> Path:
+        return self.folder / ".mutabot" / "journal.sqlite"
+
+    def edit(self, name: str, change: Callable[[str], str] = lambda text: text + "\n# edited\n") -> None:
+        path = self.folder / name
+        path.write_text(change(path.read_text()))
+
+    def run(self, **changes: Any) -> set[Pair]:
+        """Run a campaign: the mutants and rounds that it really ran."""
+        self.progress = Quiet()
+        run_campaign(request_for(self.folder, **changes), self.progress)
+        with Journal.open(self.journal) as journal:
+            results = read_results(journal)
+            assert results.done == results.planned
+            ran = {(one.mutant, one.round) for one in journal.outcomes()} - journal.reused()
+        lines = [line for line in self.progress.lines if line.startswith("#")]
+        assert len(lines) == len(ran)
+        return ran
+
+    @property
+    def note(self) -> str:
+        """What was said about reuse."""
+        found = [line for line in self.progress.lines if "reused" in line]
+        assert len(found) <= 1
+        return found[0] if found else ""
+
+    def state(self) -> tuple[str, int]:
+        with Journal.open(self.journal) as journal:
+            results = read_results(journal)
+        return results.state, results.done
+
+    def all_results(self) -> Results:
+        """What reports show."""
+        with Journal.open(self.journal) as journal:
+            return read_results(journal, earlier=True)
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Project:
+    return Project(tmp_path)
+
+
+@pytest.fixture
+def quick(project: Project, monkeypatch: pytest.MonkeyPatch) -> Project:
+    """The same without running mutants, and without running the baseline twice, for edits that keep it."""
+    known: dict[Any, Any] = {}
+    take = campaign.take_baseline
+
+    def baseline(request: Request, *arguments: Any, **options: Any) -> Any:
+        key = (request.rounds, request.seed, request.families)
+        if key not in known:
+            known[key] = take(request, *arguments, **options)
+        return copy.deepcopy(known[key])
+
+    def run_mutants(
+        request: Request, _b: Any, _w: Any, progress: Quiet, mutants: list[Mutant], journal: Journal,
+        done: Collection[Pair] = (),
+    ) -> None:  # fmt: skip
+        for round in range(request.rounds):
+            for mutant in mutants:
+                if (mutant.id, round) not in done:
+                    journal.add_outcome(Outcome(mutant.id, round, Verdict.SURVIVED))
+                    progress.advance("#")
+
+    monkeypatch.setattr(campaign, "take_baseline", baseline)
+    monkeypatch.setattr(campaign, "run_mutants", run_mutants)
+    return project
+
+
+def of(function: str, pairs: set[Pair]) -> set[Pair]:
+    return {pair for pair in pairs if f":{function}:" in pair[0]}
+
+
+def test_what_has_not_changed_is_not_run_again(project: Project) -> None:
+    first = project.run()
+    assert project.note == ""
+    assert project.run() == set()
+    assert project.note == f"reused all {len(first)} outcomes: nothing that they depend on has changed"
+    for name in ("mission.py", "tests/test_right.py"):
+        os.utime(project.folder / name)  # another time, the same content
+    project.edit("README.md")
+    project.edit("mutabot.toml", lambda text: text + "jobs = 1\nmin_score = 3\n")
+    project.edit("robot.toml", lambda text: "# entries move down a line\n" + text)
+    (project.folder / "published.txt").write_text(f"# a selection\n{min(first)[0]}\n")
+    assert project.run(jobs=1, engine="replay") == set()
+
+
+def test_a_fresh_campaign_runs_everything(quick: Project) -> None:
+    first = quick.run()
+    assert quick.run(fresh=True) == first
+    assert quick.note == ""
+
+
+def test_a_changed_program_or_data_file_runs_everything_again(quick: Project) -> None:
+    first = quick.run()
+    quick.edit("mission.py")
+    assert quick.run() == first
+    assert quick.note == f"reused 0 of {len(first)} outcomes; {len(first)} run again: mission.py changed"
+    quick.edit("scene.json", lambda text: "[]")
+    (quick.folder / "new.py").write_text("")
+    assert quick.run() == first
+    assert quick.note.endswith("run again: new.py is new, scene.json changed")
+
+
+def test_a_changed_test_file_runs_the_mutants_again_that_it_judges(project: Project) -> None:
+    first = project.run()
+    right = of("right", first)
+    project.edit("tests/test_right.py")
+    assert project.run() == right
+    kept = len(first) - len(right)
+    assert project.note == (
+        f"reused {kept} of {len(first)} outcomes; {len(right)} run again: tests/test_right.py changed"
+    )
+
+
+def test_a_test_file_counts_for_those_that_mention_it_and_conftest_for_all(quick: Project) -> None:
+    quick.edit("tests/test_right.py", lambda text: text + "from test_mission import Arm\n")
+    first = quick.run()
+    quick.edit("tests/test_mission.py")
+    assert quick.run() == first
+    (quick.folder / "tests" / "conftest.py").write_text("")
+    assert quick.run() == first
+    assert "tests/conftest.py is new" in quick.note
+
+
+def test_a_changed_operation_runs_its_own_mutants_again(quick: Project) -> None:
+    first = quick.run()
+    quick.edit("robot.toml", lambda text: text.replace("noise = 0.5", "noise = 0.4"))
+    ran = quick.run()
+    assert ran == {pair for pair in first if "arm.position" in pair[0]}
+    assert "run again: robot:Arm.position in the vocabulary changed" in quick.note
+    quick.edit("robot.toml", lambda text: text.replace('failures = ["robot:Diverged"]', ""))
+    assert quick.run() == first
+    assert "failures of the vocabulary changed" in quick.note
+
+
+def test_another_seed_or_version_runs_everything_again(
+    quick: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = quick.run()
+    assert quick.run(seed=2) == first
+    assert "run again: seed is 2, was 1" in quick.note
+    monkeypatch.setattr(mutabot, "__version__", "99.0")
+    assert quick.run(seed=2) == first
+    assert "mutabot is 99.0, was" in quick.note
+
+
+def test_limits_and_settings_of_pytest_run_everything_again(quick: Project) -> None:
+    first = quick.run()
+    quick.edit("mutabot.toml", lambda text: text + "timeout_factor = 20\n")
+    assert quick.run() == first
+    assert "timeout_factor is 20.0, was 10.0" in quick.note
+    (quick.folder / "pyproject.toml").write_text("[tool.ruff]\nline-length = 80\n[quick]\nname = 'x'\n")
+    assert quick.run() == first  # pytest takes the folder with this file for its root
+    quick.edit("pyproject.toml", lambda text: text.replace("80", "90"))
+    assert quick.run() == set()
+    quick.edit("pyproject.toml", lambda text: text + "[tool.pytest.ini_options]\naddopts = '-s'\n")
+    assert quick.run() == first
+    assert "tool.pytest in pyproject.toml changed" in quick.note
+
+
+def test_further_rounds_and_mutants_are_run_beside_those_that_hold(quick: Project) -> None:
+    reverse = quick.run(only=("reverse",))
+    all_of_first = quick.run() | reverse
+    assert "not run before" in quick.note
+    second = quick.run(rounds=2)
+    assert {round for _, round in second} == {1}
+    assert len(second) == len(all_of_first)
+    assert quick.run(only=("reverse",)) == set()
+    assert quick.run(rounds=2) == set()
+
+
+def test_a_selection_of_nothing_leaves_the_earlier_campaign_as_it_was(quick: Project) -> None:
+    first = quick.run()
+    before = quick.all_results()
+    with pytest.raises(SelectionError, match="revers"):
+        quick.run(only=("reversed",), fresh=True)
+    after = quick.all_results()
+    assert len(after.mutants) == len(first)
+    assert (after.mutants, after.groups, after.state) == (before.mutants, before.groups, "complete")
+    assert (after.attempt or "").startswith("SelectionError")
+    assert quick.run() == set()
+    assert quick.all_results().attempt is None
+
+
+@pytest.mark.parametrize("fresh", [False, True])
+def test_a_narrow_run_shows_its_mutants_beside_all_others(quick: Project, fresh: bool) -> None:
+    first = quick.run()
+    whole = quick.all_results()
+    narrow = quick.run(only=("2",), fresh=fresh)
+    assert len(narrow) == int(fresh)
+    results = quick.all_results()
+    assert [one.mutant for one in results.mutants] == [one.mutant for one in whole.mutants]
+    assert results.groups == whole.groups
+    assert len(results.earlier) == len(first) - 1
+    assert not any(one.outdated for one in results.mutants)
+    assert quick.state() == ("complete", 1)
+    assert quick.run() == set()
+    assert not quick.all_results().earlier
+
+
+def test_results_of_earlier_runs_are_marked_where_something_has_changed(quick: Project) -> None:
+    quick.run()
+    quick.edit("tests/test_mission.py")
+    narrow = quick.run(only=("1",))
+    outdated = {one.mutant.id for one in quick.all_results().mutants if one.outdated}
+    earlier = {one.mutant.id for one in quick.all_results().earlier}
+    assert {mutant for mutant, _ in of("left", {(mutant, 0) for mutant in earlier})} == outdated
+    assert outdated < earlier
+    assert not outdated & {mutant for mutant, _ in narrow}
+    quick.edit("scene.json")
+    quick.run(only=("1",))
+    assert all(one.outdated for one in quick.all_results().earlier)
+
+
+def test_mutants_of_another_family_stay_until_the_program_has_them_no_longer(quick: Project) -> None:
+    robots = {mutant for mutant, _ in quick.run()}
+    texts = {mutant for mutant, _ in quick.run(families=("classical",))}
+    shown = quick.all_results()
+    assert {one.mutant.id for one in shown.mutants} == robots | texts
+    assert {one.mutant.id for one in shown.earlier} == robots
+    assert not any(one.outdated for one in shown.mutants)
+    numbers = [one.mutant.number for one in shown.mutants]
+    assert len(numbers) == len(set(numbers))
+    quick.edit("mission.py")
+    quick.run(families=("classical",))
+    assert {one.mutant.id for one in quick.all_results().mutants if one.outdated} == robots
+    assert {mutant for mutant, _ in quick.run(families=("robot", "classical"))} == robots
+
+
+def test_mutants_that_the_program_has_no_longer_are_not_shown(project: Project) -> None:
+    project.run()
+    project.edit("mission.py", lambda text: text.replace("        return arm.position()\n", ""))
+    project.edit(
+        "mission.py", lambda text: text.replace("arm.move_by(0.3)", "arm.move_by(0.3)\n    return 1")
+    )
+    project.run(only=("1",))
+    shown = project.all_results()
+    assert {one.mutant.operation for one in shown.mutants} == {"robot:Arm.move_by"}
+    assert len(shown.mutants) == 6
+    assert sum(one.outdated for one in shown.mutants) == 5
+
+
+def test_an_interrupted_campaign_shows_what_was_there_before(
+    quick: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = quick.run()
+    quick.edit("scene.json")
+
+    def interrupted(*arguments: Any, **options: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(campaign, "run_mutants", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        quick.run()
+    shown = quick.all_results()
+    assert (shown.state, shown.done) == ("interrupted", len(first))
+    assert all(one.outdated for one in shown.mutants)
+    quick.edit("scene.json", lambda text: text.removesuffix("\n# edited\n"))
+    with pytest.raises(KeyboardInterrupt):
+        quick.run(fresh=True)
+    assert not any(one.outdated for one in quick.all_results().mutants)
+
+
+def test_errors_and_unstable_outcomes_are_never_reused(quick: Project) -> None:
+    first = sorted(quick.run())
+    bad = {first[0], first[1]}
+    with Journal.open(quick.journal, writable=True) as journal:
+        for (mutant, round), verdict in zip(sorted(bad), (Verdict.ERROR, Verdict.UNSTABLE), strict=True):
+            journal._write(
+                "UPDATE outcome SET verdict = ? WHERE mutant = ? AND round = ?", verdict.value, mutant, round
+            )
+    assert quick.run() == bad
+    assert "2 run again: they ended in an error or unstable" in quick.note
+
+
+def test_data_that_the_tests_write_are_no_reason_to_run_again(project: Project) -> None:
+    write = (
+        "import pathlib, time\n\ndef test_log():\n    pathlib.Path('log.txt').write_text(str(time.time()))\n"
+    )
+    (project.folder / "tests" / "test_log.py").write_text(write)
+    first = project.run()
+    assert first
+    assert project.run() == set()
+
+
+def test_a_new_file_that_nothing_has_to_do_with_is_no_reason_to_run_again(quick: Project) -> None:
+    quick.run()
+    for name in ("out.txt", "run.log", "docs/plan.pdf", "tests/notes.md"):
+        path = quick.folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("a note\n")
+    assert quick.run() == set()
+    (quick.folder / "out.txt").write_text("another\n")
+    assert quick.run() == set()
+    quick.edit("tests/test_right.py", lambda text: text + "# see out.txt\n")
+    assert quick.run()
+    (quick.folder / "out.txt").write_text("a third\n")
+    assert quick.run()
+    assert "out.txt changed" in quick.note
+
+
+def test_a_program_edited_while_mutants_run_is_never_mistaken_for_the_one_they_ran(
+    quick: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    original = campaign.run_mutants
+
+    def edited(*arguments: Any) -> None:
+        quick.edit("mission.py")
+        original(*arguments)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(campaign, "run_mutants", edited)
+        first = quick.run()
+    assert "mission.py changed while mutants ran" in quick.note
+    quick.edit("mission.py", lambda text: text.removesuffix("\n# edited\n"))
+    assert quick.run() == first
+
+
+def test_an_interrupted_campaign_goes_on(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+    add = Journal.add_outcome
+
+    def interrupt(self: Journal, outcome: Outcome) -> None:
+        add(self, outcome)
+        if len(self.outcomes()) == 3:
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Journal, "add_outcome", interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            project.run()
+    assert project.state() == ("interrupted", 3)
+    ran = project.run()
+    assert project.note == f"reused 3 of {len(ran) + 3} outcomes; {len(ran)} not run before"
+    assert project.state() == ("complete", len(ran) + 3)
+
+
+@pytest.mark.parametrize("phase", ["take_baseline", "make_plan"])
+def test_a_campaign_that_ends_before_its_first_mutant_loses_nothing(
+    project: Project, monkeypatch: pytest.MonkeyPatch, phase: str
+) -> None:
+    first = project.run()
+
+    def interrupt(*arguments: Any, **options: Any) -> None:
+        raise KeyboardInterrupt
+
+    for _ in range(2):
+        with monkeypatch.context() as patch:
+            patch.setattr(campaign, phase, interrupt)
+            with pytest.raises(KeyboardInterrupt):
+                project.run()
+        assert project.state() == ("complete", len(first))
+        assert project.all_results().attempt == "interrupted"
+    project.edit("tests/test_right.py", lambda text: text + "    assert False\n")
+    with pytest.raises(BaselineError):
+        project.run()
+    assert project.state() == ("complete", len(first))
+    assert (project.all_results().attempt or "").startswith("BaselineError: 1 test fails")
+    project.edit("tests/test_right.py", lambda text: text.removesuffix("    assert False\n"))
+    with pytest.raises(NothingToDoError):
+        project.run(only=("reverse",), skip=("reverse",))
+    assert project.run() == set()
+    assert project.note == f"reused all {len(first)} outcomes: nothing that they depend on has changed"
+
+
+def test_a_full_disk_stops_the_campaign_and_keeps_what_is_there(
+    project: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    add = Journal.add_outcome
+
+    def fill(self: Journal, outcome: Outcome) -> None:
+        if len(self.outcomes()) == 3:
+            pages = self._connection.execute("PRAGMA page_count").fetchone()[0]
+            self._connection.execute(f"PRAGMA max_page_count = {pages}")
+            outcome = Outcome(outcome.mutant, outcome.round, outcome.verdict, message="x" * 100_000)
+        add(self, outcome)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Journal, "add_outcome", fill)
+        with pytest.raises(JournalError, match="disk is full"):
+            project.run()
+    assert project.state()[1] == 3
+    assert_nothing_is_left(project)
+    project.run()
+    assert project.note.startswith("reused 3 of ")
+
+
+def test_a_disk_that_is_full_for_the_workers_is_a_clear_error(
+    project: Project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*arguments: Any) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "job.json")
+
+    monkeypatch.setattr(campaign, "run_mutants", full)
+    with pytest.raises(JournalError, match=r"job\.json cannot be written: No space left"):
+        project.run()
+    assert_nothing_is_left(project)
+
+
+def can_mount(folder: Path) -> bool:
+    words = ["mount", "-t", "tmpfs", "-o", "size=400k", "none", str(folder)]
+    return os.geteuid() == 0 and subprocess.run(words, capture_output=True, check=False).returncode == 0
+
+
+def mutabot_run(project: Project, *options: str) -> subprocess.Popen[str]:
+    words = [sys.executable, "-m", "mutabot.cli.app", "-C", str(project.folder), "run", "-j", "2", *options]
+    return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def test_a_really_full_disk_is_exit_code_2(project: Project) -> None:
+    home = project.journal.parent
+    home.mkdir()
+    if not can_mount(home):
+        pytest.skip("needs the right to mount a file system")
+    try:
+        (home / "ballast").write_bytes(b"x" * 280_000)
+        _, said = (process := mutabot_run(project)).communicate()
+        assert process.returncode == 2, said
+        assert str(home) in said
+        assert "Traceback" not in said
+        assert_nothing_is_left(project)
+        (home / "ballast").unlink()
+        project.run()
+    finally:
+        subprocess.run(["umount", str(home)], check=True)
+
+
+def test_a_folder_that_cannot_be_written_is_exit_code_2(project: Project) -> None:
+    (project.folder / ".mutabot").write_text("in the way")
+    _, said = (process := mutabot_run(project)).communicate()
+    assert process.returncode == 2
+    assert ".mutabot" in said
+    assert "Traceback" not in said
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+def test_a_campaign_ended_from_outside_says_so_and_goes_on(project: Project, how: signal.Signals) -> None:
+    slow = "import time\n\ndef test_slow():\n    time.sleep(60)\n"
+    first = project.run()
+    (project.folder / "tests" / "test_slow.py").write_text(slow)
+    process = mutabot_run(project)
+    until = time.monotonic() + 20
+    while not processes(project) and time.monotonic() < until:
+        time.sleep(0.02)
+    time.sleep(0.5)  # until it has told the kernel whose child it is
+    process.send_signal(how)
+    _, said = process.communicate()
+    assert process.returncode == (130 if how == signal.SIGINT else -how), said
+    assert project.state() == ("complete", len(first))
+    assert project.all_results().attempt == ("interrupted" if how == signal.SIGINT else "killed")
+    (project.folder / "tests" / "test_slow.py").unlink()
+    assert project.run() == set()
+    assert len(first) == project.state()[1]
+    assert_nothing_is_left(project)
+
+
+def processes(project: Project) -> list[str]:
+    found = []
+    for entry in Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and (entry / "cwd").readlink() == project.folder:
+                found.append((entry / "cmdline").read_text())
+        except OSError:
+            continue
+    return found
+
+
+def assert_nothing_is_left(project: Project) -> None:
+    until = time.monotonic() + 5
+    while processes(project) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert processes(project) == []
+    assert not list(project.journal.parent.glob("work-*"))
+    assert not list(project.journal.parent.glob("*.new"))
+
+
+def test_campaigns_killed_at_random_moments_end_like_an_undisturbed_one() -> None:
+    words = [sys.executable, str(BENCHMARK), "--kills", "5", "--rounds", "1", "--seed", "7"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert sum(json.loads(done.stdout)["kills"].values()) == 5
+
+
+def test_changes_are_told_in_words() -> None:
+    old = {"a.py": "#1", "b.py": "#1", "seed": "1", "numpy": "2.0"}
+    new = {"b.py": "#2", "c.py": "#1", "seed": "2", "numpy": "2.0"}
+    assert changes(old, new) == ["a.py is gone", "b.py changed", "c.py is new", "seed is 2, was 1"]
+    assert changes({}, {"numpy": "2.0"}) == ["numpy is new"]
+
+
+def test_a_snapshot_holds_what_tests_could_read_and_nothing_else(tmp_path: Path) -> None:
+    counted = ("mission.py", "scenes/box.xml", ".env", "conftest.py", "deep/er/data.csv")
+    others = (
+        ".git/config", ".mutabot/journal.sqlite", "env/pyvenv.cfg", "env/lib/x.py", "a/__pycache__/x.pyc",
+        "README.md", ".gitignore", ".venv/x.py", "x.egg-info/PKG-INFO", "mission.py~",
+    )  # fmt: skip
+    for name in (*counted, *others):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(name)
+    os.mkfifo(tmp_path / "pipe")  # to open it would wait for ever
+    (tmp_path / "nowhere").symlink_to("gone")
+    (tmp_path / "loop").symlink_to(tmp_path)
+    assert set(Snapshot.take(tmp_path).files) == set(counted)
+
+
+def test_thousands_of_files_are_read_in_a_moment(tmp_path: Path) -> None:
+    for folder in range(30):
+        (tmp_path / str(folder)).mkdir()
+        for file in range(100):
+            (tmp_path / str(folder) / f"{file}.py").write_text(f"{folder} {file}\n" * 200)
+    before = time.process_time()
+    first = Snapshot.take(tmp_path)
+    assert time.process_time() - before < 1.5  # a fifth of that on a quiet machine
+    assert len(first.files) == 3000
+    (tmp_path / "3" / "4.py").write_text("edited")
+    again = Snapshot.take(tmp_path, first)
+    assert again.edited_programs(first) == ["3/4.py"]
+    assert again.touched_since(first) == {"3/4.py"}

@@ -1,0 +1,196 @@
+"""Imports and collection are done once for all runs, and no run sees what another one did."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mutabot.campaign.run import check, run_campaign
+from mutabot.errors import BaselineError, MutabotError
+from mutabot.model import Verdict
+from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+
+MISSION = """
+    def run(arm):
+        arm.move_by(0.25)
+        arm.move_by(-0.125)
+"""
+TESTS = """
+    import mission
+    from robot import Arm
+
+    def test_run():
+        arm = Arm()
+        mission.run(arm)
+        assert arm.x == 0.125
+"""
+
+
+#: in the folder that is not private to a run
+DIARY = "project/.mutabot/diary"
+
+
+def project(folder: Path, *, conftest: str, tests: str = TESTS) -> Path:
+    """A project whose diary says what happened in its processes; it lies where all of them can write."""
+    head = f"""
+    import atexit, os, random, tempfile, threading, time
+    import pytest
+
+    def note(text):
+        with open({str(folder / DIARY)!r}, "a") as diary:
+            diary.write(text + chr(10))
+    """
+    root = folder / "project"
+    root.mkdir()
+    return write_project(
+        root,
+        MISSION,
+        tests,
+        configuration=CONFIGURATION + "rounds = 2\n",
+        more={"conftest.py": head + conftest},
+    )
+
+
+def diary(folder: Path) -> list[str]:
+    return (folder / DIARY).read_text().splitlines()
+
+
+def campaign(root: Path, engine: str = "branch") -> tuple[Quiet, dict[tuple[str, int], Verdict]]:
+    progress = Quiet()
+    path = run_campaign(request_for(root, engine=engine, fresh=True), progress)
+    return progress, {(outcome.mutant, outcome.round): outcome.verdict for outcome in outcomes(path)}
+
+
+def test_program_is_imported_once_for_all_rounds_and_mutants(tmp_path: Path) -> None:
+    root = project(tmp_path, conftest="note('imported')")
+    _, verdicts = campaign(root)
+    assert diary(tmp_path) == ["imported"]
+    (tmp_path / DIARY).unlink()
+    assert campaign(root, "replay")[1] == verdicts
+    assert len(diary(tmp_path)) > len(verdicts)
+
+
+def test_what_the_program_draws_at_import_is_the_same_in_both_engines(tmp_path: Path) -> None:
+    root = project(tmp_path, conftest="note(str(random.random()))")
+    campaign(root)
+    campaign(root, "replay")
+    assert len(set(diary(tmp_path))) == 1
+
+
+def test_tests_that_are_not_safe_to_fork_start_anew_and_the_user_is_told(tmp_path: Path) -> None:
+    waiting = "threading.Thread(target=threading.Event().wait, daemon=True, name='spinner').start()"
+    root = project(tmp_path, conftest=f"note('imported')\n    {waiting}")
+    progress, verdicts = campaign(root, "auto")
+    assert any("each run starts anew" in line and "spinner" in line for line in progress.lines)
+    assert set(verdicts.values()) == {Verdict.KILLED}
+    assert len(diary(tmp_path)) > 2
+    report = check(request_for(root), Quiet())
+    assert report.data
+
+
+def test_what_was_made_before_the_fork_lives_as_long_as_all_runs(tmp_path: Path) -> None:
+    root = project(
+        tmp_path,
+        conftest="""
+    FOLDER = tempfile.TemporaryDirectory()
+    atexit.register(note, "left")
+
+    @pytest.fixture(autouse=True)
+    def folder():
+        assert os.path.isdir(FOLDER.name)
+        note(FOLDER.name)
+
+    def pytest_sessionfinish():
+        note("finished")
+    """,
+    )
+    _, verdicts = campaign(root)
+    assert set(verdicts.values()) == {Verdict.KILLED}
+    found = diary(tmp_path)
+    assert found.count("left") == 1
+    assert found.count("finished") == 1
+    (folder,) = set(found) - {"left", "finished"}
+    assert not Path(folder).exists()
+
+
+def test_what_a_run_makes_goes_with_it(tmp_path: Path) -> None:
+    root = project(
+        tmp_path,
+        conftest="""
+    @pytest.fixture(autouse=True)
+    def leaves():
+        atexit.register(note, "left")
+    """,
+    )
+    progress = Quiet()
+    request = request_for(root, engine="branch")
+    check(request, progress)
+    found = diary(tmp_path)
+    # two rounds of the original, and the trunk of the controls; branches leave it to their trunk
+    assert found == ["left"] * 3
+
+
+def test_no_run_finds_what_another_one_left_in_the_cache(tmp_path: Path) -> None:
+    root = project(
+        tmp_path,
+        conftest="""
+    @pytest.fixture(autouse=True)
+    def once(cache):
+        assert cache.get("mutabot/seen", None) is None
+        cache.set("mutabot/seen", os.getpid())
+    """,
+    )
+    _, verdicts = campaign(root)
+    assert set(verdicts.values()) == {Verdict.KILLED}
+
+
+def test_output_of_a_run_does_not_mix_into_another_ones(tmp_path: Path) -> None:
+    tests = """
+    import mission
+    from robot import Arm
+
+    def test_run(capfd):
+        print("begin")
+        arm = Arm()
+        mission.run(arm)
+        assert arm.x == 0.125
+        assert capfd.readouterr().out == "begin\\n"
+    """
+    _, verdicts = campaign(project(tmp_path, conftest="print('imported')", tests=tests))
+    assert set(verdicts.values()) == {Verdict.KILLED}
+
+
+def test_death_of_the_process_that_collected_the_tests_is_a_clear_error(tmp_path: Path) -> None:
+    shot = """
+    @pytest.fixture(autouse=True)
+    def shot():
+        if os.getpid() != HERE:
+            os.kill(HERE, 9)
+            time.sleep(60)  # a copy that is quick may be done before it is taken along
+    """
+    root = project(tmp_path, conftest="HERE = os.getpid()\n" + shot)
+    with pytest.raises(BaselineError, match="killed by signal 9"):
+        campaign(root)
+    assert not list((root / ".mutabot").glob("work-*"))
+
+
+def test_interrupted_session_of_a_copy_ends_like_one_of_its_own(tmp_path: Path) -> None:
+    tests = TESTS.replace("arm = Arm()", "import pytest; pytest.exit('enough')")
+    root = project(tmp_path, conftest="", tests=tests)
+    texts = []
+    for engine in ("branch", "replay"):
+        with pytest.raises(MutabotError) as caught:
+            campaign(root, engine)
+        texts.append(str(caught.value))
+    assert texts[0] == texts[1]
+
+
+def test_error_in_a_test_file_is_told_as_without_sharing(tmp_path: Path) -> None:
+    root = project(tmp_path, conftest="", tests="import nothing_of_that_name")
+    texts = []
+    for engine in ("branch", "replay"):
+        with pytest.raises(BaselineError, match="cannot be collected") as caught:
+            campaign(root, engine)
+        texts.append(str(caught.value))
+    assert texts[0] == texts[1]

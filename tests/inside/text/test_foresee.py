@@ -1,0 +1,247 @@
+"""What can be known of an expression without letting anything happen."""
+
+from __future__ import annotations
+
+import ast
+import math
+import sys
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mutabot.inside.text.foresee import Forms, UnforeseenError, differing, is_identical, value_of
+
+
+def foresee(text: str, **variables: Any) -> Any:
+    """The value of a text in a frame where these are the globals."""
+    return value_of(ast.parse(text, mode="eval").body, frame_of(**variables))
+
+
+def frame_of(**variables: Any) -> Any:
+    space = {**variables, "sys": sys}
+    exec("frame = sys._getframe(0)", space)
+    return space["frame"]
+
+
+numbers = st.one_of(st.integers(-9, 9), st.floats(-9, 9), st.booleans())
+names = st.sampled_from(["x", "y", "z"])
+leaves = st.one_of(names, numbers.map(repr))
+
+
+def nested(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    two = st.tuples(inner, inner)
+    signs = ["+", "-", "*", "/", "//", "%", "**", "<", "<=", "==", "!=", ">", ">=", "and", "or", "is", "in"]
+    return st.one_of(
+        st.tuples(two, st.sampled_from(signs)).map(lambda it: f"({it[0][0]} {it[1]} {it[0][1]})"),
+        inner.map(lambda it: f"(-{it})"),
+        inner.map(lambda it: f"(not {it})"),
+        inner.map(lambda it: f"abs({it})"),
+        two.map(lambda it: f"max({it[0]}, {it[1]})"),
+        two.map(lambda it: f"({it[0]}, {it[1]})[1]"),
+        st.tuples(inner, inner, inner).map(lambda it: f"({it[0]} if {it[1]} else {it[2]})"),
+    )
+
+
+@pytest.mark.filterwarnings("ignore::SyntaxWarning")
+@given(st.recursive(leaves, nested, max_leaves=8), st.tuples(numbers, numbers, numbers))
+def test_what_is_foreseen_is_what_an_evaluation_gives(text: str, values: tuple[Any, ...]) -> None:
+    variables = dict(zip("xyz", values, strict=True))
+    try:
+        found = foresee(text, **variables)
+    except UnforeseenError:
+        return
+    except Exception as error:
+        with pytest.raises(type(error)):
+            eval(text, variables)
+        return
+    expected = eval(text, variables)
+    assert is_identical(found, expected) or (math.isnan(found) and math.isnan(expected))
+
+
+class Stored(NamedTuple):
+    x: float
+
+
+@dataclass(frozen=True, slots=True)
+class Slots:
+    x: float
+
+
+@dataclass
+class Plain:
+    x: float
+    common = 7
+
+
+@pytest.mark.parametrize("owner", [Stored(2.0), Slots(2.0), Plain(2.0)])
+def test_stored_attributes_are_known(owner: Any) -> None:
+    assert foresee("owner.x + 1", owner=owner) == 3.0
+
+
+def test_names_of_modules_and_classes_are_known() -> None:
+    assert foresee("math.pi", math=math) is math.pi
+    assert foresee("math.dist((0, 0), (3, 4))", math=math) == 5.0
+    assert foresee("owner.common", owner=Plain(1.0)) == 7
+    assert foresee("table['a'][1]", table={"a": [1, 2]}) == 2
+
+
+class Robot:
+    """Every way to ask it anything is noted."""
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+
+    @property
+    def angle(self) -> float:
+        self.asked.append("angle")
+        return 1.0
+
+    def __getattr__(self, name: str) -> float:
+        self.asked.append(name)
+        return 1.0
+
+    def __getitem__(self, key: object) -> float:
+        self.asked.append(str(key))
+        return 1.0
+
+    def __add__(self, other: object) -> float:
+        self.asked.append("+")
+        return 1.0
+
+    def __eq__(self, other: object) -> bool:
+        self.asked.append("==")
+        return True
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __bool__(self) -> bool:
+        self.asked.append("bool")
+        return True
+
+    def __abs__(self) -> float:
+        self.asked.append("abs")
+        return 1.0
+
+    def __call__(self) -> float:
+        self.asked.append("()")
+        return 1.0
+
+    def __iter__(self) -> Any:
+        self.asked.append("iter")
+        return iter(())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "robot.angle",
+        "robot.missing",
+        "robot[0]",
+        "robot + 1",
+        "robot == 1",
+        "1 == robot",
+        "1 in robot",
+        "1 in [robot]",
+        "1 in table",
+        "(1, robot) == (1, robot)",
+        "not robot",
+        "robot and 1",
+        "1 if robot else 2",
+        "abs(robot)",
+        "max((robot, robot))",
+        "robot()",
+        "print('x')",
+        "[x for x in robot]",
+        "(y := 1)",
+        "f'{robot}'",
+        "lambda: robot",
+        "max(1, 2, key=robot)",
+    ],
+)
+def test_whatever_may_ask_the_robot_is_left_to_a_real_evaluation(text: str) -> None:
+    robot = Robot()
+    with pytest.raises(UnforeseenError):
+        foresee(text, robot=robot, table=[robot])
+    assert robot.asked == []
+
+
+def test_an_object_itself_is_known_and_never_asked() -> None:
+    robot = Robot()
+    assert foresee("robot", robot=robot) is robot
+    assert foresee("robot is None", robot=robot) is False
+    assert robot.asked == []
+
+
+@pytest.mark.parametrize(
+    "text", ["9 ** 9 ** 9", "1 << 10 ** 9", "'x' * 10 ** 9", "big * big", "~True", "()[0]"]
+)
+def test_what_would_take_long_or_warn_or_raise_is_not_foreseen(text: str) -> None:
+    with pytest.raises((UnforeseenError, IndexError)):
+        foresee(text, big=1 << 300)
+
+
+def test_a_variable_without_a_value_yet_is_no_global_of_that_name() -> None:
+    """An evaluation would raise UnboundLocalError there."""
+    program = """
+def before():
+    frame = sys._getframe(0)
+    return frame
+    x = 1
+
+def after():
+    x = "local"
+    return sys._getframe(0)
+
+def elsewhere():
+    return sys._getframe(0)
+"""
+    space: dict[str, Any] = {"sys": sys, "x": "global"}
+    exec(program, space)
+    x = ast.parse("x", mode="eval").body
+    assert value_of(x, space["elsewhere"]()) == "global"
+    assert value_of(x, space["after"]()) == "local"
+    with pytest.raises(UnforeseenError):
+        value_of(x, space["before"]())
+
+
+def test_what_a_function_keeps_of_its_local_names_is_not_brought_up_to_date() -> None:
+    x = 1
+    kept = locals()
+    x = 2
+    with pytest.raises(UnforeseenError):
+        value_of(ast.parse("x", mode="eval").body, sys._getframe(0))
+    assert kept["x"] == 1
+    assert x == 2
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [
+        (1, 1, True),
+        (1, 1.0, False),
+        (1, True, False),
+        (0.0, -0.0, False),
+        (math.nan, math.nan, True),
+        ((1, 2.0), (1, 2.0), True),
+        ((1, 0.0), (1, -0.0), False),
+        ([1], [1], False),
+        ("a", "a", True),
+    ],
+)
+def test_values_are_identical_only_if_no_program_can_tell_them_apart(
+    one: Any, other: Any, same: bool
+) -> None:
+    assert is_identical(one, other) is same
+
+
+def test_only_alternatives_with_another_value_differ() -> None:
+    parse = ast.parse
+    texts = ("abs(x)", "-x", "x / 0", "robot.angle", "x")
+    forms = Forms(parse("x", mode="eval").body, tuple(parse(text, mode="eval").body for text in texts))
+    everything = frozenset(range(5))
+    assert differing(forms, everything, frame_of(x=2, robot=Robot())) == {1, 2, 3}
+    assert differing(forms, everything, frame_of(x=-2, robot=Robot())) == {0, 1, 2, 3}
+    assert differing(forms, frozenset({0, 1}), frame_of(robot=Robot())) == {0, 1}

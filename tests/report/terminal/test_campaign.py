@@ -1,0 +1,354 @@
+"""The report on the terminal: everything is there, at any width, without colour, whatever texts hold."""
+
+from __future__ import annotations
+
+import io
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rich.cells import cell_len
+from rich.console import Console
+
+from analysis import samples
+from mutabot.analysis.results import Results, find_mutant, read_results
+from mutabot.errors import SelectionError
+from mutabot.journal.journal import Journal
+from mutabot.model import By, Outcome, Verdict
+from mutabot.report.terminal.campaign import print_results
+from mutabot.report.terminal.console import make_console, plain, short_place
+from mutabot.report.terminal.detail import print_mutant
+from mutabot.report.terminal.listing import print_plan
+from mutabot.report.terminal.marks import mark_of
+from mutabot.report.terminal.summary import print_summary
+
+WIDTHS = pytest.mark.parametrize("width", [60, 80, 120, 200])
+
+
+def summary(results: Results, width: int) -> str:
+    on = console(width)
+    print_summary(on, results)
+    return written(on)
+
+
+@pytest.fixture
+def results(tmp_path: Path) -> Results:
+    with Journal.open(samples.write_journal(tmp_path / "journal.sqlite")) as journal:
+        return read_results(journal)
+
+
+def console(width: int) -> Console:
+    return make_console(io.StringIO(), width=width)
+
+
+def written(on: Console) -> str:
+    assert isinstance(on.file, io.StringIO)
+    return on.file.getvalue()
+
+
+def report(results: Results, width: int = 120, *, everything: bool = False) -> str:
+    on = console(width)
+    print_results(on, results, everything=everything)
+    return written(on)
+
+
+def row(text: str, *words: str) -> str:
+    return next(line for line in text.splitlines() if all(word in line for word in words))
+
+
+@WIDTHS
+def test_no_line_is_wider_than_the_terminal_and_none_is_coloured_on_a_pipe(
+    results: Results, width: int
+) -> None:
+    text = report(results, width, everything=True)
+    assert max(cell_len(line) for line in text.splitlines()) <= width
+    assert "\x1b" not in text
+
+
+@WIDTHS
+def test_every_mutant_has_one_letter_per_round(results: Results, width: int) -> None:
+    text = report(results, width)
+    for words, letters in {
+        ("reverse",): "C X", ("skip",): "S S", ("by-to",): "R T", ("negate",): "S C", ("noise",): "E N",
+    }.items():  # fmt: skip
+        assert row(text, *words).rstrip().endswith(letters)
+
+
+def test_the_legend_explains_exactly_the_letters_that_occur(results: Results) -> None:
+    text = report(results).replace("\N{NO-BREAK SPACE}", " ")
+    for words in ("C killed by a check", "X killed by an exception", "N not covered", "E error"):
+        assert words in text
+    assert "unstable" not in text
+
+
+def test_every_verdict_has_a_letter_of_its_own() -> None:
+    outcomes = [Outcome("m", 0, verdict, By.CHECK) for verdict in Verdict]
+    outcomes.append(Outcome("m", 0, Verdict.KILLED, By.EXCEPTION))
+    assert len({mark_of(outcome).letter for outcome in [*outcomes, None]}) == len(outcomes) + 1
+
+
+def test_scores_carry_their_counts_per_round_and_per_role(results: Results) -> None:
+    text = report(results)
+    assert row(text, "robot · program", "1/2", "2/3", "58.3 %")
+    assert row(text, "robot · oracle", "0/1", "1/2", "25.0 %")
+    assert row(text, "all together", "1/3", "3/5", "46.7 %")
+    assert row(text, "robot · program", "58.3 %", "25.0 %", "1 killed by a check", "1 timeout")
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_kill_rates_and_scores_carry_their_intervals(results: Results, width: int) -> None:
+    text = report(results, width)
+    assert row(text, "reverse", "2/2")
+    assert row(text, "34–100 %")
+    assert "3–98 %" in text[text.index("Scores") :]
+    assert "docs/statistics.md" in text
+
+
+def test_with_one_round_there_is_no_interval(tmp_path: Path) -> None:
+    once = tuple(one for one in samples.OUTCOMES if one.round == 0)
+    path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=once, rounds=1)
+    with Journal.open(path) as journal:
+        text = report(read_results(journal), 80)
+    assert "–" not in text.partition("Scores")[2].partition("survivor")[0].replace("–  ", "")
+    assert "docs/statistics.md" not in text
+
+
+@WIDTHS
+def test_a_sample_is_told_with_what_it_says_about_all(tmp_path: Path, width: int) -> None:
+    stratum = {"family": "robot", "role": "program", "population": 30, "drawn": 3}
+    drawing = {"sample": "10%", "one_per_site": True, "selected": 60, "strata": [stratum]}
+    with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", drawing=drawing)) as journal:
+        text = " ".join(report(read_results(journal), width).split())
+    assert "5 of 60 mutants were drawn: a sample of 10% of one per site" in text
+    assert "robot · program: 3 of 30; score of all of them in these rounds " in text
+
+
+@WIDTHS
+def test_a_second_look_is_told(tmp_path: Path, width: int) -> None:
+    wrong = {
+        "mutant": samples.SKIP.id, "number": 2, "round": 0, "first": "survived", "second": "killed by check",
+    }  # fmt: skip
+    path = samples.write_journal(
+        tmp_path / "journal.sqlite",
+        verification={"wanted": 9, "checked": 9, "disagreements": [wrong]},
+        confirmation={"checked": 4, "unstable": 1},
+        flaky={"tests": ["tests/t.py::test_a in round 1: failed in an equal run"], "known": 8},
+        repeats={
+            "doubted": {"outcomes": 5, "repeated": 4, "changed": 1},
+            "others": {"outcomes": 30},
+            "survivors": {"outcomes": 9},
+        },
+    )
+    with Journal.open(path) as journal:
+        text = report(read_results(journal), width)
+    flat = " ".join(text.split())
+    assert "Verified: 8 of 9 outcomes end the same in fresh processes." in flat
+    assert "mutant 2, round 1: survived; afresh: killed by check" in flat
+    assert "Confirmed: 3 of 4 kills, survivors and time-outs end so once more." in flat
+    assert (
+        "Kills: of 5 kills that may be chance 4 were run once more, 1 ended otherwise and count no more, "
+        "1 left for want of time; false kills left among 4: 0.3 (0 to 4); 30 other kills by tests without "
+        "simulated time were not repeated (--confirm)."
+    ) in flat
+    assert "1 test set aside, which cannot be relied on tests/t.py::test_a in round 1" in flat
+    assert max(cell_len(line) for line in text.splitlines()) <= width
+
+
+@WIDTHS
+def test_errors_come_first_one_line_per_message(tmp_path: Path, width: int) -> None:
+    outcomes = [Outcome(mutant.id, 0, Verdict.ERROR, message="NaN\nmore") for mutant in samples.MUTANTS]
+    outcomes.append(Outcome(samples.SKIP.id, 1, Verdict.ERROR, message="no memory"))
+    path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=tuple(outcomes))
+    with Journal.open(path) as journal:
+        text = report(read_results(journal), width)
+    words = " ".join(text.partition("Mutants by rounds")[0].split())
+    assert "6 of 6 outcomes ended in error" in words
+    assert words.endswith("5 × NaN (mutants 1, 2, 3, 4, 5) 1 × no memory (mutant 2)")
+
+
+def test_survivors_come_with_a_reason_the_farthest_first(results: Results) -> None:
+    text = report(results)
+    section = text[text.index("survivors") :]
+    assert section.index("0.8 instead of 0.488") < section.index("read -0.0014 m instead of 0.0014 m")
+    assert row(section, "tests/sensors.py:2", "negate", "1 of 2")
+
+
+def test_what_stands_outside_the_score_is_listed_with_its_reason(results: Results) -> None:
+    text = report(results)
+    assert "1 mutant outside the score: refused" in text
+    assert "x = −0.3 m is out of reach by 0.1 m" in text
+    assert "[bold]not markup[/bold]" in text
+
+
+def test_what_the_plan_leaves_out_is_counted_and_listed_on_demand(results: Results) -> None:
+    assert row(report(results), "2  it is always 0")
+    assert samples.LEFT_OUT[0].id not in report(results)
+    assert samples.LEFT_OUT[0].id in report(results, everything=True)
+
+
+def test_an_interrupted_campaign_says_how_much_is_known(tmp_path: Path) -> None:
+    path = samples.write_journal(
+        tmp_path / "journal.sqlite", outcomes=samples.OUTCOMES[:3], finish="interrupted"
+    )
+    with Journal.open(path) as journal:
+        text = report(read_results(journal))
+    assert "interrupted, 3 of 10 outcomes are known" in text
+    assert "· not run" in text.replace("\N{NO-BREAK SPACE}", " ")
+
+
+def test_a_journal_without_a_plan_can_be_shown(tmp_path: Path) -> None:
+    with Journal.create(tmp_path / "journal.sqlite", meta={}) as journal:
+        assert "0 mutants × 0 rounds" in report(read_results(journal))
+
+
+def test_many_rounds_are_counted_and_split_over_several_tables(tmp_path: Path) -> None:
+    outcomes = tuple(
+        Outcome(samples.SKIP.id, round, Verdict.SURVIVED if round % 3 else Verdict.TIMEOUT)
+        for round in range(20)
+    )
+    path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=outcomes, rounds=20)
+    with Journal.open(path) as journal:
+        text = report(read_results(journal), 80)
+    assert row(text, "skip").rstrip().endswith("S13 T7")
+    assert text.count(" round ") >= 3
+    assert max(cell_len(line) for line in text.splitlines()) <= 80
+
+
+@WIDTHS
+def test_a_run_ends_with_errors_scores_survivors_and_where_to_read_on(results: Results, width: int) -> None:
+    text = summary(results, width)
+    lines = text.splitlines()
+    assert lines[0] == "5 mutants × 2 rounds: complete"
+    assert max(cell_len(line) for line in lines) <= width
+    order = ["ended in error", "robot · program", "robot · oracle", "3 survivors", "outside the score"]
+    assert [text.index(words) for words in order] == sorted(text.index(words) for words in order)
+    # of the first round 1 of 2 and of the second 2 of 3; by a check 1 of 2 and 0 of 3
+    assert re.search(r"robot · program +58\.3 %.* 25\.0 % +3 of 5", text)
+    assert "Mutants outside the score: 1 refused" in text
+    assert "`mutabot results` shows every mutant" in text.replace("\n", " ")
+    assert "by-to" not in text  # neither survived nor in error: a row in the full table only
+
+
+def test_of_many_survivors_a_run_shows_ten(tmp_path: Path) -> None:
+    mutants = tuple(
+        samples.mutant(number, f"made-{number}", samples.MOVE, "dx", "arm.move_by") for number in range(1, 31)
+    )
+    outcomes = tuple(Outcome(mutant.id, 0, Verdict.SURVIVED) for mutant in mutants)
+    path = samples.write_journal(tmp_path / "j.sqlite", outcomes=outcomes, mutants=mutants, rounds=1)
+    with Journal.open(path) as journal:
+        text = summary(read_results(journal), 120)
+    assert text.count("made-") == 10
+    assert "and 20 more" in text
+
+
+def test_what_fits_several_mutants_names_ten_of_them(tmp_path: Path, results: Results) -> None:
+    assert find_mutant(results, "noise").mutant == samples.NOISE
+    assert find_mutant(results, "mission.py:2").mutant == samples.SKIP
+    with pytest.raises(SelectionError) as caught:
+        find_mutant(results, "mission.py")
+    first, *others = str(caught.value).splitlines()
+    assert first == "'mission.py' fits 3 mutants; give a number or a whole id:"
+    assert others == [f"{one.number:>6}  {one.id}" for one in (samples.REVERSE, samples.SKIP, samples.BY_TO)]
+    many = tuple(replace(samples.REVERSE, number=number, variant=str(number)) for number in range(1, 15))
+    with Journal.open(samples.write_journal(tmp_path / "many.sqlite", mutants=many)) as journal:
+        results = read_results(journal)
+    with pytest.raises(SelectionError, match="fits 14 mutants") as caught:
+        find_mutant(results, "reverse")
+    assert len(str(caught.value).splitlines()) == 12
+    assert str(caught.value).endswith("and 4 more")
+
+
+def test_show_underlines_the_call_in_its_source(results: Results) -> None:
+    on = console(80)
+    print_mutant(on, find_mutant(results, "3"), samples.PROGRAM)
+    lines = written(on).splitlines()
+    source = next(index for index, line in enumerate(lines) if "größe" in line)
+    assert lines[source + 1].index("^") == lines[source].index("arm.move_by")
+
+
+def test_show_gives_the_kill_rate_with_its_interval(results: Results) -> None:
+    on = console(100)
+    print_mutant(on, find_mutant(results, "1"), None)
+    assert "in 2 of the 2 rounds in which it was valid: 100.0 %, 95 % interval 34–100 %" in written(on)
+
+
+def test_show_tells_what_changed_and_how_each_round_ended(results: Results) -> None:
+    on = console(100)
+    print_mutant(on, find_mutant(results, "1"), None)
+    text = written(on)
+    for words in (
+        samples.REVERSE.id,
+        "dx: translation, along x, in m",
+        "the program sent -0.2 m instead of 0.2 m",
+        "killed by a check in tests/test_mission.py::test_box_arrives",
+        "AssertionError: box is at x = 0.55 m",
+        "at tests/test_mission.py:9",
+        "Stop: hit",
+    ):
+        assert words in text
+
+
+def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
+    def killed(round: int, message: str, **more: Any) -> Outcome:
+        outcome = Outcome(
+            samples.REVERSE.id, round, Verdict.KILLED, By.CHECK, test=samples.TEST, message=message
+        )
+        return replace(outcome, hits=3, tests=1, wall=0.1 * (round + 1), **more)
+
+    outcomes = (
+        *(killed(round, f"box is at x = {round + 0.5} m", acted=3) for round in (0, 1, 2, 4)),
+        killed(3, "box is at x = 0.5 m", acted=2),
+        Outcome(samples.REVERSE.id, 5, Verdict.SURVIVED, hits=3, acted=3, tests=1, wall=0.2),
+        Outcome(samples.REVERSE.id, 6, Verdict.SURVIVED, hits=3, acted=3, tests=1, wall=0.2),
+    )
+    path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=outcomes, rounds=8)
+    with Journal.open(path) as journal:
+        on = console(100)
+        print_mutant(on, find_mutant(read_results(journal), "1"), None)
+    lines = [line.strip() for line in written(on).partition("Rounds\n")[2].splitlines()]
+    assert lines == [
+        f"rounds 1–3, 5: C killed by a check in {samples.TEST}",
+        "such as in round 1:",
+        "box is at x = 0.5 m",
+        "acted at 3 of 3 hits, 1 tests run, 0.1 to 0.5 s",
+        f"round 4: C killed by a check in {samples.TEST}",
+        "box is at x = 0.5 m",
+        "acted at 2 of 3 hits, 1 tests run, 0.4 s",
+        "rounds 6–7: S survived",
+        "acted at 3 of 3 hits, 1 tests run, 0.2 s",
+        "round 8: · not run",
+    ]
+
+
+def test_show_tells_where_a_mutant_stayed_away_and_why(results: Results) -> None:
+    mutant = find_mutant(results, "1")
+    why = {"the value would leave the range [-1, 1]": 138, "the value would stay the same": 1}
+    rounds = tuple(one and replace(one, acted=161, hits=300, away=why) for one in mutant.rounds)
+    on = console(100)
+    print_mutant(on, replace(mutant, rounds=rounds), None)
+    text = written(on)
+    assert "acted at 161 of 300 hits" in text
+    assert "stayed away at 138 hits: the value would leave the range [-1, 1]" in text
+    assert "stayed away at 1 hit: the value would stay the same" in text
+
+
+@WIDTHS
+def test_the_plan_names_place_operator_and_quantity(width: int) -> None:
+    on = console(width)
+    print_plan(on, samples.MUTANTS, samples.LEFT_OUT)
+    text = written(on)
+    assert row(text, "program", "mission.py:3", "reverse", "dx")
+    assert "5 mutants" in text
+    assert max(cell_len(line) for line in text.splitlines()) <= width
+
+
+def test_texts_of_programs_cannot_play_with_the_terminal() -> None:
+    assert plain("\x1b[31mred\x1b[0m \x07\x1b]0;title\x07\tx") == "red     x"
+
+
+def test_a_long_path_keeps_its_end() -> None:
+    assert short_place("src/a.py", 3) == "src/a.py:3"
+    assert short_place("packages/robot/src/robot/cell/mission.py", 12) == "…/cell/mission.py:12"
+    assert short_place("a_very_long_name_of_a_single_file.py", 1) == "a_very_long_name_of_a_single_file.py:1"
