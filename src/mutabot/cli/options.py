@@ -89,8 +89,7 @@ NoOracle = Annotated[
     ),
 ]
 Picture = Annotated[
-    Path | None,
-    typer.Option("--picture", metavar="FILE", help="Draw the ends as bars: FILE.svg or FILE.png."),
+    Path | None, typer.Option("--picture", metavar="FILE", help="Draw the ends as bars: FILE.svg.")
 ]
 Stored = Annotated[bool, typer.Option("--results", help="Run nothing; show what the last comparison found.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Run everything again, also outcomes that still hold.")]

@@ -1,7 +1,6 @@
 """Stacked bars of the ends of each family: where everything stands, and the same as SVG.
 
-The drawing is a list of rectangles and texts in pixels, so that one layout serves all file formats. Nothing
-has to be installed for SVG.
+The drawing is a list of rectangles and texts in pixels, apart from the format that writes it down.
 """
 
 from __future__ import annotations
@@ -14,8 +13,6 @@ from mutabot.analysis.ends import End
 from mutabot.analysis.families import Family
 from mutabot.report.terminal.console import plural
 
-#: stands in every picture file, so that a campaign does not take one for data of the robot program
-MARK = "written by mutabot compare"
 _WIDTH, _MARGIN, _LABELS = 860, 20, 165
 _BAR, _GAP, _HEAD, _LEGEND_ROW, _LEGEND_COLUMNS = 34, 20, 52, 22, 3
 _INK, _FAINT, _PAPER = "#222222", "#767676", "#ffffff"
@@ -116,7 +113,7 @@ def svg(picture: Picture) -> str:
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{picture.width}" height="{picture.height}" '
         f'viewBox="0 0 {picture.width} {picture.height}" font-family="Helvetica, Arial, sans-serif">',
-        f"<!-- {MARK} -->",
+        "<!-- written by mutabot compare -->",
         *map(_svg_of_box, picture.boxes),
         *map(_svg_of_words, picture.words),
         "</svg>",

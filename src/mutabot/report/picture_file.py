@@ -1,4 +1,4 @@
-"""Pictures as files: SVG or PNG, by the name of the file."""
+"""Pictures as files, in SVG."""
 
 from __future__ import annotations
 
@@ -7,33 +7,30 @@ from pathlib import Path
 from mutabot.analysis.families import Comparison
 from mutabot.errors import UsageError
 
-from .as_png import require_png, write_png
 from .picture import bars_of, draw, svg
 
 _TITLE = "What became of the mutants"
-_SUFFIXES = (".svg", ".png")
 
 
 def check_picture(path: Path) -> None:
     """Raise UsageError for a file that could not be written; said before a campaign rather than after it."""
-    if path.suffix.lower() not in _SUFFIXES:
-        raise UsageError(f"{path} is no picture that can be drawn; the name ends with .svg or .png")
+    if path.suffix.lower() != ".svg":
+        raise UsageError(f"{path} is no picture that can be drawn: pictures are SVG; write {_svg_name(path)}")
     if path.is_dir() or not path.parent.is_dir():
         what = "a folder is" if path.is_dir() else "there is no folder"
         raise UsageError(
             f"the picture {path} cannot be written: {what} {path if path.is_dir() else path.parent}"
         )
-    if path.suffix.lower() == ".png":
-        require_png()
 
 
 def write_picture(comparison: Comparison, path: Path) -> None:
     """Draw the ends of all families. Raises UsageError if the file cannot be written."""
     picture = draw(bars_of(comparison.families), _TITLE)
     try:
-        if path.suffix.lower() == ".png":
-            write_png(picture, path)
-        else:
-            path.write_text(svg(picture), encoding="utf-8")
+        path.write_text(svg(picture), encoding="utf-8")
     except OSError as error:
         raise UsageError(f"the picture {path} cannot be written: {error.strerror}") from error
+
+
+def _svg_name(path: Path) -> Path:
+    return path.with_suffix(".svg") if path.name else Path("ends.svg")

@@ -22,9 +22,6 @@ _NOTES = {
 }  # fmt: skip
 #: files that may name others, and bytes beyond which they are data
 _MAY_NAME, _LONGEST = re.compile(r".*\.(py|toml|cfg|ini|json|ya?ml|xml|urdf|xacro|feature|txt)"), 1 << 20
-_OWN_LINE = re.compile(r"\S+\.py:[^:]+:.+#\d+:.+")  # a mutant's id, as selection files hold them
-#: what our own pictures hold near their beginning; see ``mutabot.report.picture``
-_PICTURES, _PICTURE = {".svg", ".png"}, b"written by mutabot compare"
 #: how our own JSON begins, and reports of tests and their coverage
 _REPORTS = {
     ".json": re.compile(rb'\{\s*"format": \d+,\s*"'),
@@ -50,11 +47,15 @@ def counted(
     own = {configuration.file, "pyproject.toml", *(PurePosixPath(name).as_posix() for name in named)}
     if request.selection is not None:
         own.add(_relative(request.selection, request.root))
-    others = {name: digest for name, digest in digests.items() if name not in own}
+    others = {
+        name: digest
+        for name, digest in digests.items()
+        if name not in own and not _is_report(request.root / name)
+    }
     ignored = _ignored(request.root, others, opened) if opened is not None else set()
     found = {}
     for name, digest in others.items():
-        if name not in ignored and not _is_ours(request.root / name):
+        if name not in ignored:
             is_result = name in written and not name.endswith(".py")
             found[name] = WRITTEN if is_result else digest
     return found
@@ -105,28 +106,12 @@ def _relative(path: Path, root: Path) -> str:
     return Path(os.path.relpath(path.resolve(), root)).as_posix()
 
 
-def _is_ours(path: Path) -> bool:
-    """Whether it is a file for or by mutabot, or a report on tests, which no robot program reads."""
-    if path.suffix in _PICTURES:
-        return _begins(path, re.compile(b".*" + _PICTURE, re.DOTALL))
-    if path.suffix in _REPORTS:
-        return _begins(path, _REPORTS[path.suffix])
-    return path.suffix == ".txt" and _is_selection(path)
-
-
-def _begins(path: Path, pattern: re.Pattern[bytes]) -> bool:
+def _is_report(path: Path) -> bool:
+    """Whether it is our own JSON or a report on tests, which no robot program reads."""
+    if path.suffix not in _REPORTS:
+        return False
     try:
         with path.open("rb") as file:
-            return pattern.match(file.read(1000)) is not None
+            return _REPORTS[path.suffix].match(file.read(1000)) is not None
     except OSError:
         return False
-
-
-def _is_selection(path: Path) -> bool:
-    try:
-        with path.open(encoding="utf-8") as file:
-            lines = [line for line in (file.readline(400) for _ in range(20)) if line.strip()]
-    except (OSError, UnicodeDecodeError):
-        return False
-    ids = [line for line in lines if not line.startswith("#")]
-    return bool(ids) and all(_OWN_LINE.match(line) for line in ids)
