@@ -11,6 +11,7 @@ from mutabot.analysis.gate import decide
 from mutabot.analysis.results import Results, find_mutant, read_results
 from mutabot.errors import SelectionError
 from mutabot.journal.journal import Journal
+from mutabot.journal.lock import WriterLock
 from mutabot.model import By, Mutant, Outcome, Verdict
 
 
@@ -85,8 +86,10 @@ def test_a_campaign_that_still_runs_or_was_killed_says_which(tmp_path: Path) -> 
     with Journal.open(path) as journal:
         found = read_results(journal)
     assert (found.state, found.done, found.planned) == ("killed", 3, 10)
-    with Journal.open(path, writable=True), Journal.open(path) as journal:
+    lock = WriterLock.take(path)
+    with Journal.open(path) as journal:
         assert read_results(journal).state == "running"
+    lock.release()
 
 
 def test_survivors_are_ranked_by_how_far_the_world_ended(tmp_path: Path) -> None:

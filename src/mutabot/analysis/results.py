@@ -8,8 +8,8 @@ from typing import Any
 
 from mutabot.border.codec import from_data
 from mutabot.errors import SelectionError, unknown_name_text
-from mutabot.journal.journal import Journal
 from mutabot.journal.lock import is_written
+from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
     CONFIRMATION,
     DRAWING,
@@ -186,7 +186,7 @@ def _several(name: str, found: Sequence[MutantResult]) -> str:
     return "\n".join([f"{name!r} fits {len(found)} mutants; give a number or a whole id:", *lines, *more])
 
 
-def read_results(journal: Journal, *, earlier: bool = False) -> Results:
+def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     """Put together what the journal holds now: the last campaign, and all that is known if ``earlier``."""
     meta, mutants = journal.meta(), journal.mutants()
     planned = {mutant.id for mutant in mutants}
@@ -250,7 +250,7 @@ class _Earlier:
 
     @classmethod
     def of(
-        cls, journal: Journal, planned: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int
+        cls, journal: JournalReader, planned: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int
     ) -> _Earlier:
         done = {(outcome.mutant, outcome.round) for outcome in outcomes}
         order = journal.meta().get("order") or 1
@@ -280,7 +280,7 @@ def _number_of_rounds(meta: Mapping[str, Any], outcomes: list[Outcome]) -> int:
     return said if isinstance(said, int) else max((one.round + 1 for one in outcomes), default=0)
 
 
-def _attempt(journal: Journal) -> str | None:
+def _attempt(journal: JournalReader) -> str | None:
     found = journal.attempt
     if found:
         return found
@@ -289,7 +289,7 @@ def _attempt(journal: Journal) -> str | None:
     return "running" if is_written(journal.path) else "killed"
 
 
-def _state(journal: Journal) -> str:
+def _state(journal: JournalReader) -> str:
     finished = journal.finished
     if finished is not None:
         return finished

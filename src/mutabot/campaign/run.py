@@ -41,6 +41,7 @@ from mutabot.model import LeftOut, Mutant, Vocabulary
 from mutabot.vocabulary.load import shipped
 
 from .request import CheckReport, Progress, Request
+from .sink import Sink
 
 #: what else decides how a campaign ends, beside the user's own files
 _VERSIONS = ("pytest", "wrapt", "mujoco", "mink", "ruckig", "numpy", "pytest-bdd")
@@ -85,16 +86,17 @@ def _run(request: Request, workers: Workers, progress: Progress, journal: Journa
     edited = after.edited_programs(before)
     if edited:
         progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
-        run_mutants(request, baseline, workers, progress, plan.mutants, journal)
-        look_again(request, baseline, workers, progress, plan.mutants, journal, time.monotonic() - started)
+        sink = Sink(journal)
+        run_mutants(request, baseline, workers, progress, plan.mutants, sink)
+        look_again(request, baseline, workers, progress, plan.mutants, sink, time.monotonic() - started)
         return
     dependencies = Dependencies(request, baseline, _collected(results), before, after, watch.opened)
     note_outdated(journal, request, dependencies)
     done = reuse(journal, dependencies, plan.mutants, request.rounds, progress)
-    journal.key_of = _key_of(journal, dependencies, plan)
+    sink = Sink(journal, _key_of(journal, dependencies, plan))
     try:
-        run_mutants(request, baseline, workers, progress, plan.mutants, journal, done)
-        look_again(request, baseline, workers, progress, plan.mutants, journal, time.monotonic() - started)
+        run_mutants(request, baseline, workers, progress, plan.mutants, sink, done)
+        look_again(request, baseline, workers, progress, plan.mutants, sink, time.monotonic() - started)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
     _tidy(request, journal, whole)

@@ -252,13 +252,13 @@ def replay(
     """Run one mutant of the last campaign again in fresh processes; exit with 4 if it ends otherwise."""
     from mutabot.analysis.results import find_mutant, read_results
     from mutabot.campaign.engines.second_look import replay_one
-    from mutabot.journal.journal import Journal
+    from mutabot.journal.reader import JournalReader
     from mutabot.report.as_json import replayed_data
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.detail import print_replayed
 
     path = _journal_path(context.obj)
-    with Journal.open(path) as journal:
+    with JournalReader.open(path) as journal:
         found = read_results(journal, earlier=True)
         chosen = find_mutant(found, mutant).mutant
         if round is not None and round > found.rounds:
@@ -292,12 +292,12 @@ def show(
 ) -> None:
     """Show everything about one mutant."""
     from mutabot.analysis.results import find_mutant, read_results
-    from mutabot.journal.journal import Journal
+    from mutabot.journal.reader import JournalReader
     from mutabot.report.as_json import result_data
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.detail import print_mutant
 
-    with Journal.open(_journal_path(context.obj)) as journal:
+    with JournalReader.open(_journal_path(context.obj)) as journal:
         found = read_results(journal, earlier=True)
         result = find_mutant(found, mutant)
         is_there = not result.outdated or result.mutant.family in found.meta.get("families", ())
@@ -423,13 +423,13 @@ def _show_results(
     path: Path, *, json: bool, everything: bool = False, earlier: bool = False, summary: bool = False
 ) -> Any:
     from mutabot.analysis.results import read_results
-    from mutabot.journal.journal import Journal
+    from mutabot.journal.reader import JournalReader
     from mutabot.report.as_json import results_data
     from mutabot.report.terminal.campaign import print_results
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.summary import print_summary
 
-    with Journal.open(path) as journal:
+    with JournalReader.open(path) as journal:
         found = read_results(journal, earlier=earlier)
     if json:
         _print_json(results_data(found))

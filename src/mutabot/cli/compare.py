@@ -10,7 +10,7 @@ from mutabot.analysis.results import Results, read_results
 from mutabot.campaign import run as campaign
 from mutabot.campaign.request import COMPARISON, WITHOUT_ORACLE, Progress, Request
 from mutabot.errors import JournalError
-from mutabot.journal.journal import Journal
+from mutabot.journal.reader import JournalReader
 
 
 def run(request: Request, progress: Progress, *, no_oracle: bool) -> Comparison:
@@ -41,5 +41,5 @@ def read(home: Path) -> Comparison:
 
 
 def _read(path: Path) -> Results:
-    with Journal.open(path) as journal:
+    with JournalReader.open(path) as journal:
         return read_results(journal)

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Collection
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,9 @@ from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import changes
 from mutabot.campaign.reuse.snapshot import Snapshot
 from mutabot.campaign.run import run_campaign
+from mutabot.campaign.sink import Sink
 from mutabot.errors import BaselineError, JournalError, NothingToDoError, SelectionError
+from mutabot.journal.database import connect
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant, Outcome, Verdict
 
@@ -120,13 +123,13 @@ def quick(project: Project, monkeypatch: pytest.MonkeyPatch) -> Project:
         return copy.deepcopy(known[key])
 
     def run_mutants(
-        request: Request, _b: Any, _w: Any, progress: Quiet, mutants: list[Mutant], journal: Journal,
+        request: Request, _b: Any, _w: Any, progress: Quiet, mutants: list[Mutant], sink: Sink,
         done: Collection[Pair] = (),
     ) -> None:  # fmt: skip
         for round in range(request.rounds):
             for mutant in mutants:
                 if (mutant.id, round) not in done:
-                    journal.add_outcome(Outcome(mutant.id, round, Verdict.SURVIVED))
+                    sink.add_outcome(Outcome(mutant.id, round, Verdict.SURVIVED))
                     progress.advance("#")
 
     monkeypatch.setattr(campaign, "take_baseline", baseline)
@@ -332,10 +335,10 @@ def test_an_interrupted_campaign_shows_what_was_there_before(
 def test_errors_and_unstable_outcomes_are_never_reused(quick: Project) -> None:
     first = sorted(quick.run())
     bad = {first[0], first[1]}
-    with Journal.open(quick.journal, writable=True) as journal:
-        for (mutant, round), verdict in zip(sorted(bad), (Verdict.ERROR, Verdict.UNSTABLE), strict=True):
-            journal._write(
-                "UPDATE outcome SET verdict = ? WHERE mutant = ? AND round = ?", verdict.value, mutant, round
+    with closing(connect(quick.journal)) as connection:
+        for pair, verdict in zip(sorted(bad), (Verdict.ERROR, Verdict.UNSTABLE), strict=True):
+            connection.execute(
+                "UPDATE outcome SET verdict = ? WHERE mutant = ? AND round = ?", (verdict.value, *pair)
             )
     assert quick.run() == bad
     assert "2 run again: they ended in an error or unstable" in quick.note
@@ -387,8 +390,8 @@ def test_a_program_edited_while_mutants_run_is_never_mistaken_for_the_one_they_r
 def test_an_interrupted_campaign_goes_on(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
     add = Journal.add_outcome
 
-    def interrupt(self: Journal, outcome: Outcome) -> None:
-        add(self, outcome)
+    def interrupt(self: Journal, outcome: Outcome, *, key: str) -> None:
+        add(self, outcome, key=key)
         if len(self.outcomes()) == 3:
             raise KeyboardInterrupt
 
@@ -435,12 +438,13 @@ def test_a_full_disk_stops_the_campaign_and_keeps_what_is_there(
 ) -> None:
     add = Journal.add_outcome
 
-    def fill(self: Journal, outcome: Outcome) -> None:
+    def fill(self: Journal, outcome: Outcome, *, key: str) -> None:
         if len(self.outcomes()) == 3:
-            pages = self._connection.execute("PRAGMA page_count").fetchone()[0]
-            self._connection.execute(f"PRAGMA max_page_count = {pages}")
+            connection = self._store.connection
+            pages = connection.execute("PRAGMA page_count").fetchone()[0]
+            connection.execute(f"PRAGMA max_page_count = {pages}")
             outcome = Outcome(outcome.mutant, outcome.round, outcome.verdict, message="x" * 100_000)
-        add(self, outcome)
+        add(self, outcome, key=key)
 
     with monkeypatch.context() as patch:
         patch.setattr(Journal, "add_outcome", fill)

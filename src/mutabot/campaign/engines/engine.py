@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from mutabot.campaign.baseline.baseline import REPETITIONS, Baseline
 from mutabot.campaign.baseline.order_dependence import clear_up
 from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.sink import Sink
 from mutabot.campaign.workers.workers import Workers
-from mutabot.journal.journal import Journal
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 
@@ -37,7 +37,7 @@ def run_mutants(
     workers: Workers,
     progress: Progress,
     mutants: Sequence[Mutant],
-    journal: Journal,
+    sink: Sink,
     done: Collection[tuple[str, int]] = (),
 ) -> None:
     """Run controls and mutants in all rounds; every outcome is in the journal as soon as it is known.
@@ -54,7 +54,7 @@ def run_mutants(
     ]
     if not pairs:
         return
-    report = _Report(progress, journal, {mutant.id: mutant.number for mutant in mutants})
+    report = _Report(progress, sink, {mutant.id: mutant.number for mutant in mutants})
     if engine_of(request) == "branch":
         pairs = _branched(request, baseline, workers, report, pairs)
     if not pairs:
@@ -93,17 +93,17 @@ def try_controls(
 class _Report:
     """Outcomes and controls on their way to the journal and the screen."""
 
-    def __init__(self, progress: Progress, journal: Journal, numbers: dict[str, int]) -> None:
-        self.progress, self._journal, self._numbers = progress, journal, numbers
+    def __init__(self, progress: Progress, sink: Sink, numbers: dict[str, int]) -> None:
+        self.progress, self._sink, self._numbers = progress, sink, numbers
 
     def outcome(self, outcome: Outcome) -> None:
-        self._journal.add_outcome(outcome)
+        self._sink.add_outcome(outcome)
         by = f" by {outcome.by}" if outcome.by is not None else ""
         number = self._numbers[outcome.mutant]
         self.progress.advance(f"#{number} round {outcome.round + 1}: {outcome.verdict}{by}")
 
     def control(self, end: ControlEnd) -> None:
-        self._journal.add_control(end.test_file, end.control, end.ok, end.detail)
+        self._sink.journal.add_control(end.test_file, end.control, end.ok, end.detail)
 
 
 def _branched(

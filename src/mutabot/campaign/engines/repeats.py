@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.sink import Sink
 from mutabot.campaign.workers.workers import Workers
-from mutabot.journal.journal import Journal
 from mutabot.journal.records import (
     CONFIRMATION,
     FLAKY,
@@ -42,18 +42,19 @@ def look_again(
     workers: Workers,
     progress: Progress,
     mutants: Sequence[Mutant],
-    journal: Journal,
+    sink: Sink,
     spent: float,
 ) -> None:
     """Verify, confirm and repeat, and write down what came of it, flaky tests included.
 
     ``spent``: seconds that the campaign has taken until now.
     """
+    journal = sink.journal
     journal.set_meta(FLAKY, to_data(flaky_of(baseline)))
     by_id = {mutant.id: mutant for mutant in mutants}
     outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
     looker = Looker(request, baseline, workers, progress)
-    second = _SecondLook(Doubts(baseline, by_id, outcomes), looker, journal, progress)
+    second = _SecondLook(Doubts(baseline, by_id, outcomes), looker, sink, progress)
     chosen = choose(outcomes.values(), request.verify, request.seed)
     wanted = second.confirmable() if request.confirm else []
     second.run(dict.fromkeys([*chosen, *wanted]))
@@ -75,7 +76,7 @@ class _SecondLook:
 
     doubts: Doubts
     looker: Looker
-    journal: Journal
+    sink: Sink
     progress: Progress
 
     def confirmable(self) -> list[Key]:
@@ -91,7 +92,7 @@ class _SecondLook:
     def confirm(self, keys: Sequence[Key]) -> None:
         """Write down what ``--confirm`` found about these."""
         changed = self._settle(keys)
-        self.journal.set_meta(CONFIRMATION, {"checked": len(keys), "unstable": len(changed)})
+        self.sink.journal.set_meta(CONFIRMATION, {"checked": len(keys), "unstable": len(changed)})
         self.progress.note(f"confirm: {len(keys) - len(changed)} of {len(keys)} outcomes are confirmed")
 
     def repeat_doubted(self, seconds: float) -> None:
@@ -140,7 +141,7 @@ class _SecondLook:
             first, second = self.doubts.outcomes[key], self.looker.found[key]
             if self._is_changed(key):
                 changed.append(key)
-                self.journal.add_outcome(unconfirmed(first, second))
+                self.sink.add_outcome(unconfirmed(first, second))
             else:
-                self.journal.add_outcome(replace(first, repeats=first.repeats + 1))
+                self.sink.add_outcome(replace(first, repeats=first.repeats + 1))
         return changed

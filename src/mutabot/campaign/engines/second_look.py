@@ -19,7 +19,7 @@ from mutabot.campaign.plan.second_order import pair
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.workers.workers import Workers
 from mutabot.errors import ControlError, SelectionError, UnstableError
-from mutabot.journal.journal import Journal
+from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import Disagreement, Flaky, Replayed
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.outcome import in_words, same_end
@@ -88,7 +88,7 @@ def refuse_flaky(request: Request, baseline: Baseline) -> None:
 
 
 def replay_one(
-    request: Request, journal: Journal, mutant: Mutant, rounds: Iterable[int], progress: Progress
+    request: Request, journal: JournalReader, mutant: Mutant, rounds: Iterable[int], progress: Progress
 ) -> list[Replayed]:
     """Run one mutant again in these rounds, beside what the journal says of it.
 

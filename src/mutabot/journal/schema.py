@@ -1,0 +1,49 @@
+"""The tables of a journal, and the statements that make them and lead from one campaign to the next."""
+
+from __future__ import annotations
+
+SCHEMA_VERSION = 2
+
+TABLES = """
+CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE test (
+    round INTEGER NOT NULL, repetition INTEGER NOT NULL, test TEXT NOT NULL, outcome TEXT NOT NULL,
+    data TEXT NOT NULL, PRIMARY KEY (round, repetition, test));
+CREATE TABLE mutant (number INTEGER NOT NULL, id TEXT PRIMARY KEY, data TEXT NOT NULL);
+CREATE TABLE left_out (id TEXT NOT NULL, reason TEXT NOT NULL, data TEXT NOT NULL);
+CREATE TABLE source (file TEXT PRIMARY KEY, text TEXT NOT NULL);
+CREATE TABLE outcome (
+    mutant TEXT NOT NULL, round INTEGER NOT NULL, verdict TEXT NOT NULL, "by" TEXT, data TEXT NOT NULL,
+    key TEXT NOT NULL, reused INTEGER NOT NULL);
+CREATE INDEX outcome_of ON outcome (mutant, round);
+CREATE TABLE control (
+    test_file TEXT NOT NULL, control TEXT NOT NULL, ok INTEGER NOT NULL, detail TEXT NOT NULL);
+CREATE TABLE kept (
+    mutant TEXT NOT NULL, round INTEGER NOT NULL, verdict TEXT NOT NULL, "by" TEXT, data TEXT NOT NULL,
+    key TEXT NOT NULL, PRIMARY KEY (mutant, round));
+CREATE TABLE parts (digest TEXT PRIMARY KEY, data TEXT NOT NULL);
+"""
+#: the rows that hold the last outcome of each mutant and round
+LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
+#: came later: journals of before are read without it
+KNOWN = (
+    "CREATE TABLE IF NOT EXISTS known (id TEXT PRIMARY KEY, data TEXT NOT NULL, outdated INTEGER NOT NULL)"
+)
+#: from one campaign to the next
+ADOPT = f"""
+{KNOWN};
+INSERT OR REPLACE INTO known SELECT id, data, 1 FROM mutant;
+INSERT OR REPLACE INTO kept
+    SELECT mutant, round, verdict, "by", data, key FROM outcome WHERE rowid IN ({LAST});
+DELETE FROM meta;
+DELETE FROM test;
+DELETE FROM mutant;
+DELETE FROM left_out;
+DELETE FROM source;
+DELETE FROM outcome;
+DELETE FROM control
+"""
+# Keys of meta that are the journal's own; the others are the campaign's.
+VERSION_KEY, FINISHED_KEY = "journal:version", "journal:finished"
+#: of a campaign that has not begun yet: why it ended, null as long as it has not
+ATTEMPT_KEY = "journal:attempt"

@@ -1,0 +1,82 @@
+"""What lies where a journal is to be written: taken over, kept beside it, or refused."""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import closing, suppress
+from pathlib import Path
+
+from mutabot.errors import JournalError
+
+from .database import connect, guarded
+from .store import Store
+
+
+def previous_of(path: Path) -> Path:
+    """Where the last complete campaign before this journal's is kept: ``journal.previous.sqlite``."""
+    return path.with_name(f"{path.stem}.previous{path.suffix}")
+
+
+def make_way(path: Path) -> bool:
+    """Whether a journal of this version lies there; anything else that mutabot may replace is moved aside.
+
+    Raises JournalError for a file that is not ours.
+    """
+    _remove(_half_a_copy_of(path))
+    if not path.exists():
+        return False
+    with path.open("rb") as file:
+        start = file.read(16)
+    if start and not start.startswith(b"SQLite format 3"):
+        raise JournalError(f"{path} is in the way: it is not a journal of mutabot", path=str(path))
+    if _is_journal(path):
+        return True
+    if _is_empty(path):  # of a campaign that was killed before it had begun
+        return False
+    kept = previous_of(path)
+    _remove(kept)
+    for suffix in ("", "-wal", "-shm"):
+        old = path.with_name(path.name + suffix)
+        if old.exists():
+            old.replace(kept.with_name(kept.name + suffix))
+    return False
+
+
+def keep_copy(store: Store) -> None:
+    """Keep the campaign of an opened journal as it is, as ``previous_of`` its path."""
+    kept, new = previous_of(store.path), _half_a_copy_of(store.path)
+    with guarded(store.path):
+        try:
+            store.connection.execute("VACUUM INTO ?", (str(new),))
+            _remove(kept)
+            new.replace(kept)
+        finally:
+            new.unlink(missing_ok=True)
+
+
+def _half_a_copy_of(path: Path) -> Path:
+    return path.with_name(f"{previous_of(path).name}.new")
+
+
+def _is_empty(path: Path) -> bool:
+    with suppress(sqlite3.DatabaseError), closing(connect(path)) as connection:
+        return connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None
+    return False
+
+
+def _is_journal(path: Path) -> bool:
+    try:
+        with closing(connect(path)) as connection:
+            Store(path, connection).check_version()
+            (sound,) = connection.execute("PRAGMA quick_check(1)").fetchone()
+    except (JournalError, sqlite3.DatabaseError) as error:
+        cause = error.__cause__ if isinstance(error, JournalError) else error
+        if isinstance(cause, sqlite3.OperationalError):
+            raise  # it is not the content that is wrong: a full disk, a folder that cannot be written
+        return False
+    return bool(sound == "ok")
+
+
+def _remove(path: Path) -> None:
+    for suffix in ("", "-wal", "-shm"):
+        path.with_name(path.name + suffix).unlink(missing_ok=True)
