@@ -54,7 +54,7 @@ from .options import (
 if TYPE_CHECKING:
     from mutabot.analysis.families import Comparison
     from mutabot.campaign.request import Request
-    from mutabot.report.terminal.progress import Reporter
+    from mutabot.report.terminal.progress import Bar, Lines
 
 UNSTABLE, INTERNAL_ERROR, INTERRUPTED = 4, 70, 130
 _SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
@@ -470,7 +470,7 @@ def _echo(text: str) -> None:
         leave_pipe()
 
 
-def _progress() -> Reporter:
+def _progress() -> Bar | Lines:
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.progress import make_progress
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Self
 
 from rich.console import Console, RenderableType
 from rich.constrain import Constrain
@@ -42,27 +42,8 @@ def _column(width: int | None = None, *, at_most: int | None = None, ratio: int 
     return Column(min_width=width, max_width=at_most, ratio=ratio, no_wrap=True, overflow="ellipsis")
 
 
-class Reporter(Protocol):
-    """What a campaign is told its progress through; ``mutabot.campaign`` defines the same."""
-
-    def stage(self, text: str, total: int | None = None) -> None:
-        """A new stage of the campaign begins."""
-
-    def advance(self, line: str | None = None) -> None:
-        """One step of the stage is done."""
-
-    def note(self, text: str) -> None:
-        """Something the user should know."""
-
-    def __enter__(self) -> Self: ...
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None: ...
-
-
-def make_progress(console: Console) -> Reporter:
-    """The reporter that fits the console."""
+def make_progress(console: Console) -> Bar | Lines:
+    """The progress that fits the console; each is one as ``mutabot.campaign`` wants it."""
     return Bar(console) if console.is_terminal else Lines(console)
 
 
