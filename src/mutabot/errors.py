@@ -23,6 +23,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+from .exit_codes import ExitCode
+
 
 class MutabotError(Exception):
     """Base of all errors that mutabot raises on purpose.
@@ -30,13 +32,13 @@ class MutabotError(Exception):
     ``exit_code`` is what the command line ends with when the error reaches it.
     """
 
-    exit_code = 70
+    exit_code = ExitCode.INTERNAL_ERROR
 
 
 class UsageError(MutabotError):
     """The command line asks for something that cannot be done."""
 
-    exit_code = 2
+    exit_code = ExitCode.USAGE
 
 
 class SelectionError(UsageError):
@@ -60,7 +62,7 @@ class ConfigurationError(MutabotError):
         line: 1-based line, or None where it is not known.
     """
 
-    exit_code = 2
+    exit_code = ExitCode.USAGE
 
     def __init__(
         self, problem: str, *, file: str | None = None, key: str | None = None, line: int | None = None
@@ -106,7 +108,7 @@ class BaselineError(MutabotError):
         tests: node ids of the tests that failed.
     """
 
-    exit_code = 3
+    exit_code = ExitCode.NOTHING_KNOWN
 
     def __init__(self, message: str, *, tests: Iterable[str] = ()) -> None:
         super().__init__(message)
@@ -116,7 +118,7 @@ class BaselineError(MutabotError):
 class NothingToDoError(MutabotError):
     """There are no tests, no mutants, or none that the robot accepted. Never to be read as 100 %."""
 
-    exit_code = 3
+    exit_code = ExitCode.NOTHING_KNOWN
 
 
 class ControlError(MutabotError):
@@ -127,7 +129,7 @@ class ControlError(MutabotError):
         test_file: the test file whose control failed.
     """
 
-    exit_code = 4
+    exit_code = ExitCode.UNRELIABLE
 
     def __init__(self, message: str, *, control: str, test_file: str) -> None:
         super().__init__(message)
@@ -141,7 +143,7 @@ class UnstableError(MutabotError):
         tests: node ids of the flaky tests.
     """
 
-    exit_code = 4
+    exit_code = ExitCode.UNRELIABLE
 
     def __init__(self, message: str, *, tests: Iterable[str] = ()) -> None:
         super().__init__(message)
@@ -155,7 +157,7 @@ class JournalError(MutabotError):
         path: the journal's path.
     """
 
-    exit_code = 2
+    exit_code = ExitCode.USAGE
 
     def __init__(self, message: str, *, path: str) -> None:
         super().__init__(message)
@@ -184,7 +186,7 @@ class OperatorError(MutabotError):
         operator: the operator's name.
     """
 
-    exit_code = 2
+    exit_code = ExitCode.USAGE
 
     def __init__(self, message: str, *, operator: str) -> None:
         super().__init__(message)

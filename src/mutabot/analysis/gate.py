@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mutabot.exit_codes import ExitCode
 from mutabot.model import Verdict
 
 from .results import Results
-
-PASSED, SCORE_TOO_LOW, NOTHING_VALID, UNSTABLE, TOO_MANY_TIMEOUTS = 0, 1, 3, 4, 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +19,7 @@ class Decision:
         lines: why it is not 0, one line each; empty if all is well.
     """
 
-    exit_code: int
+    exit_code: ExitCode
     lines: tuple[str, ...] = ()
 
 
@@ -48,15 +47,15 @@ def decide(
         *_too_unstable(results, max_unstable),
     )
     if unstable:
-        return Decision(UNSTABLE, unstable)
+        return Decision(ExitCode.UNRELIABLE, unstable)
     if not total.valid:
-        return Decision(NOTHING_VALID, (_nothing_valid(results),))
+        return Decision(ExitCode.NOTHING_KNOWN, (_nothing_valid(results),))
     share = total.timeouts / total.valid
     if max_timeouts is not None and share > max_timeouts:
         text = f"{total.timeouts} of {total.valid} valid outcomes are time-outs ({share:.0%})"
-        return Decision(TOO_MANY_TIMEOUTS, (f"{text}; the limit is {max_timeouts:.0%}",))
+        return Decision(ExitCode.TOO_MANY_TIMEOUTS, (f"{text}; the limit is {max_timeouts:.0%}",))
     low = tuple(_too_low(results, min_score)) if min_score is not None else ()
-    return Decision(SCORE_TOO_LOW, low) if low else Decision(PASSED)
+    return Decision(ExitCode.SCORE_TOO_LOW, low) if low else Decision(ExitCode.FINE)
 
 
 def _disagreements(results: Results) -> tuple[str, ...]:

@@ -8,13 +8,10 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from mutabot.border.job import Job
+from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Vocabulary
 from mutabot.settings.configuration import Configuration
 from mutabot.settings.sample import Sample
-
-#: mutabot's folder in a project, and its journals: of `run`, of `compare`, and of that without an oracle
-HOME = ".mutabot"
-JOURNAL, COMPARISON, WITHOUT_ORACLE = "journal.sqlite", "compare.sqlite", "compare-no-oracle.sqlite"
 
 
 @dataclass(frozen=True)

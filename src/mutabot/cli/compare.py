@@ -1,45 +1,94 @@
-"""What ``mutabot compare`` does: a campaign over all families, and perhaps one without an oracle."""
+"""``mutabot compare``: families of operators side by side."""
+
+# Commands import what they need when they run, so that `--help` is fast; typer makes options of parameters.
+# ruff: noqa: PLC0415, PLR0917
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from mutabot.analysis.families import Comparison, compare, is_same_campaign
-from mutabot.analysis.results import Results, read_results
-from mutabot.campaign import run as campaign
-from mutabot.campaign.request import COMPARISON, WITHOUT_ORACLE, Progress, Request
-from mutabot.errors import JournalError
-from mutabot.journal.reader import JournalReader
+import typer
+
+from mutabot.journal.files import COMPARISON, find_journal
+
+from .options import (
+    FAMILIES,
+    Engine,
+    Families,
+    Fresh,
+    Jobs,
+    Json,
+    NoOracle,
+    OnePerSite,
+    Only,
+    Picture,
+    Rounds,
+    Sample,
+    Seed,
+    Selection,
+    Skip,
+    Stored,
+)
+from .output import leave, print_json, progress_shown
+from .request import request_of
+
+if TYPE_CHECKING:
+    from mutabot.analysis.families import Comparison
 
 
-def run(request: Request, progress: Progress, *, no_oracle: bool) -> Comparison:
-    """Run what is to be compared, and compare it.
+def compare(
+    context: typer.Context,
+    family: Families = None,
+    only: Only = None,
+    skip: Skip = None,
+    selection: Selection = None,
+    sample: Sample = None,
+    one_per_site: OnePerSite = False,
+    rounds: Rounds = None,
+    seed: Seed = None,
+    jobs: Jobs = None,
+    engine: Engine = "auto",
+    fresh: Fresh = False,
+    no_oracle: NoOracle = False,
+    picture: Picture = None,
+    stored: Stored = False,
+    json: Json = False,
+) -> None:
+    """Compare families of operators: cost, ends, scores, and what their mutants can tell.
 
-    Without an oracle the first exception decides: which tests notice a mutant, the other campaign tells.
+    Mutants run against every test that reaches them, into a journal of their own.
     """
-    first = replace(request, every_test=True, no_oracle=False, journal=COMPARISON)
-    results = _read(campaign.run_campaign(first, progress))
-    if not no_oracle:
-        return compare(results)
-    progress.note("once more, with every assertion switched off")
-    second = replace(request, every_test=False, no_oracle=True, journal=WITHOUT_ORACLE)
-    return compare(results, _read(campaign.run_campaign(second, progress)))
+    from mutabot.analysis.gate import decide
+    from mutabot.report.picture_file import check_picture
+
+    from . import comparison
+
+    if picture is not None:
+        check_picture(picture)
+    if stored:
+        found = comparison.read(find_journal(context.obj, COMPARISON).parent)
+    else:
+        request = request_of(
+            context.obj, only=only, skip=skip, family=family or FAMILIES, order=1, selection=selection,
+            sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
+            fresh=fresh, configured_selection=False,
+        )  # fmt: skip
+        with progress_shown() as progress:
+            found = comparison.run(request, progress, no_oracle=no_oracle)
+    _show(found, picture, json=json)
+    leave(decide(found.results))
 
 
-def read(home: Path) -> Comparison:
-    """The last comparison, from mutabot's folder in a project.
+def _show(comparison: Comparison, picture: Path | None, *, json: bool) -> None:
+    from mutabot.report.comparison_json import comparison_data
+    from mutabot.report.picture_file import write_picture
+    from mutabot.report.terminal.console import make_console
+    from mutabot.report.terminal.side_by_side import print_comparison
 
-    The campaign without an oracle counts only if it belongs to it. Raises JournalError if there is none.
-    """
-    path, other = home / COMPARISON, home / WITHOUT_ORACLE
-    if not path.is_file():
-        raise JournalError(f"{path}: there is no comparison yet; `mutabot compare` makes one", path=str(path))
-    results = _read(path)
-    second = _read(other) if other.is_file() else None
-    return compare(results, second if second is not None and is_same_campaign(results, second) else None)
-
-
-def _read(path: Path) -> Results:
-    with JournalReader.open(path) as journal:
-        return read_results(journal)
+    if json:
+        print_json(comparison_data(comparison))
+    else:
+        print_comparison(make_console(), comparison)
+    if picture is not None:
+        write_picture(comparison, picture)

@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from mutabot.border.codec import from_data
-from mutabot.border.lines import TestEnd
+from mutabot.border.test_end import TestEnd
 from mutabot.model import LeftOut, Mutant, Outcome, Vocabulary
 
 from .records import BaselineTest, ControlEnd, Kept

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mutabot.border.lines import TestEnd
+from mutabot.border.test_end import TestEnd
 from mutabot.model import Outcome
 from mutabot.model.outcome import same_end
 

@@ -1,0 +1,111 @@
+"""The report of one test: a line of its worker's, and what the journal keeps of the baseline."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from mutabot.model.verdict import By
+
+from .footprint import Footprint
+
+
+@dataclass(frozen=True, slots=True)
+class TestEnd:
+    """A test has ended.
+
+    Attributes:
+        test: node id.
+        outcome: as pytest counts it: ``passed``, ``failed``, ``skipped``, ``xfailed`` or ``xpassed``. Only
+            ``failed`` makes the suite fail.
+        by: what noticed, for a failure.
+        phase: ``setup``, ``call`` or ``teardown``: where it failed; ``collect`` if it never began.
+        exception: type of the exception as ``module:Name``.
+        message: first lines of the exception's text.
+        place: ``file:line`` where the failure was noticed.
+        timeout: which limit was exceeded, or None.
+        failure: the simulator's failure, or None.
+        invalid: whether the mutated call rejected its arguments' types.
+        refused: text of the refusal of a mutated call, or None.
+        caught: whether the program handled that refusal, so that the test ended for another reason.
+        hits: calls at the mutant's site (with its operation and pattern).
+        acted: hits at which the mutant changed something.
+        away: hits at which it stayed away, by the reason.
+        partly: whether a part of a mutant of higher order changed something, and another did not.
+        example: value before and after at the first hit at which it acted.
+        operations: intercepted calls at any site.
+        commands: operations that made the robot do something, from any site.
+        wall, cpu: seconds of the test, fixtures included.
+        simulated: simulated seconds, or None if there is no clock.
+        trace: per hit: site index, values written, values read, and in the baseline a note of what the call
+            returned: a plain value, ``{"kept": data}`` or ``{"opaque": what}`` at a site's first hit,
+            ``{"same"}`` or ``{"other"}`` than that later on, ``{"raised"}`` if it did not return.
+        truncated: whether the trace was cut off.
+        returned: what functions of the program returned to the test: name, and the value in a list or, for
+            one that raised, ``{"raised": text}``.
+        prepared: how many of these are from before the test itself began: from its fixtures.
+        probes: values of each probe by ``target.part``; those of the second object of a class by
+            ``target#2.part``.
+        unread: why a probe could not be read, by target.
+        footprint: what of the test can be noticed outside of it; None if that was not looked at.
+        moments: probes along the way: after which call (from 1), parts that differ from the moment before,
+            and whether these are all parts.
+        reading: processor seconds it takes to read all probes; None if they cannot be read along the way.
+        not_along: why not, or None.
+    """
+
+    __test__ = False  # not a test class, whatever pytest may think of the name
+
+    test: str
+    outcome: str
+    by: By | None = None
+    phase: str = "call"
+    exception: str | None = None
+    message: str | None = None
+    place: str | None = None
+    timeout: str | None = None
+    failure: str | None = None
+    invalid: bool = False
+    refused: str | None = None
+    caught: bool = False
+    hits: int = 0
+    acted: int = 0
+    away: Mapping[str, int] = field(default_factory=dict)
+    partly: bool = False
+    example: tuple[Any, ...] | None = None
+    operations: int = 0
+    commands: int = 0
+    wall: float = 0.0
+    cpu: float = 0.0
+    simulated: float | None = None
+    trace: tuple[Any, ...] = ()
+    truncated: bool = False
+    returned: tuple[Any, ...] = ()
+    prepared: int = 0
+    probes: Mapping[str, Any] = field(default_factory=dict)
+    unread: Mapping[str, str] = field(default_factory=dict)
+    footprint: Footprint | None = None
+    moments: tuple[Any, ...] = ()
+    reading: float | None = None
+    not_along: str | None = None
+
+    @property
+    def lasting(self) -> str:
+        """The outcome, as far as equal runs must agree on it: what may fail may also pass."""
+        return "xfailed" if self.outcome == "xpassed" else self.outcome
+
+    @property
+    def notices(self) -> bool:
+        """Whether this test noticed its mutant, provided that the mutant had changed anything."""
+        if self.failure is not None or self.invalid:
+            return False
+        is_refused = self.refused is not None and not self.caught
+        return self.timeout is not None or (self.outcome == "failed" and not is_refused)
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether this test alone decides about its mutant, so that no other test needs to run."""
+        if self.failure is not None or self.invalid or self.timeout is not None:
+            return True
+        return self.outcome == "failed" and (self.refused is None or self.caught)

@@ -1,0 +1,129 @@
+"""``mutabot check``, ``list`` and ``run``: a campaign, or what comes before its mutants."""
+
+# Commands import what they need when they run, so that `--help` is fast; typer makes options of parameters.
+# ruff: noqa: PLC0415, PLR0917
+
+from __future__ import annotations
+
+import typer
+
+from .options import (
+    All,
+    BaselineRuns,
+    Confirm,
+    Engine,
+    Families,
+    Fresh,
+    Jobs,
+    Json,
+    MinScore,
+    OnePerSite,
+    Only,
+    Order,
+    Pairs,
+    Repeats,
+    Rounds,
+    Sample,
+    Seed,
+    Selection,
+    Skip,
+    Table,
+    Verify,
+)
+from .output import echo, leave, print_json, progress_shown, show_results
+from .request import request_of
+
+
+def check(
+    context: typer.Context,
+    json: Json = False,
+    jobs: Jobs = None,
+    rounds: Rounds = None,
+    family: Families = None,
+) -> None:
+    """Try the whole set-up without running mutants."""
+    from mutabot.campaign import run as campaign
+
+    request = request_of(context.obj, jobs=jobs, rounds=rounds, family=family)
+    with progress_shown() as progress:
+        report = campaign.check(request, progress)
+    print_json(report.data) if json else echo("\n".join(report.lines))
+
+
+def list_(
+    context: typer.Context,
+    only: Only = None,
+    skip: Skip = None,
+    family: Families = None,
+    order: Order = None,
+    pairs: Pairs = None,
+    selection: Selection = None,
+    sample: Sample = None,
+    one_per_site: OnePerSite = False,
+    rounds: Rounds = None,
+    seed: Seed = None,
+    jobs: Jobs = None,
+    all: All = False,
+    json: Json = False,
+) -> None:
+    """List the mutants that would run, and what is left out."""
+    from mutabot.campaign.run import plan_only
+    from mutabot.report.terminal.console import make_console
+    from mutabot.report.terminal.listing import plan_data, print_plan
+
+    request = request_of(
+        context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
+        sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
+    )  # fmt: skip
+    with progress_shown() as progress:
+        mutants, left_out = plan_only(request, progress)
+    if json:
+        print_json(plan_data(mutants, left_out))
+    else:
+        print_plan(make_console(), mutants, left_out, everything=all)
+
+
+def run(
+    context: typer.Context,
+    only: Only = None,
+    skip: Skip = None,
+    family: Families = None,
+    order: Order = None,
+    pairs: Pairs = None,
+    selection: Selection = None,
+    sample: Sample = None,
+    one_per_site: OnePerSite = False,
+    rounds: Rounds = None,
+    seed: Seed = None,
+    jobs: Jobs = None,
+    engine: Engine = "auto",
+    fresh: Fresh = False,
+    verify: Verify = 0,
+    confirm: Confirm = False,
+    repeats: Repeats = True,
+    baseline: BaselineRuns = None,
+    min_score: MinScore = None,
+    table: Table = False,
+    json: Json = False,
+) -> None:
+    """Run the campaign, or go on with it: baseline, controls, mutants, scores."""
+    from mutabot.analysis.gate import decide
+    from mutabot.campaign.run import run_campaign
+
+    request = request_of(
+        context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
+        sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
+        fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
+    )  # fmt: skip
+    with progress_shown() as progress:
+        journal_path = run_campaign(request, progress)
+    results = show_results(journal_path, json=json, summary=not table)
+    limit = min_score if min_score is not None else request.configuration.min_score
+    decision = decide(
+        results,
+        min_score=None if limit is None else limit / 100,
+        max_timeouts=request.configuration.timeout_limit,
+        max_unstable=request.configuration.unstable_limit,
+        max_errors=request.configuration.error_limit,
+    )
+    leave(decision)

@@ -1,0 +1,81 @@
+"""What commands print, and where: results and JSON on standard output, progress on standard error."""
+
+# What is printed is imported when it is, so that `--help` is fast.
+# ruff: noqa: PLC0415
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from mutabot.analysis.gate import Decision
+    from mutabot.analysis.results import Results
+    from mutabot.report.terminal.progress import Bar, Lines
+
+
+def echo(text: str) -> None:
+    """Print, also where the reader leaves early: then the exit code still tells how it ended."""
+    from mutabot.report.terminal.console import leave_pipe
+
+    try:
+        typer.echo(text)
+    except BrokenPipeError:
+        leave_pipe()
+
+
+def tell(lines: Iterable[str]) -> None:
+    """Print lines on standard error, where they are in the way of no other program."""
+    for line in lines:
+        typer.echo(line, err=True)
+
+
+def print_json(data: Any) -> None:
+    """Print data as JSON, as docs/json.md tells it."""
+    from mutabot.report.as_json import dumps
+
+    echo(dumps(data))
+
+
+def progress_shown() -> Bar | Lines:
+    """What shows on standard error how far a campaign is."""
+    from mutabot.report.terminal.console import make_console
+    from mutabot.report.terminal.progress import make_progress
+
+    return make_progress(make_console(stderr=True))
+
+
+def show_results(
+    path: Path, *, json: bool, everything: bool = False, earlier: bool = False, summary: bool = False
+) -> Results:
+    """Print what the journal at ``path`` holds, and return it.
+
+    ``everything``: also what the plan left out. ``earlier``: also what earlier campaigns found. ``summary``:
+    without the table of mutants.
+    """
+    from mutabot.analysis.results import read_results
+    from mutabot.journal.reader import JournalReader
+    from mutabot.report.terminal.campaign import print_results
+    from mutabot.report.terminal.console import make_console
+    from mutabot.report.terminal.summary import print_summary
+
+    with JournalReader.open(path) as journal:
+        found = read_results(journal, earlier=earlier)
+    if json:
+        from mutabot.report.as_json import results_data
+
+        print_json(results_data(found))
+    elif summary:
+        print_summary(make_console(), found)
+    else:
+        print_results(make_console(), found, everything=everything)
+    return found
+
+
+def leave(decision: Decision) -> None:
+    """End the command as the limits decide, and say why. Raises typer.Exit."""
+    tell(decision.lines)
+    raise typer.Exit(decision.exit_code)

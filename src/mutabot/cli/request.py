@@ -1,0 +1,86 @@
+"""From the options of the command line and the configuration to what a campaign is asked to do."""
+
+# What a campaign needs is imported when it is asked for, so that `--help` is fast.
+# ruff: noqa: PLC0415
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mutabot.errors import UsageError, unknown_name_text
+
+from .options import ENGINES, FAMILIES
+
+if TYPE_CHECKING:
+    from mutabot.campaign.request import Request
+
+
+def request_of(
+    project: Path,
+    *,
+    selection: Path | None = None,
+    sample: str | None = None,
+    engine: str = "auto",
+    configured_selection: bool = True,
+    **given: Any,
+) -> Request:
+    """The request of a command: its options (``given``, by their names), else what the configuration says.
+
+    Raises UsageError and ConfigurationError.
+    """
+    from mutabot.campaign.request import Request
+    from mutabot.settings.configuration import load_configuration
+    from mutabot.settings.sample import Sample
+    from mutabot.vocabulary import load
+
+    if engine not in ENGINES:
+        raise UsageError(unknown_name_text("engine", engine, ENGINES))
+    size = Sample.parse(sample) if sample is not None else None
+    configuration = load_configuration(project)
+    if selection is None and configuration.selection is not None and configured_selection:
+        selection = configuration.root / configuration.selection
+    elif selection is not None:
+        selection = _found(selection, configuration.root)
+    return Request(
+        configuration=configuration,
+        vocabulary=load(configuration.vocabulary, configuration.root),
+        rounds=given.get("rounds") or configuration.rounds,
+        seed=configuration.seed if given.get("seed") is None else given["seed"],
+        jobs=given.get("jobs") or configuration.jobs or len(os.sched_getaffinity(0)),
+        only=tuple(given.get("only") or ()),
+        skip=tuple(given.get("skip") or ()),
+        selection=selection,
+        engine=engine,
+        fresh=bool(given.get("fresh")),
+        verify=given.get("verify") or 0,
+        confirm=bool(given.get("confirm")),
+        repeats=given.get("repeats", True),
+        baseline=given.get("baseline") or configuration.baseline_repetitions,
+        families=_families(given.get("family")) or configuration.families,
+        sample=size,
+        one_per_site=bool(given.get("one_per_site")),
+        order=given.get("order") or configuration.order,
+        pairs=given.get("pairs") or configuration.pairs,
+        every_test=bool(given.get("every_test")),
+        no_oracle=bool(given.get("no_oracle")),
+    )
+
+
+def _families(given: Sequence[str] | None) -> tuple[str, ...]:
+    """The families of the command line, in the order of their numbers."""
+    named = [name.strip() for text in given or () for name in text.split(",") if name.strip()]
+    for name in named:
+        if name not in FAMILIES:
+            raise UsageError(unknown_name_text("family", name, FAMILIES))
+    return tuple(family for family in FAMILIES if family in named)
+
+
+def _found(selection: Path, root: Path) -> Path:
+    """The selection file, looked for here and in the project; said now rather than after the baseline."""
+    for place in (selection, root / selection):
+        if place.is_file():
+            return place
+    raise UsageError(f"there is no selection file {selection}, neither here nor in {root}")

@@ -1,0 +1,42 @@
+"""``mutabot results`` and ``show``: what the journal holds. Neither loads what runs a campaign."""
+
+# Commands import what they need when they run, so that `--help` is fast; typer makes options of parameters.
+# ruff: noqa: PLC0415
+
+from __future__ import annotations
+
+import typer
+
+from mutabot.journal.files import find_journal
+
+from .options import All, Json, OneMutant
+from .output import print_json, show_results
+
+
+def results(context: typer.Context, all: All = False, json: Json = False) -> None:
+    """Show the results of the last campaign, also of one that was interrupted or still runs."""
+    show_results(find_journal(context.obj), json=json, everything=all, earlier=True)
+
+
+def show(
+    context: typer.Context,
+    mutant: OneMutant,
+    json: Json = False,
+) -> None:
+    """Show everything about one mutant."""
+    from mutabot.analysis.results import find_mutant, read_results
+    from mutabot.journal.reader import JournalReader
+    from mutabot.report.terminal.console import make_console
+    from mutabot.report.terminal.detail import print_mutant
+
+    with JournalReader.open(find_journal(context.obj)) as journal:
+        found = read_results(journal, earlier=True)
+        result = find_mutant(found, mutant)
+        is_there = not result.outdated or result.mutant.family in found.meta.get("families", ())
+        source = journal.source(result.mutant.site.span.file) if is_there else None
+    if json:
+        from mutabot.report.as_json import result_data
+
+        print_json(result_data(result))
+    else:
+        print_mutant(make_console(), result, source)

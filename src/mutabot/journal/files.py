@@ -1,0 +1,19 @@
+"""Where journals lie in a project."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+#: mutabot's folder in a project, and its journals: of `run`, of `compare`, and of that without an oracle
+HOME = ".mutabot"
+JOURNAL, COMPARISON, WITHOUT_ORACLE = "journal.sqlite", "compare.sqlite", "compare-no-oracle.sqlite"
+
+
+def find_journal(project: Path, name: str = JOURNAL) -> Path:
+    """A journal of the project, that of ``run`` if not said otherwise, also from a folder inside it.
+
+    If there is none, where it would be.
+    """
+    folders = (project.resolve(), *project.resolve().parents)
+    paths = [folder / HOME / name for folder in folders]
+    return next((path for path in paths if path.is_file()), paths[0])
