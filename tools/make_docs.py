@@ -15,26 +15,9 @@ import configuration_page
 from mutabot.model import Quantity
 from mutabot.model.values.notation import Notation
 from mutabot.operators import Example, Operator, Subject, operator
-from mutabot.operators.registry import BUILT_IN
+from mutabot.operators.registry import built_in
 
 DOCS = Path(__file__).parents[1] / "docs"
-
-#: the published operators: original, mutant, the operator that makes it
-PUBLISHED = (
-    ("rotate left by θ", "rotate right by θ", "reverse"),
-    ("rotate right by θ", "rotate left by θ", "reverse"),
-    ("translate forward by δ", "translate backwards by δ", "reverse"),
-    ("translate backwards by δ", "translate forward by δ", "reverse"),
-    ("translate forward by δ", "translate forward *to* δ", "by-to"),
-    ("translate backwards by δ", "translate backwards *to* δ", "by-to"),
-    ("do command x", "do nothing", "skip"),
-    ("do command x", "do command x twice", "repeat"),
-    ("distance value is x", "distance value is −x", "negate"),
-    ("distance value is x", "distance value is x + noise", "noise"),
-    ("do command x", "do the opposite, such as release for grasp", "opposite"),
-    ("a colour is classified", "an incorrect colour is returned", "misread"),
-    ("a position or angle is read", "the reading has Gaussian noise", "noise"),
-)
 
 HEAD = """\
 # Which faults does mutabot plant?
@@ -51,16 +34,20 @@ TAIL = """\
 ## Your own operators
 
 An operator is a class with a name, a summary, examples and three methods. The contract is
-`src/mutabot/operators/operator.py`, the shortest example `src/mutabot/operators/robot/skip.py`. What it needs
-it declares on the class:
+`src/mutabot/operators/operator.py`, the shortest example `src/mutabot/operators/robot/skip.py`. In mutabot
+itself an operator is one file in `src/mutabot/operators/robot`, named as the operator is; it is found there,
+and nothing else has to be edited. What it needs it declares on the class:
 
 | attribute | what it gets or promises |
 |---|---|
 | `asks_where = True` | `call.current` tells where the robot is; used only where the vocabulary says |
 | `asks_idle = True` | `call.idle` is what to answer while the robot does nothing; used only where known |
 | `does_nothing = True` | no call reaches the robot: one that would is an error, never a verdict |
+| `magnitudes(quantity)` | how big the fault is to be: a mutant each, with `subject.magnitude` |
+| `family = "…"` | a family of its own: its mutants are planted where `--family` or `families` names it |
 
-Name the class under the entry point `mutabot.operators` of any installed package, and every campaign uses it:
+Name the class under the entry point `mutabot.operators` of any installed package, and every campaign of its
+family uses it:
 
 ```toml
 [project.entry-points."mutabot.operators"]
@@ -73,8 +60,8 @@ The whole package stands in `tests/plugins/package`.
 
 def page() -> str:
     """The text of the page."""
-    operators = [operator(name) for name in BUILT_IN]
-    lines = [HEAD, *_overview(operators), *_published()]
+    operators = [operator(name) for name in built_in()]
+    lines = [HEAD, *_overview(operators), *_published(operators)]
     for each in operators:
         lines += _section(each)
     return "\n".join([*lines, TAIL])
@@ -86,10 +73,12 @@ def _overview(operators: list[Operator]) -> Iterator[str]:
     yield ""
 
 
-def _published() -> Iterator[str]:
+def _published(operators: list[Operator]) -> Iterator[str]:
     yield "The published operators, and what makes them here:\n"
     yield from _table("original", "mutant", "operator")
-    yield from (_row(original, mutant, f"[{name}](#{name})") for original, mutant, name in PUBLISHED)
+    rows = {row.row: (row, each.name) for each in operators for row in each.published}
+    for row, name in (rows[number] for number in sorted(rows)):
+        yield _row(row.original, row.mutant, f"[{name}](#{name})")
     yield ""
 
 

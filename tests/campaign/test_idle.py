@@ -324,10 +324,14 @@ def plug_in(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callabl
         monkeypatch.syspath_prepend(str(site))
         monkeypatch.setenv("PYTHONPATH", str(site))
         monkeypatch.delitem(sys.modules, "lost_plug_in", raising=False)
+        forget()
+
+    def forget() -> None:
         registry.operator.cache_clear()
+        registry._plug_ins.cache_clear()
 
     yield install
-    registry.operator.cache_clear()
+    forget()
 
 
 @pytest.mark.parametrize("engine", ["replay", "branch"])

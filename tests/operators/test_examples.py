@@ -9,9 +9,8 @@ import pytest
 from mutabot.model import Call, Reply
 from mutabot.model.values.quantity import same_values
 from mutabot.operators import Example, names, operator
-from mutabot.operators.control import FatalFault
+from mutabot.operators.control import CONTROLS
 from mutabot.operators.passage import Passage, rehearse
-from mutabot.operators.registry import CONTROLS
 
 CASES = [(name, index) for name in [*names(), *CONTROLS] for index in range(len(operator(name).examples))]
 SEED = 1
@@ -31,8 +30,8 @@ def play(name: str, example: Example) -> Passage:
 @pytest.mark.parametrize(("name", "index"), CASES)
 def test_the_example_does_what_it_says(name: str, index: int) -> None:
     example = example_of(name, index)
-    if name == "fatal":
-        with pytest.raises(FatalFault):
+    if example.raises is not None:
+        with pytest.raises(example.raises):
             play(name, example)
         return
     passage = play(name, example)

@@ -74,6 +74,12 @@ BROKEN = {
         "from mutabot.operators.robot.skip import Skip\nclass Rule(Skip):\n    name = 'early'",
         "'early'",
     ),
+    "asks for what no engine gives": (
+        "late",
+        "from mutabot.operators.robot.skip import Skip\nclass Rule(Skip):\n    name = 'late'\n"
+        "    asks_neighbours = True",
+        "asks for the calls before and after its own",
+    ),
     ON_USE: (
         "late",
         "from mutabot.operators.robot.skip import Skip\nclass Rule(Skip):\n    name = 'late'\n"
@@ -102,6 +108,16 @@ class Rule(Repeat):
             return reply
 
         return mutated
+"""
+
+
+#: a family that mutabot itself does not have
+OF_ITS_OWN = """
+from mutabot.operators.robot.negate import Negate
+
+class Rule(Negate):
+    name = "late"
+    family = "wild"
 """
 
 
@@ -223,3 +239,30 @@ def test_an_operator_that_fails_while_at_work_is_an_error_and_never_a_kill(
     end = mutants(done, code=ERRORS)["late"]["rounds"][0]
     assert end["verdict"] == "error"
     assert end["message"] == "operator late: ValueError: broken while at work"
+
+
+def test_a_family_of_a_plug_ins_own_is_planted_where_it_is_asked_for(project: Path, tmp_path: Path) -> None:
+    site = broken_plug_in(tmp_path / "site", "late", OF_ITS_OWN)
+    usual = mutabot(site, project, "list", "--json")
+    assert set(mutants(usual)) == {"negate", "noise"}
+    assert "operators of family 'wild' are not asked for: add --family wild" in usual.stderr
+    both = mutabot(site, project, "list", "--json", "--family", "wild,robot")
+    assert set(mutants(both)) == {"negate", "noise", "late"}
+    assert "not asked for" not in both.stderr
+    configuration = project / "pyproject.toml"
+    configuration.write_text(configuration.read_text() + 'families = ["wild"]\n')
+    late = mutants(mutabot(site, project, "list", "--json"))
+    assert {name: one["family"] for name, one in late.items()} == {"late": "wild"}
+
+
+@pytest.mark.parametrize("where", ["--family", "families"])
+def test_a_family_that_no_plug_in_brings_is_named_with_the_nearest(
+    where: str, project: Path, tmp_path: Path
+) -> None:
+    site = broken_plug_in(tmp_path / "site", "late", OF_ITS_OWN)
+    configuration = project / "pyproject.toml"
+    if where == "families":
+        configuration.write_text(configuration.read_text() + 'families = ["wilt"]\n')
+    done = mutabot(site, project, "list", *(["--family", "wilt"] if where == "--family" else []))
+    assert done.returncode == USAGE
+    assert "unknown family 'wilt'; did you mean 'wild'?" in done.stderr

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from mutabot.border.job import Job
+from mutabot.families import USUAL
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Vocabulary
 from mutabot.settings.configuration import Configuration
@@ -54,7 +55,7 @@ class Request:
     confirm: bool = False
     repeats: bool = True
     baseline: int | None = None
-    families: tuple[str, ...] = ("robot",)
+    families: tuple[str, ...] = USUAL
     every_test: bool = False
     no_oracle: bool = False
     sample: Sample | None = None

@@ -2,16 +2,21 @@
 
 An operator looks at one node of the concrete syntax tree and says what could stand there instead. What it
 keeps of the original it hands on as nodes, so that these keep their place, their line and their meaning.
+What it shares with operators on calls, and where its file belongs, stands in ``mutabot/operators/rule.py``.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 import libcst as cst
+
+from mutabot.families import CLASSICAL
+from mutabot.model.alternative import Alternative
+from mutabot.operators.rule import Rule
 
 #: what the helper object is called in templates
 HELPER = "__mutabot__[0]"
@@ -74,27 +79,25 @@ class Example:
     note: str = ""
 
 
-class ClassicalOperator(ABC):
+class ClassicalOperator(Rule):
     """A rule that makes alternatives of program text.
 
-    Class attributes:
-        name: how ids, reports and selections call it.
-        family: ``classical`` or ``text``.
-        summary: one sentence for the documentation.
-        examples: worked examples; they are tests and documentation at once.
+    Class attributes, beside those of every ``Rule``:
         asks_variables: whether it is asked once more after the baseline, with the variables that were in
             scope at a place (``with_variables``).
     """
 
-    name: ClassVar[str]
-    family: ClassVar[str] = "classical"
-    summary: ClassVar[str]
+    family: ClassVar[str] = CLASSICAL
     examples: ClassVar[tuple[Example, ...]] = ()
     asks_variables: ClassVar[bool] = False
 
     @abstractmethod
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
         """What could stand in this node's place; nothing for nodes that are none of its business."""
+
+    def with_variables(self, names: Iterable[str]) -> Iterable[Alternative]:
+        """For operators that ask: alternatives of a variable for which these names could stand."""
+        return ()
 
 
 def is_scalar(node: cst.CSTNode, around: Surroundings) -> bool:

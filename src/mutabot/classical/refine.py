@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from mutabot.classical.operators.variable import VariableReplacement
 from mutabot.model.alternative import Alternative, ProgramText, Sighting, TextPlace
 
+from . import registry
 from .mutants import LeftOutText
+from .operator import ClassicalOperator
 
 #: kinds of values that fit what an alternative needs
 FITTING: Mapping[str, frozenset[str]] = {
@@ -33,12 +34,15 @@ def merge(sightings: Iterable[Sighting]) -> dict[int, Sighting]:
 
 
 def refine(
-    texts: Iterable[ProgramText], seen: Mapping[int, Sighting]
+    texts: Iterable[ProgramText], seen: Mapping[int, Sighting], operators: Iterable[str] | None = None
 ) -> tuple[tuple[ProgramText, ...], list[LeftOutText]]:
     """The texts with alternatives for variables added, and what does not fit the types left out.
 
+    ``operators``: names of those whose alternatives these are; all if left out.
+
     Numbers of places stay; places that have no alternative any more are gone.
     """
+    asking = [rule for rule in registry.chosen(operators) if rule.asks_variables]
     refined: list[ProgramText] = []
     left_out: list[LeftOutText] = []
     for text in texts:
@@ -52,17 +56,20 @@ def refine(
                 else:
                     left_out.append(LeftOutText(place, alternative, reason))
             declared = text.declared.get(place.span.function, ())
-            alternatives += _variables(place, seen.get(place.number), declared)
+            alternatives += _variables(asking, place, seen.get(place.number), declared)
             if alternatives:
                 places.append(replace(place, alternatives=tuple(alternatives)))
         refined.append(replace(text, places=tuple(places)))
     return tuple(refined), left_out
 
 
-def _variables(place: TextPlace, seen: Sighting | None, declared: tuple[str, ...]) -> Iterable[Alternative]:
+def _variables(
+    asking: Iterable[ClassicalOperator], place: TextPlace, seen: Sighting | None, declared: tuple[str, ...]
+) -> list[Alternative]:
     if not place.variable or seen is None:
-        return ()
-    return VariableReplacement.with_variables(name for name in seen.variables if name not in declared)
+        return []
+    names = [name for name in seen.variables if name not in declared]
+    return [alternative for rule in asking for alternative in rule.with_variables(names)]
 
 
 def _reason(alternative: Alternative, seen: Sighting | None) -> str | None:

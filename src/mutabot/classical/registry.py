@@ -1,58 +1,51 @@
-"""The operators on program text, by name."""
+"""The operators on program text, by name: all that the files in ``operators/`` define."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cache
+from importlib import import_module
+from pathlib import Path
 
-from mutabot.classical.operators.absolute import Absolute
-from mutabot.classical.operators.arithmetic import ArithmeticReplacement
-from mutabot.classical.operators.assignment import AssignmentReplacement
-from mutabot.classical.operators.bomb import Bomb
-from mutabot.classical.operators.characters import (
-    DoubleCharacter,
-    DropCharacter,
-    ReplaceCharacter,
-    SwapCharacters,
-)
-from mutabot.classical.operators.conditional import ConditionalReplacement
-from mutabot.classical.operators.logical import LogicalReplacement
-from mutabot.classical.operators.relational import RelationalReplacement
-from mutabot.classical.operators.shift import ShiftReplacement
-from mutabot.classical.operators.unary_deletion import UnaryDeletion
-from mutabot.classical.operators.unary_insertion import UnaryInsertion
-from mutabot.classical.operators.variable import VariableReplacement
 from mutabot.errors import OperatorError, unknown_name_text
+from mutabot.families import OF_TEXT
+from mutabot.operators.discovery import classes_in, modules_in
+from mutabot.operators.rule import in_order
 
 from .operator import ClassicalOperator
 
-#: all operators, in the order of the documentation and of the alternatives at a place
-ALL: tuple[ClassicalOperator, ...] = (
-    Absolute(),
-    ArithmeticReplacement(),
-    RelationalReplacement(),
-    ConditionalReplacement(),
-    ShiftReplacement(),
-    LogicalReplacement(),
-    AssignmentReplacement(),
-    UnaryInsertion(),
-    UnaryDeletion(),
-    VariableReplacement(),
-    Bomb(),
-    DropCharacter(),
-    DoubleCharacter(),
-    ReplaceCharacter(),
-    SwapCharacters(),
-)
+_PACKAGE = f"{__package__}.operators"
+
+
+@cache
+def load_all() -> tuple[ClassicalOperator, ...]:
+    """All operators, in the order of the documentation and of the alternatives at a place.
+
+    Raises OperatorError when two have the same name, or one a family that is not of program text.
+    """
+    owners: dict[str, ClassicalOperator] = {}
+    for module in modules_in(Path(__file__).parent / "operators"):
+        for kind in classes_in(import_module(f"{_PACKAGE}.{module}"), ClassicalOperator):
+            made: ClassicalOperator = kind()
+            if made.name in owners:
+                other = type(owners[made.name]).__module__
+                text = f"operator {made.name!r} stands in {other} and in {kind.__module__}"
+                raise OperatorError(text, operator=made.name)
+            if made.family not in OF_TEXT:
+                text = f"operator {made.name!r} is of family {made.family!r}, which is none of {OF_TEXT}"
+                raise OperatorError(text, operator=made.name)
+            owners[made.name] = made
+    return tuple(in_order(owners.values()))
 
 
 def names(family: str | None = None) -> list[str]:
     """Names of the operators, of one family or of all."""
-    return [each.name for each in ALL if family in (None, each.family)]
+    return [each.name for each in load_all() if family in (None, each.family)]
 
 
 def operator(name: str) -> ClassicalOperator:
     """The operator of this name. Raises OperatorError if there is none."""
-    for each in ALL:
+    for each in load_all():
         if each.name == name:
             return each
     raise OperatorError(unknown_name_text("operator", name, names()), operator=name)
@@ -61,6 +54,6 @@ def operator(name: str) -> ClassicalOperator:
 def chosen(wanted: Iterable[str] | None) -> list[ClassicalOperator]:
     """The operators of these names, in the usual order; all for None. Raises OperatorError."""
     if wanted is None:
-        return list(ALL)
+        return list(load_all())
     picked = {operator(name).name for name in wanted}
-    return [each for each in ALL if each.name in picked]
+    return [each for each in load_all() if each.name in picked]

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from mutabot.families import FAMILIES
 from mutabot.journal.files import COMPARISON, find_journal
 
 from .options import (
-    FAMILIES,
     Engine,
     Families,
     Fresh,

@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from mutabot import __version__
+from mutabot.families import FAMILIES
 
 ENGINES = ("auto", "branch", "replay")
-FAMILIES = ("robot", "classical", "text")
 
 
 def _print_version(wanted: bool) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import UsageError, unknown_name_text
 
-from .options import ENGINES, FAMILIES
+from .options import ENGINES
 
 if TYPE_CHECKING:
     from mutabot.campaign.request import Request
@@ -71,11 +71,10 @@ def request_of(
 
 def _families(given: Sequence[str] | None) -> tuple[str, ...]:
     """The families of the command line, in the order of their numbers."""
-    named = [name.strip() for text in given or () for name in text.split(",") if name.strip()]
-    for name in named:
-        if name not in FAMILIES:
-            raise UsageError(unknown_name_text("family", name, FAMILIES))
-    return tuple(family for family in FAMILIES if family in named)
+    from mutabot.settings.families import asked_for
+
+    named = (name.strip() for text in given or () for name in text.split(","))
+    return asked_for(name for name in named if name)
 
 
 def _found(selection: Path, root: Path) -> Path:

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from mutabot.families import CLASSICAL
+
 from .site import Role, Site, Span
 
 #: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes), as in ``ast``
@@ -39,7 +41,7 @@ class Alternative:
         template: Python text of it, in which ``__kept_0__`` … stand for parts of the original that are kept.
         text: how the place would read in the program text.
         needs: kind of value that it takes: ``number``, ``integer``, ``truth``, ``bits``; empty for any.
-        family: ``classical`` or ``text``.
+        family: the family of its operator.
         raises: whether a statement raises whatever happens, so that the original never follows it.
 
     Example: ``Alternative("AOR", "sub", "__kept_0__ - __kept_1__", "x - y", needs="number")``.
@@ -50,7 +52,7 @@ class Alternative:
     template: str
     text: str
     needs: str = ""
-    family: str = "classical"
+    family: str = CLASSICAL
     raises: bool = False
 
 

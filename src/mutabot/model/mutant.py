@@ -16,7 +16,7 @@ class Mutant:
 
     Attributes:
         number: 1, 2, 3 … in the order of the plan.
-        family: ``robot``, ``classical``, ``text`` or ``physical``.
+        family: the family of its operator (``mutabot.families``).
         operator: name of the operator.
         site: where it acts.
         operation: target of the operation it acts on; empty for a mutant of the program text.

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from random import Random
 from typing import ClassVar
 
+from mutabot.families import CONTROL
 from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
 from mutabot.model.values.quantity import Value
 
@@ -22,7 +23,7 @@ class Identity(Operator):
     """Goes through all the machinery and changes nothing."""
 
     name = "identity"
-    family = "control"
+    family = CONTROL
     summary = "Control: proceeds unchanged, so it must survive."
     examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), away="that is its purpose"),)
 
@@ -44,9 +45,9 @@ class Fatal(Operator):
 
     name = "fatal"
     does_nothing = True
-    family = "control"
+    family = CONTROL
     summary = "Control: the operation raises, so it must die."
-    examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), performed=()),)
+    examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), raises=FatalFault),)
 
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
         return [Subject(operation, pattern)]
@@ -59,3 +60,7 @@ class Fatal(Operator):
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         return "fails"
+
+
+#: both, by name; they make no mutants of their own
+CONTROLS: Mapping[str, type[Operator]] = {kind.name: kind for kind in (Identity, Fatal)}

@@ -1,22 +1,26 @@
-"""The contract of a mutation operator.
+"""The contract of a mutation operator on calls.
 
 An operator answers four questions: where could it act, what does it do there, what does that look like
 to an engineer, and which examples show it. It sees quantities and their values, never Python syntax or
-a vendor's API, so that whatever can be turned into a ``Call`` can be mutated.
+a vendor's API, so that whatever can be turned into a ``Call`` can be mutated. What it needs for that it
+declares as class attributes, here and in ``rule.py``; there also stands where its file belongs.
 
-A third party adds an operator by naming its class under the entry point ``mutabot.operators``.
+``robot/skip.py`` is the shortest operator, ``robot/_values.py`` the shape of those that change one value.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from random import Random
 from typing import Any, ClassVar
 
+from mutabot.families import ROBOT
 from mutabot.model import Middleware, Operation, Pattern, Quantity
 from mutabot.model.values.quantity import Value
+
+from .rule import Rule
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,12 +32,14 @@ class Subject:
         pattern: the text command; None for operations that are not text.
         quantity: the quantity; None where the call as a whole is meant.
         variant: which of several mutants here; empty if there is only one.
+        magnitude: how big the fault is, in the quantity's unit; None for faults without a size.
     """
 
     operation: Operation
     pattern: Pattern | None = None
     quantity: Quantity | None = None
     variant: str = ""
+    magnitude: float | None = None
 
     @property
     def written(self) -> tuple[Quantity, ...]:
@@ -64,6 +70,7 @@ class Example:
         current: where the robot is, by quantity name, for operators that ask.
         performed: values of each call that reaches the robot, in order; ``reversed`` marks the opposite.
         received: values the program receives; None if it receives the robot's own.
+        raises: what the program gets instead of an answer; None if it gets one.
         away: why the operator changes nothing here; empty if it does act.
         note: one line for the documentation.
     """
@@ -74,33 +81,38 @@ class Example:
     current: Mapping[str, float] = field(default_factory=dict)
     performed: tuple[Mapping[str, Any], ...] = ()
     received: Mapping[str, Value] | None = None
+    raises: type[BaseException] | None = None
     away: str = ""
     note: str = ""
 
 
-class Operator(ABC):
-    """A rule that makes mutants.
+class Operator(Rule):
+    """A rule that makes mutants of calls.
 
-    Class attributes:
-        name: how ids, reports and selections call it.
-        family: ``robot``, ``classical``, ``text`` or ``physical``; ``control`` is mutabot's own.
-        summary: one sentence for the documentation.
-        examples: worked examples; they are tests and documentation at once.
+    Class attributes, beside those of every ``Rule``:
         asks_where: whether it asks where a written quantity is now (``call.current``); it is then used only
             where the vocabulary names a reading that tells.
         asks_idle: whether it asks what the command answers while the robot does nothing (``call.idle``); it
             is then used only where that is known, from the baseline or from the vocabulary.
+        asks_neighbours: whether it acts on a call together with those before or after it. No engine can give
+            it these yet, so such an operator is refused.
         does_nothing: whether it promises that no call reaches the robot. A call that would is a fault of the
             operator, and the mutant gets no verdict.
     """
 
-    name: ClassVar[str]
-    family: ClassVar[str] = "robot"
-    summary: ClassVar[str]
+    family: ClassVar[str] = ROBOT
     examples: ClassVar[tuple[Example, ...]] = ()
     asks_where: ClassVar[bool] = False
     asks_idle: ClassVar[bool] = False
+    asks_neighbours: ClassVar[bool] = False
     does_nothing: ClassVar[bool] = False
+
+    def magnitudes(self, quantity: Quantity) -> tuple[float, ...]:
+        """How big its fault is to be in a quantity, in that quantity's unit: a mutant each.
+
+        Empty for a fault without a size, as all are that do not say otherwise.
+        """
+        return ()
 
     @abstractmethod
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:

@@ -1,4 +1,4 @@
-"""Finding operators by name: the built-in ones, and those that plug-ins bring."""
+"""Finding operators on calls by name: the built-in ones by their files, and those that plug-ins bring."""
 
 from __future__ import annotations
 
@@ -6,32 +6,26 @@ from collections.abc import Iterable
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mutabot.errors import OperatorError, unknown_name_text
 
+from .control import CONTROLS
+from .discovery import classes_in, modules_in, packages_in
 from .operator import Operator
+from .rule import in_order
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 ENTRY_POINT = "mutabot.operators"
+_HERE = Path(__file__).parent
 
-#: name -> (module, class); the order is that of the documentation
-BUILT_IN: dict[str, tuple[str, str]] = {
-    "reverse": ("robot.reverse", "Reverse"),
-    "by-to": ("robot.by_to", "ByTo"),
-    "skip": ("robot.skip", "Skip"),
-    "repeat": ("robot.repeat", "Repeat"),
-    "opposite": ("robot.opposite", "Opposite"),
-    "negate": ("robot.negate", "Negate"),
-    "noise": ("robot.noise", "Noise"),
-    "misread": ("robot.misread", "Misread"),
-}
-CONTROLS: dict[str, tuple[str, str]] = {
-    "identity": ("control", "Identity"),
-    "fatal": ("control", "Fatal"),
-}
+
+def built_in() -> list[str]:
+    """Names of mutabot's own operators that make mutants, in the order of the documentation."""
+    return [rule.name for rule in in_order(operator(name) for name in _files())]
 
 
 def names() -> list[str]:
@@ -39,8 +33,8 @@ def names() -> list[str]:
 
     Raises OperatorError when two operators want the same name: it would not be clear whose mutants are whose.
     """
-    owners: dict[str, str] = dict.fromkeys([*BUILT_IN, *CONTROLS], "mutabot")
-    found = [*BUILT_IN]
+    found = built_in()
+    owners: dict[str, str] = dict.fromkeys([*found, *CONTROLS], "mutabot")
     for entry in sorted(_plug_ins(), key=lambda entry: entry.name):
         owner = _owner(entry)
         if entry.name in owners:
@@ -58,9 +52,9 @@ def load_all() -> list[Operator]:
     return [operator(name) for name in names()]
 
 
-def preload(wanted: Iterable[str]) -> None:
-    """Load these operators as far as they can be; who needs one that cannot is told then."""
-    for name in wanted:
+def preload(wanted: Iterable[str] | None = None) -> None:
+    """Load these operators, or all built-in ones; who needs one that cannot be loaded is told then."""
+    for name in _files() if wanted is None else wanted:
         with suppress(OperatorError):
             operator(name)
 
@@ -69,19 +63,47 @@ def preload(wanted: Iterable[str]) -> None:
 def operator(name: str) -> Operator:
     """The operator of this name.
 
-    Raises OperatorError if there is none, or if a plug-in does not keep the contract.
+    Raises OperatorError if there is none, or if one does not keep the contract.
     """
-    place = BUILT_IN.get(name) or CONTROLS.get(name)
-    if place is not None:
-        module, kind = place
-        built_in: Operator = getattr(import_module(f"{__package__}.{module}"), kind)()
-        return built_in
+    if name in CONTROLS:
+        return CONTROLS[name]()
+    if name in _files():
+        return _of_file(name, _files()[name])
     for entry in _plug_ins():
         if entry.name == name:
             return _loaded(entry)
     raise OperatorError(unknown_name_text("operator", name, names()), operator=name)
 
 
+@cache
+def _files() -> dict[str, str]:
+    """Module by name of operator, as the folders beside this file tell: nothing is loaded for it."""
+    return {
+        module.replace("_", "-"): f"{__package__}.{package}.{module}"
+        for package in packages_in(_HERE)
+        for module in modules_in(_HERE / package)
+    }
+
+
+def _of_file(name: str, module: str) -> Operator:
+    kinds: list[type[Operator]] = classes_in(import_module(module), Operator)
+    if len(kinds) != 1 or kinds[0].name != name:
+        found = ", ".join(repr(kind.name) for kind in kinds) or "none"
+        raise OperatorError(
+            f"{module} must hold one operator, named {name!r} as the file is, but has {found}", operator=name
+        )
+    return _checked(kinds[0](), f"operator {name!r}")
+
+
+def _checked(rule: Operator, where: str) -> Operator:
+    """Raises OperatorError for one that asks for more than there is."""
+    if rule.asks_neighbours:
+        text = f"{where} asks for the calls before and after its own, which no engine can give it yet"
+        raise OperatorError(text, operator=rule.name)
+    return rule
+
+
+@cache
 def _plug_ins() -> tuple[EntryPoint, ...]:
     from importlib import metadata  # noqa: PLC0415  # slow, and workers need it for plug-ins only
 
@@ -107,4 +129,4 @@ def _loaded(entry: EntryPoint) -> Operator:
             f"{where} calls itself {getattr(made, 'name', None)!r}; entry point and class must agree",
             operator=entry.name,
         )
-    return made
+    return _checked(made, where)

@@ -7,12 +7,14 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from mutabot.errors import ConfigurationError, nearest_name
+from mutabot.families import FAMILIES, USUAL
 
 from .document import Document
+from .families import why_unknown
 from .mistakes import Check, raise_errors
 from .toml_lines import Place
 
@@ -42,9 +44,17 @@ def _fault(text: str) -> PydanticCustomError:
     return PydanticCustomError("mutabot", "{text}", {"text": text})
 
 
+def _known_family(name: str) -> str:
+    why = why_unknown(name)
+    if why is not None:
+        raise _fault(why)
+    return name
+
+
 _Texts = Annotated[tuple[str, ...], Field(strict=False)]
 _SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
-_Families = Annotated[tuple[Literal["robot", "classical", "text"], ...], Field(strict=False, min_length=1)]
+_Family = Annotated[str, AfterValidator(_known_family), WithJsonSchema({"enum": list(FAMILIES)})]
+_Families = Annotated[tuple[_Family, ...], Field(strict=False, min_length=1)]
 _Share = Annotated[float, Field(ge=0, le=1)]
 
 
@@ -157,7 +167,7 @@ class Settings(BaseModel):
 
         pytest_args = ["-m", "not slow"]
     """
-    families: _Families = ("robot",)
+    families: _Families = USUAL
     """Families of mutants to plant: `robot` in calls, `classical` and
     `text` in the program's text. `--family` goes before it.
 

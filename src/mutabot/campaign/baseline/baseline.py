@@ -17,6 +17,7 @@ from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.workers.said import ABNORMAL, last_line, said_in
 from mutabot.campaign.workers.workers import Result, Task, Workers
 from mutabot.errors import BaselineError, NothingToDoError
+from mutabot.families import FAMILIES
 from mutabot.model import Instrumentation, Mutant, ProgramText, Vocabulary
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
@@ -260,7 +261,9 @@ def take_baseline(
     texts, refused = read_texts(request.root, request.configuration.program, request.families)
     for file, why in refused.items():
         progress.note(f"no mutants of the text of {file}: {why}")
-    load_all()  # a broken plug-in is told now rather than after the baseline
+    for family in dict.fromkeys(rule.family for rule in load_all()):  # a broken plug-in is told now
+        if family not in (*request.families, *FAMILIES):
+            progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
     progress.stage("baseline", request.rounds * repetitions)
     results: dict[tuple[int, int], Result] = {}
     remarks: list[Remark] = []
@@ -291,7 +294,7 @@ def take_baseline(
     refuse_failing(request, failing)
     if texts:
         first = {round: results[round, 0] for round in range(request.rounds)}
-        baseline.program = ProgramTexts.of(texts, first)
+        baseline.program = ProgramTexts.of(texts, first, request.families)
         _add_text_places(baseline)
     if not any(baseline.ran(round) for round in range(request.rounds)):
         raise NothingToDoError(_no_tests(baseline))

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 
 from mutabot.campaign.workers.workers import Result
 from mutabot.classical import Planted, find_texts, merge, names, plant, program_files, refine
 from mutabot.classical.mutants import LeftOutText
+from mutabot.families import CONTROL, OF_TEXT, ROBOT
 from mutabot.model import (
     FATAL,
     IDENTITY,
@@ -20,24 +22,30 @@ from mutabot.model import (
     ProgramText,
     TextPlace,
 )
+from mutabot.operators import load_all
+from mutabot.operators.control import Identity
 
 from .places import Place
 
-#: families of mutants of the program text, in the order of their numbers
-FAMILIES = ("classical", "text")
-
 
 def family_of(mutant: str) -> str:
-    """The family of the mutant with this id: operators on the program text are known by name."""
+    """The family of the mutant with this id; that of calls where nobody knows its operator any more."""
     operator = mutant.rpartition(":")[2].partition("=")[0]
-    return next((family for family in FAMILIES if operator in names(family)), "robot")
+    return _families().get(operator, ROBOT)
+
+
+@cache
+def _families() -> dict[str, str]:
+    """The family of each operator, by name."""
+    of_calls = {rule.name: rule.family for rule in load_all()}
+    return of_calls | {name: family for family in OF_TEXT for name in names(family)}
 
 
 def read_texts(
     root: Path, program: Iterable[str], families: Iterable[str]
 ) -> tuple[tuple[ProgramText, ...], dict[str, str]]:
     """All places of the program that these families have to do with; files that cannot be read, and why."""
-    wanted = [name for family in FAMILIES if family in set(families) for name in names(family)]
+    wanted = _operators_of(families)
     texts: list[ProgramText] = []
     refused: dict[str, str] = {}
     if not wanted:
@@ -52,6 +60,11 @@ def read_texts(
         first += len(text.places)
         texts.append(text)
     return tuple(texts), refused
+
+
+def _operators_of(families: Iterable[str]) -> list[str]:
+    wanted = set(families)
+    return [name for family in OF_TEXT if family in wanted for name in names(family)]
 
 
 @dataclass(slots=True)
@@ -75,18 +88,21 @@ class ProgramTexts:
     _numbers: dict[Place, int] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, texts: Iterable[ProgramText], results: Mapping[int, Result]) -> ProgramTexts:
-        """What recordings of the baseline, by round, tell about these texts."""
+    def of(
+        cls, texts: Iterable[ProgramText], results: Mapping[int, Result], families: Iterable[str]
+    ) -> ProgramTexts:
+        """What recordings of the baseline, by round, tell about these texts, read for these families."""
         texts = list(texts)
         why = _not_instrumented(texts, results.values())
         sightings = [
             seen for _, result in sorted(results.items()) if result.seen for seen in result.seen.sightings
         ]
-        refined, left_out = refine([text for text in texts if text.file not in why], merge(sightings))
+        instrumented = [text for text in texts if text.file not in why]
+        refined, left_out = refine(instrumented, merge(sightings), _operators_of(families))
         unread = [
             LeftOutText(*one, why[text.file]) for text in texts if text.file in why for one in _all(text)
         ]
-        planted = sorted(plant(refined), key=lambda one: FAMILIES.index(one.mutant.family))
+        planted = sorted(plant(refined), key=lambda one: OF_TEXT.index(one.mutant.family))
         made = cls(refined, [one.as_left_out for one in [*left_out, *unread]])
         for number, one in enumerate(planted, start=1):
             made.planted[one.mutant.id] = replace(one, mutant=replace(one.mutant, number=number))
@@ -123,10 +139,9 @@ class ProgramTexts:
         )
 
     def _choice(self, mutant: Mutant) -> Choice:
-        if mutant.family == "control":
-            return Choice(
-                self._numbers[Place.of(mutant)], IDENTITY if mutant.operator == "identity" else FATAL
-            )
+        if mutant.family == CONTROL:
+            index = IDENTITY if mutant.operator == Identity.name else FATAL
+            return Choice(self._numbers[Place.of(mutant)], index)
         return self.planted[mutant.id].choice
 
     def _note_reached(self, round: int, result: Result) -> None:

@@ -25,13 +25,15 @@ from mutabot.campaign.baseline.site_names import Sources
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.workers.workers import Task, Workers
 from mutabot.errors import ControlError
+from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.operators.control import Fatal, Identity
 
 from .judge import judge
 from .replay import run_of, task
 
-IDENTITY, FATAL = "identity", "fatal"
+IDENTITY, FATAL = Identity.name, Fatal.name
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,7 @@ class Control:
     """One control to run.
 
     Attributes:
-        name: ``identity`` or ``fatal``.
+        name: which of the two, as an operator.
         place: where it acts.
         round: the round it is run in.
         tests: the tests to run.
@@ -57,7 +59,7 @@ class Control:
         """The control as a mutant; what it is run for is part of its id."""
         place = self.place
         return Mutant(
-            0, "control", self.name, place.site, place.operation, place.pattern, None, self.subject, self.name
+            0, CONTROL, self.name, place.site, place.operation, place.pattern, None, self.subject, self.name
         )
 
     def task(self, request: Request, baseline: Baseline) -> Task:
@@ -103,7 +105,8 @@ def run_controls(
     together: list[Control] = []
     for control, outcome in _replayed(request, baseline, workers, identities):
         end = end_of(control, outcome, request, baseline, progress)
-        progress.advance(f"identity, {control.subject}: {'survives, as it must' if end.ok else end.detail}")
+        ended = "survives, as it must" if end.ok else end.detail
+        progress.advance(f"{control.name}, {control.subject}: {ended}")
         if end.ok:
             yield end
         elif set(control.tests) == set(baseline.tests[control.round]):

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from mutabot.campaign.baseline.program_text import family_of
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.journal.journal import Journal
@@ -35,7 +34,7 @@ def carry(
 
 
 def _may_be_there(single: Mutant, now: dict[str, Mutant], request: Request) -> bool:
-    return single.id in now or family_of(single.id) not in request.families
+    return single.id in now or single.family not in request.families
 
 
 def _renumbered(mutants: Sequence[Mutant], planned: Sequence[Mutant]) -> list[Mutant]:
@@ -75,7 +74,7 @@ def _is_outdated(
         outcome = kept.get((mutant.id, round))
         if outcome is None:
             return True
-        if any(family_of(single.id) not in request.families for single in mutant.singles):
+        if any(single.family not in request.families for single in mutant.singles):
             if not dependencies.still_hold(outcome.key, journal.parts(outcome.key.split()[1]) or {}):
                 return True
         elif outcome.key not in dependencies.keys(mutant, round):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from random import Random
 from typing import Any
@@ -13,11 +13,13 @@ from mutabot.campaign.baseline.answers import NoAnswerError, idle_of
 from mutabot.campaign.baseline.baseline import Baseline, Hit
 from mutabot.campaign.baseline.places import Place
 from mutabot.errors import OperatorError
+from mutabot.families import USUAL
 from mutabot.journal.records import Drawing
 from mutabot.model import Call, LeftOut, Mutant, Operation, Reply, Vocabulary
 from mutabot.model.values.quantity import is_reading_of
 from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.passage import Passage, rehearse
+from mutabot.operators.subjects import with_operation
 
 #: recorded calls per place that are tried out; calls of one place are much alike
 TRIED = 200
@@ -36,21 +38,20 @@ class Plan:
     drawing: Drawing | None = None
 
 
-def make_plan(baseline: Baseline, vocabulary: Vocabulary, families: Collection[str] = ("robot",)) -> Plan:
+def make_plan(baseline: Baseline, vocabulary: Vocabulary, families: Collection[str] = USUAL) -> Plan:
     """All mutants of these families: those of calls first, so that they keep their numbers."""
-    plan = _plan_of_calls(baseline, vocabulary) if "robot" in families else Plan([], [])
+    plan = _plan_of_calls(baseline, vocabulary, [rule for rule in load_all() if rule.family in families])
     first = len(plan.mutants)
     planted = baseline.program.planted.values()
     of_text = [replace(one.mutant, number=first + one.mutant.number) for one in planted]
     return Plan([*plan.mutants, *of_text], [*plan.left_out, *baseline.program.left_out])
 
 
-def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary) -> Plan:
-    """All mutants of all operators at all places that the tests reach."""
+def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequence[Operator]) -> Plan:
+    """All mutants of these operators at all places that the tests reach."""
     mutants: list[Mutant] = []
     left_out: list[LeftOut] = []
     taken: set[str] = set()
-    operators = load_all()
     operations_at = Counter(site for site, _ in {(place.site, place.operation) for place in baseline.hits})
     for place, hits in baseline.hits.items():
         operation = vocabulary.operation(place.operation)
@@ -112,8 +113,7 @@ def _mutant(number: int, rule: Operator, subject: Subject, place: Place) -> Muta
 def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
     """Two operations at one site (the object decides) may have quantities of the same name."""
     if mutant.id in taken:
-        name = mutant.operation.partition(":")[2]
-        mutant = replace(mutant, variant="+".join(part for part in (mutant.variant, name) if part))
+        mutant = replace(mutant, variant=with_operation(mutant.variant, mutant.operation))
     taken.add(mutant.id)
     return mutant
 

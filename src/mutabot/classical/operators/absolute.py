@@ -14,6 +14,7 @@ class Absolute(ClassicalOperator):
     """abs, negAbs and failOnZero around arithmetic values."""
 
     name = "ABS"
+    rank = 10
     summary = "An arithmetic value becomes its absolute value, the negative of that, or raises if it is zero."
     examples: ClassVar[tuple[Example, ...]] = (
         Example("y = x\n", ("y = abs(x)\n", "y = -abs(x)\n", "y = failOnZero(x)\n")),

@@ -14,6 +14,7 @@ class ArithmeticReplacement(BinaryOperator):
     """Replaces ``+ - * / // % **``."""
 
     name = "AOR"
+    rank = 20
     summary = "An arithmetic operator becomes each of the others, or the operation one of its operands."
     signs: ClassVar = {
         cst.Add: ("add", "+"),

@@ -31,6 +31,7 @@ class AssignmentReplacement(ClassicalOperator):
     """Replaces ``+=`` and its like."""
 
     name = "ASR"
+    rank = 70
     summary = "An augmented assignment becomes another one of its kind, or a plain assignment."
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

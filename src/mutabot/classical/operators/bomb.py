@@ -28,6 +28,7 @@ class Bomb(ClassicalOperator):
     """Replaces a statement by one that raises."""
 
     name = "BSR"
+    rank = 110
     summary = "A statement raises as soon as it is reached: does any test get there, and would it notice?"
     examples: ClassVar[tuple[Example, ...]] = (
         Example("move(x)\n", ("Bomb()\n",)),

@@ -15,6 +15,7 @@ from typing import ClassVar
 import libcst as cst
 
 from mutabot.classical.operator import ClassicalOperator, Draft, Example, Surroundings
+from mutabot.families import TEXT
 
 #: alternatives per text and operator
 LIMIT = 4
@@ -25,7 +26,7 @@ _DIGITS = "0123456789"
 class _Characters(ClassicalOperator):
     """Changes single characters of texts that are arguments of calls."""
 
-    family = "text"
+    family = TEXT
 
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
         if not isinstance(node, cst.SimpleString) or not around.is_argument:
@@ -52,6 +53,7 @@ class DropCharacter(_Characters):
     """Leaves a character out."""
 
     name = "drop-character"
+    rank = 120
     summary = "A character of a text argument is left out."
     examples: ClassVar[tuple[Example, ...]] = (
         Example("send('up')\n", ("send('p')\n", "send('u')\n")),
@@ -68,6 +70,7 @@ class DoubleCharacter(_Characters):
     """Writes a character twice."""
 
     name = "double-character"
+    rank = 130
     summary = "A character of a text argument is there twice."
     examples: ClassVar[tuple[Example, ...]] = (
         Example("send('up')\n", ("send('uup')\n", "send('upp')\n")),
@@ -83,6 +86,7 @@ class ReplaceCharacter(_Characters):
     """Writes another character of the same sort."""
 
     name = "replace-character"
+    rank = 140
     summary = "A character of a text argument is another one: a digit for a digit, a letter for a letter."
     examples: ClassVar[tuple[Example, ...]] = (
         Example("send('up5')\n", ("send('np5')\n", "send('ul5')\n", "send('up8')\n")),
@@ -100,6 +104,7 @@ class SwapCharacters(_Characters):
     """Swaps two neighbours."""
 
     name = "swap-characters"
+    rank = 150
     summary = "Two neighbouring characters of a text argument change places."
     examples: ClassVar[tuple[Example, ...]] = (
         Example("send('up')\n", ("send('pu')\n",)),

@@ -14,6 +14,7 @@ class ConditionalReplacement(ClassicalOperator):
     """Replaces ``and`` and ``or``; drops operands."""
 
     name = "COR"
+    rank = 40
     summary = "A condition's and becomes or, xor, one of its operands, always true, or always false."
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

@@ -14,6 +14,7 @@ class LogicalReplacement(BinaryOperator):
     """Replaces ``&``, ``|`` and ``^``."""
 
     name = "LOR"
+    rank = 60
     summary = "A bitwise operator becomes each of the others, or the operation one of its operands."
     signs: ClassVar = {cst.BitAnd: ("and", "&"), cst.BitOr: ("or", "|"), cst.BitXor: ("xor", "^")}
     needs = "bits"

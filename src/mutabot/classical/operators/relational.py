@@ -35,6 +35,7 @@ class RelationalReplacement(ClassicalOperator):
     """Replaces each operator of a comparison, and the comparison by a truth value."""
 
     name = "ROR"
+    rank = 30
     summary = "A comparison becomes each of the others, or always true, or always false."
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

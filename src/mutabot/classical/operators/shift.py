@@ -14,6 +14,7 @@ class ShiftReplacement(BinaryOperator):
     """Replaces ``<<`` and ``>>``."""
 
     name = "SOR"
+    rank = 50
     summary = "A shift goes the other way, or is left out."
     signs: ClassVar = {cst.LeftShift: ("left", "<<"), cst.RightShift: ("right", ">>")}
     needs = "integer"

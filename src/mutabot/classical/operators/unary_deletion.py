@@ -14,6 +14,7 @@ class UnaryDeletion(ClassicalOperator):
     """Drops ``-``, ``+``, ``~`` and ``not``."""
 
     name = "UOD"
+    rank = 90
     summary = "A unary minus, plus, bitwise or logical not is left out."
     examples: ClassVar[tuple[Example, ...]] = (
         Example("y = -0.2\n", ("y = 0.2\n",), note="a taught point"),

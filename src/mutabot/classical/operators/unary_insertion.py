@@ -16,6 +16,7 @@ class UnaryInsertion(ClassicalOperator):
     """Puts ``-``, ``~`` or ``not`` in front of a value of the right type."""
 
     name = "UOI"
+    rank = 80
     summary = "A value gets a minus, a bitwise or a logical not in front, whichever its type takes."
     examples: ClassVar[tuple[Example, ...]] = (
         Example("y = 0.2\n", ("y = -0.2\n",), note="a taught point"),

@@ -19,6 +19,7 @@ class VariableReplacement(ClassicalOperator):
     """Replaces a variable by each other one of the same type that is in scope."""
 
     name = "SVR"
+    rank = 100
     asks_variables = True
     summary = "A variable becomes another one in scope that had a value of the same type."
     examples: ClassVar[tuple[Example, ...]] = (
@@ -37,7 +38,5 @@ class VariableReplacement(ClassicalOperator):
     def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
         return ()
 
-    @classmethod
-    def with_variables(cls, names: Iterable[str]) -> Iterable[Alternative]:
-        """Alternatives of a variable for which these names could stand."""
-        return [Alternative(cls.name, name, name, name) for name in names]
+    def with_variables(self, names: Iterable[str]) -> Iterable[Alternative]:
+        return [Alternative(self.name, name, name, name) for name in names]

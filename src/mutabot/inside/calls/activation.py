@@ -17,6 +17,7 @@ from mutabot.model.values.answer import restore
 from mutabot.operators import Operator, Subject, operator
 from mutabot.operators.control import FatalFault
 from mutabot.operators.passage import Carried, Passage, passed, run
+from mutabot.operators.subjects import subject_of
 
 from .door import Door, here
 from .intercept import is_named
@@ -96,10 +97,7 @@ class Activation:
 
     def _subject(self) -> Subject:
         pattern = self.operation.pattern(self.mutant.pattern)
-        subject = Subject(self.operation, pattern, None, self.mutant.variant)
-        quantities = (*subject.written, *subject.read)
-        named = next((quantity for quantity in quantities if quantity.name == self.mutant.quantity), None)
-        return replace(subject, quantity=named)
+        return subject_of(self.rule, self.operation, pattern, self.mutant.quantity, self.mutant.variant)
 
     def _answer(self, idle: Idle, door: Door, call: Call) -> Reply:
         """What the command answers while the robot does nothing: what it answered here in the baseline.

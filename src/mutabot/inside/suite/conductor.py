@@ -35,7 +35,7 @@ from mutabot.inside.session import Session
 from mutabot.inside.stacks import say_where_on_signal
 from mutabot.inside.text.returns import Returns
 from mutabot.inside.watchdogs import drop_idle_watchdog, watched, watched_by_faulthandler
-from mutabot.operators.registry import BUILT_IN, CONTROLS, preload
+from mutabot.operators.registry import preload
 
 from .classify import Ending, classify, unexpected_pass
 from .no_oracle import NoOracle
@@ -88,7 +88,7 @@ class Conductor:
         if job.serving is not None:
             from mutabot.inside.fork.copies import ForkServer  # noqa: PLC0415  # of no use to other jobs
 
-            preload((*BUILT_IN, *CONTROLS))
+            preload()
             pipe = Pipe(descriptor)
             conductor = cls(job, pipe, ForkServer(job.serving, pipe, os.path.join(home, LOG)))
         else:

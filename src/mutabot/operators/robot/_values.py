@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from random import Random
 
 from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Quantity, Reply
@@ -14,20 +15,38 @@ from mutabot.operators.operator import Operator, Subject
 NOT_GIVEN = "the call gives no such value"
 
 
-class WrittenValueOperator(Operator):
-    """Changes the value of one written quantity before the robot hears it."""
+class _ValueOperator(Operator):
+    """What both have in common: quantities that fit, each a mutant for every magnitude and variant."""
 
     @abstractmethod
     def fits(self, quantity: Quantity) -> bool:
         """Whether the operator has something to say about this quantity."""
 
     @abstractmethod
-    def change(self, quantity: Quantity, value: Value) -> Value | None:
-        """The new value, or None to stay away."""
+    def change(self, subject: Subject, value: Value, random: Random) -> Value | None:
+        """The new value, or None to stay away.
+
+        The subject tells the quantity, and which variant or magnitude it is where there are several.
+        """
+
+    def subjects_of(self, whole: Subject, quantities: Iterable[Quantity]) -> Iterator[Subject]:
+        """The operator's subjects among these quantities of a call."""
+        for quantity in quantities:
+            if not self.fits(quantity):
+                continue
+            subject = replace(whole, quantity=quantity)
+            sizes = self.magnitudes(quantity)
+            yield from (replace(subject, variant=f"{size:g}", magnitude=size) for size in sizes)
+            if not sizes:
+                yield subject
+
+
+class WrittenValueOperator(_ValueOperator):
+    """Changes the value of one written quantity before the robot hears it."""
 
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
         whole = Subject(operation, pattern)
-        return [Subject(operation, pattern, quantity) for quantity in whole.written if self.fits(quantity)]
+        return self.subjects_of(whole, whole.written)
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         quantity = quantity_of(subject)
@@ -36,7 +55,7 @@ class WrittenValueOperator(Operator):
             if quantity.name not in call.values:
                 return await proceed(call.as_is(NOT_GIVEN))
             before = call.values[quantity.name]
-            value = self.change(quantity, before)
+            value = self.change(subject, before, random)
             why = why_away(quantity, before, value)
             return await proceed(call.as_is(why) if why else call.with_value(quantity, value))
 
@@ -47,20 +66,12 @@ class WrittenValueOperator(Operator):
         return f"{label(quantity)} {' → '.join(quantity.texts(before, after))}"
 
 
-class ReadValueOperator(Operator):
+class ReadValueOperator(_ValueOperator):
     """Changes the value of one read quantity before the program hears it."""
-
-    @abstractmethod
-    def fits(self, quantity: Quantity) -> bool:
-        """Whether the operator has something to say about this quantity."""
-
-    @abstractmethod
-    def change(self, subject: Subject, value: Value, random: Random) -> Value | None:
-        """The new value, or None to stay away."""
 
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
         whole = Subject(operation, pattern)
-        return [Subject(operation, pattern, quantity) for quantity in whole.read if self.fits(quantity)]
+        return self.subjects_of(whole, whole.read)
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         quantity = quantity_of(subject)

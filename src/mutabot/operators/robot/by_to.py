@@ -9,6 +9,7 @@ from typing import ClassVar
 from mutabot.model import Call, Kind, Middleware, Mode, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.values.quantity import READING_OF, Value
 from mutabot.operators.operator import Example, Operator, Subject, is_number
+from mutabot.operators.rule import Published
 
 from ._values import NOT_GIVEN, label, quantity_of, why_away
 
@@ -26,6 +27,11 @@ class ByTo(Operator):
     name = "by-to"
     asks_where = True
     summary = "A relative amount is taken for an absolute target, and the other way round."
+    rank = 20
+    published = (
+        Published(5, "translate forward by δ", "translate forward *to* δ"),
+        Published(6, "translate backwards by δ", "translate backwards *to* δ"),
+    )
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
             Subject(_BY, quantity=_DX),

@@ -9,6 +9,7 @@ from typing import ClassVar
 from mutabot.model import Kind, Operation, Path, Pattern, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.operators.operator import Example, Subject
+from mutabot.operators.rule import Published
 
 from ._values import ReadValueOperator, quantity_of
 
@@ -28,6 +29,8 @@ class Misread(ReadValueOperator):
 
     name = "misread"
     summary = "A label, such as a colour, or a flag is read as another one."
+    rank = 80
+    published = (Published(12, "a colour is classified", "an incorrect colour is returned"),)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
             Subject(_SEE, quantity=_COLOUR),

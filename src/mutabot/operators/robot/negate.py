@@ -8,6 +8,7 @@ from typing import ClassVar
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.operators.operator import Example, Subject, map_numbers
+from mutabot.operators.rule import Published
 
 from ._orientation import the_other_way
 from ._values import ReadValueOperator, quantity_of
@@ -25,6 +26,8 @@ class Negate(ReadValueOperator):
 
     name = "negate"
     summary = "A position, distance or angle is read with the wrong sign."
+    rank = 60
+    published = (Published(9, "distance value is x", "distance value is −x"),)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
             Subject(_LOCATE, quantity=_X),

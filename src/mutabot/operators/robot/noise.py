@@ -8,6 +8,7 @@ from typing import ClassVar
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.operators.operator import Example, Subject, map_numbers
+from mutabot.operators.rule import Published
 
 from ._orientation import disturbed
 from ._values import ReadValueOperator, label, quantity_of
@@ -32,6 +33,11 @@ class Noise(ReadValueOperator):
 
     name = "noise"
     summary = "A position, distance or angle is read with Gaussian noise added."
+    rank = 70
+    published = (
+        Published(10, "distance value is x", "distance value is x + noise"),
+        Published(13, "a position or angle is read", "the reading has Gaussian noise"),
+    )
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
             Subject(_LOCATE, quantity=_X),

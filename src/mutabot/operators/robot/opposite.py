@@ -10,6 +10,7 @@ from mutabot.model import Call, Kind, Middleware, Operation, Path, Pattern, Proc
 from mutabot.model.values.notation import Notation
 from mutabot.model.values.quantity import Value
 from mutabot.operators.operator import Example, Operator, Subject
+from mutabot.operators.rule import Published
 
 _POSITION = Quantity("position", Path("position"), Kind.OPENING, unit="fraction", values=(0, 1))
 _WIDTH = Quantity("width", Path("width"), Kind.OPENING, unit="mm", range=(0.0, 85.0))
@@ -28,6 +29,8 @@ class Opposite(Operator):
 
     name = "opposite"
     summary = "A two-state command does the opposite: open for close, off for on, release for grasp."
+    rank = 50
+    published = (Published(11, "do command x", "do the opposite, such as release for grasp"),)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
             Subject(_GRIP, quantity=_POSITION),

@@ -9,6 +9,7 @@ from typing import ClassVar
 from mutabot.model import Call, Kind, Middleware, Mode, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.values.quantity import Value
 from mutabot.operators.operator import Example, Operator, Subject
+from mutabot.operators.rule import Published
 
 _DX = Quantity("dx", Path("dx"), Kind.TRANSLATION, "x", "m", "base", Mode.BY)
 _MOVE = Operation("robot:Arm.move_by", (_DX,))
@@ -19,6 +20,8 @@ class Repeat(Operator):
 
     name = "repeat"
     summary = "A command is carried out twice; the program sees the second answer."
+    rank = 40
+    published = (Published(8, "do command x", "do command x twice"),)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
             Subject(_MOVE),

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from random import Random
 from typing import ClassVar
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.operators.operator import Example, Subject, map_numbers
+from mutabot.operators.rule import Published
 
 from ._orientation import the_other_way
-from ._values import WrittenValueOperator
+from ._values import WrittenValueOperator, quantity_of
 
 _DY = Quantity("dy", Path("dy"), Kind.TRANSLATION, "y", "m", "base", Mode.BY)
 _YAW = Quantity("yaw", Path("yaw"), Kind.ROTATION, "z", "deg", "base", Mode.BY)
@@ -33,6 +35,13 @@ class Reverse(WrittenValueOperator):
 
     name = "reverse"
     summary = "A translation or rotation goes the other way: one component is negated."
+    rank = 10
+    published = (
+        Published(1, "rotate left by θ", "rotate right by θ"),
+        Published(2, "rotate right by θ", "rotate left by θ"),
+        Published(3, "translate forward by δ", "translate backwards by δ"),
+        Published(4, "translate backwards by δ", "translate forward by δ"),
+    )
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
             Subject(_MOVE, quantity=_DY),
@@ -80,7 +89,8 @@ class Reverse(WrittenValueOperator):
     def fits(self, quantity: Quantity) -> bool:
         return quantity.kind in (Kind.TRANSLATION, Kind.ROTATION) or quantity.is_whole
 
-    def change(self, quantity: Quantity, value: Value) -> Value | None:
+    def change(self, subject: Subject, value: Value, random: Random) -> Value | None:
+        quantity = quantity_of(subject)
         if quantity.is_whole:
             return the_other_way(quantity, value)
         return map_numbers(value, lambda number: _within_turn(quantity, -number))

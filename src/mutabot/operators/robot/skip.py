@@ -9,6 +9,7 @@ from typing import ClassVar
 from mutabot.model import Call, Kind, Middleware, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.values.quantity import Value
 from mutabot.operators.operator import Example, Operator, Subject
+from mutabot.operators.rule import Published
 
 _POSITION = Quantity("position", Path("position"), Kind.OPENING, unit="fraction", values=(0, 1))
 _GRIP = Operation("robot:Gripper.command", (_POSITION,))
@@ -22,6 +23,8 @@ class Skip(Operator):
     asks_idle = True
     does_nothing = True
     summary = "A command is not carried out; the program goes on as if it had been."
+    rank = 30
+    published = (Published(7, "do command x", "do nothing"),)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(_GRIP), {"position": 1}, performed=(), note="do command x: do nothing"),
         Example(Subject(_HOME), performed=()),

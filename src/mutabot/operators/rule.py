@@ -1,0 +1,66 @@
+"""What every operator declares, whatever it acts on.
+
+An operator is one class in one file, and nothing else has to be edited: the registries find it there.
+
+- One that acts on **calls** is a subclass of ``Operator`` (``operator.py``) in a folder beside this file, one
+  to a file, which has the operator's name: ``by-to`` is ``robot/by_to.py``. So workers find an operator
+  without loading the others.
+- One that acts on **program text** is a subclass of ``ClassicalOperator`` (``mutabot/classical/operator.py``)
+  in ``classical/operators/``; a file may hold several.
+
+What several share goes into a file whose name begins with ``_``. A third party names its class under the
+entry point ``mutabot.operators``; that goes for operators on calls.
+
+Engines, plan, reports and documentation know no operator by name: whatever they need to know of one stands
+here or in the two contracts that build on this one.
+"""
+
+from __future__ import annotations
+
+from abc import ABC
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, ClassVar, TypeVar
+
+
+@dataclass(frozen=True, slots=True)
+class Published:
+    """A row of the table of published operators that an operator makes.
+
+    Attributes:
+        row: 1-based place in that table.
+        original, mutant: the row's two columns, in words.
+    """
+
+    row: int
+    original: str
+    mutant: str
+
+
+class Rule(ABC):
+    """What operators of all kinds declare.
+
+    Class attributes:
+        name: how ids, reports and selections call it.
+        family: the family of its mutants (``mutabot.families``), or one of its own for a plug-in.
+        summary: one sentence for the documentation.
+        examples: worked examples; they are tests and documentation at once.
+        rank: its place in the documentation and in the numbering of mutants: smaller first, then by name.
+            Without one it comes after those that have one.
+        published: rows of the table of published operators that it makes; empty for all others.
+    """
+
+    name: ClassVar[str]
+    family: ClassVar[str]
+    summary: ClassVar[str]
+    examples: ClassVar[tuple[Any, ...]] = ()
+    rank: ClassVar[int] = 1000
+    published: ClassVar[tuple[Published, ...]] = ()
+
+
+R = TypeVar("R", bound=Rule)
+
+
+def in_order(rules: Iterable[R]) -> list[R]:
+    """The operators in the order of the documentation."""
+    return sorted(rules, key=lambda rule: (rule.rank, rule.name))
