@@ -9,7 +9,7 @@ import pytest
 
 from analysis import campaigns, samples
 from mutabot.analysis.ends import End, end_of
-from mutabot.analysis.families import WEAKNESSES, Comparison, Share, compare, is_same_campaign
+from mutabot.analysis.families import WEAKNESSES, FamilyComparison, Share, compare_families, is_same_campaign
 from mutabot.analysis.results import Results
 from mutabot.analysis.statistics import crossed, wilson
 
@@ -20,35 +20,37 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
 
 
 @pytest.fixture(scope="module")
-def comparison(results: Results) -> Comparison:
-    return compare(results)
+def comparison(results: Results) -> FamilyComparison:
+    return compare_families(results)
 
 
-def test_there_is_a_column_for_each_family_and_role_in_the_order_asked_for(comparison: Comparison) -> None:
+def test_there_is_a_column_for_each_family_and_role_in_the_order_asked_for(
+    comparison: FamilyComparison,
+) -> None:
     assert [(one.name, one.role) for one in comparison.families] == [
         ("robot", "program"), ("robot", "oracle"), ("classical", "program"), ("text", "program"),
     ]  # fmt: skip
 
 
 def test_the_program_stands_before_the_oracle_whichever_the_plan_has_first(results: Results) -> None:
-    turned = compare(replace(results, mutants=results.mutants[::-1]))
+    turned = compare_families(replace(results, mutants=results.mutants[::-1]))
     assert [one.role for one in turned.families if one.name == "robot"] == ["program", "oracle"]
 
 
-def test_every_outcome_has_one_end_and_every_end_is_there(comparison: Comparison) -> None:
+def test_every_outcome_has_one_end_and_every_end_is_there(comparison: FamilyComparison) -> None:
     for family in comparison.families:
         assert set(family.ends) == set(End)
         assert sum(share.count for share in family.ends.values()) == family.done == family.planned
         assert all(share.of == family.done for share in family.ends.values())
 
 
-def test_shares_of_ends_are_those_of_the_outcomes(results: Results, comparison: Comparison) -> None:
+def test_shares_of_ends_are_those_of_the_outcomes(results: Results, comparison: FamilyComparison) -> None:
     robot = comparison.families[0]
     ends = [end_of(one) for result in results.mutants[:30] for one in result.outcomes]
     assert {end: share.count for end, share in robot.ends.items()} == {end: ends.count(end) for end in End}
 
 
-def test_a_weakness_is_the_sum_of_its_ends(comparison: Comparison) -> None:
+def test_a_weakness_is_the_sum_of_its_ends(comparison: FamilyComparison) -> None:
     for family in comparison.families:
         for name, ends in WEAKNESSES.items():
             assert family.weaknesses[name].count == sum(family.ends[end].count for end in ends)
@@ -60,27 +62,27 @@ def test_no_end_speaks_of_two_weaknesses_and_any_is_all_of_them() -> None:
     assert sum(map(len, single)) == len(WEAKNESSES["any"])
 
 
-def test_scores_agree_with_the_groups_of_the_report(results: Results, comparison: Comparison) -> None:
+def test_scores_agree_with_the_groups_of_the_report(results: Results, comparison: FamilyComparison) -> None:
     groups = {(group.family, group.role): group.scores for group in results.groups}
     for family in comparison.families:
         assert family.scores == groups[family.name, family.role]
 
 
-def test_scores_agree_with_the_ends(comparison: Comparison) -> None:
+def test_scores_agree_with_the_ends(comparison: FamilyComparison) -> None:
     killed = (End.CHECK, End.EXCEPTION, End.BEFORE, End.TIMEOUT)
     for family in comparison.families:
         assert family.scores.total.killed == sum(family.ends[end].count for end in killed)
         assert family.scores.total.by_check == family.ends[End.CHECK].count
 
 
-def test_informative_is_what_is_left_of_the_valid(comparison: Comparison) -> None:
+def test_informative_is_what_is_left_of_the_valid(comparison: FamilyComparison) -> None:
     for family in comparison.families:
         left = family.valid.count - family.trivial.count - family.indistinguishable.count
         assert family.informative.count == left
         assert family.informative.of == family.mutants
 
 
-def test_costs_add_up(comparison: Comparison) -> None:
+def test_costs_add_up(comparison: FamilyComparison) -> None:
     for family in comparison.families:
         assert family.cost.wall == pytest.approx(0.5 * family.done)
         assert family.cost.cpu == pytest.approx(0.4 * family.done)
@@ -88,11 +90,11 @@ def test_costs_add_up(comparison: Comparison) -> None:
         assert family.cost.shared == pytest.approx(5.0 * family.done)
 
 
-def test_places_are_sites_each_counted_once(comparison: Comparison) -> None:
+def test_places_are_sites_each_counted_once(comparison: FamilyComparison) -> None:
     assert [family.places for family in comparison.families] == [10, 4, 40, 20]
 
 
-def test_joint_dominators_are_shared_out_among_the_families(comparison: Comparison) -> None:
+def test_joint_dominators_are_shared_out_among_the_families(comparison: FamilyComparison) -> None:
     classes = comparison.redundancy.dominators
     assert len(classes) > 0
     for family in comparison.families:
@@ -103,7 +105,7 @@ def test_joint_dominators_are_shared_out_among_the_families(comparison: Comparis
 def test_a_family_without_a_mutant_is_there_with_nothing(results: Results) -> None:
     only_robot = tuple(one for one in results.mutants if one.mutant.family == "robot")
     groups = tuple(group for group in results.groups if group.family == "robot")
-    found = compare(replace(results, mutants=only_robot, groups=groups))
+    found = compare_families(replace(results, mutants=only_robot, groups=groups))
     text = found.families[-1]
     assert (text.name, text.role, text.mutants, text.planned) == ("text", "program", 0, 0)
     assert text.scores.mean is None
@@ -111,7 +113,7 @@ def test_a_family_without_a_mutant_is_there_with_nothing(results: Results) -> No
 
 
 def test_where_not_every_test_was_run_nothing_is_said_about_trivial_mutants(tmp_path: Path) -> None:
-    found = compare(campaigns.read(campaigns.write(tmp_path / "c.sqlite", complete=False)))
+    found = compare_families(campaigns.read(campaigns.write(tmp_path / "c.sqlite", complete=False)))
     for family in found.families:
         assert family.trivial.count == 0
         assert family.trivial.unknown > 0
@@ -121,21 +123,23 @@ def test_where_not_every_test_was_run_nothing_is_said_about_trivial_mutants(tmp_
 
 
 def test_shares_carry_the_interval_of_scores_and_with_one_round_wilsons(tmp_path: Path) -> None:
-    share = compare(campaigns.read(campaigns.write(tmp_path / "a.sqlite"))).families[2].ends[End.CHECK]
+    share = (
+        compare_families(campaigns.read(campaigns.write(tmp_path / "a.sqlite"))).families[2].ends[End.CHECK]
+    )
     assert share.interval is not None
     assert share.share is not None
     assert share.interval.low < share.share < share.interval.high
-    once = compare(campaigns.read(campaigns.write(tmp_path / "b.sqlite", rounds=1))).families[2]
+    once = compare_families(campaigns.read(campaigns.write(tmp_path / "b.sqlite", rounds=1))).families[2]
     assert once.ends[End.CHECK].interval == wilson(once.ends[End.CHECK].count, 120)
     assert crossed([[1.0], [0.0]]) is None
 
 
 def test_the_scores_without_an_oracle_stand_beside_the_others(tmp_path: Path, results: Results) -> None:
     other = campaigns.read(campaigns.write(tmp_path / "other.sqlite", luck=2, no_oracle=True))
-    found = compare(results, other)
+    found = compare_families(results, other)
     for family, group in zip(found.families, other.groups, strict=True):
         assert family.without_oracle == group.scores
-    assert all(family.without_oracle is None for family in compare(results).families)
+    assert all(family.without_oracle is None for family in compare_families(results).families)
 
 
 @pytest.mark.parametrize(
@@ -150,7 +154,7 @@ def test_another_campaign_counts_only_if_it_ran_the_same_and_later(
 
 
 def test_a_campaign_of_one_family_is_compared_with_nobody(tmp_path: Path) -> None:
-    found = compare(campaigns.read(samples.write_journal(tmp_path / "journal.sqlite")))
+    found = compare_families(campaigns.read(samples.write_journal(tmp_path / "journal.sqlite")))
     assert [(one.name, one.role, one.mutants) for one in found.families] == [
         ("robot", "program", 3), ("robot", "oracle", 2),
     ]  # fmt: skip

@@ -15,7 +15,7 @@ import pytest
 import make_comparison_page as tool
 from analysis import campaigns
 from comparison_claims import CLAIMS, Stance, decide, difference, difference_text, finding, further
-from mutabot.analysis.families import WEAKNESSES, compare
+from mutabot.analysis.families import WEAKNESSES, compare_families
 from mutabot.analysis.statistics import wilson
 from mutabot.report.as_json import dumps
 from mutabot.report.comparison_json import comparison_data
@@ -29,7 +29,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
     folder = tmp_path_factory.mktemp("made")
     results = campaigns.read(campaigns.write(folder / "compare.sqlite"))
     without = campaigns.read(campaigns.write(folder / "other.sqlite", luck=2))
-    return json.loads(dumps(comparison_data(compare(results, without))))
+    return json.loads(dumps(comparison_data(compare_families(results, without))))
 
 
 @pytest.fixture

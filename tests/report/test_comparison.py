@@ -14,13 +14,13 @@ from rich.cells import cell_len
 from analysis import campaigns
 from campaign.project import Quiet, request_for, write_project
 from mutabot.analysis.ends import End
-from mutabot.analysis.families import Comparison, Share, compare
+from mutabot.analysis.families import FamilyComparison, Share, compare_families
 from mutabot.analysis.statistics import Interval
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import UsageError
 from mutabot.report.as_json import dumps
 from mutabot.report.comparison_json import comparison_data
-from mutabot.report.picture import _COLOURS, Bar, Box, bars_of, draw, svg
+from mutabot.report.picture import _COLOURS, Bar, Rectangle, bars_of, draw, svg
 from mutabot.report.picture_file import check_picture, write_picture
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.side_by_side import duration, print_comparison, share_cell
@@ -30,27 +30,27 @@ WIDTHS = pytest.mark.parametrize("width", [60, 80, 120, 200])
 
 
 @pytest.fixture(scope="module")
-def comparison(tmp_path_factory: pytest.TempPathFactory) -> Comparison:
+def comparison(tmp_path_factory: pytest.TempPathFactory) -> FamilyComparison:
     folder = tmp_path_factory.mktemp("made")
     results = campaigns.read(campaigns.write(folder / "compare.sqlite"))
-    return compare(results, campaigns.read(campaigns.write(folder / "other.sqlite", luck=2)))
+    return compare_families(results, campaigns.read(campaigns.write(folder / "other.sqlite", luck=2)))
 
 
-def table(comparison: Comparison, width: int = 80) -> str:
+def table(comparison: FamilyComparison, width: int = 80) -> str:
     file = io.StringIO()
     print_comparison(make_console(file, width=width), comparison)
     return file.getvalue()
 
 
 @WIDTHS
-def test_no_line_is_wider_than_the_terminal(comparison: Comparison, width: int) -> None:
+def test_no_line_is_wider_than_the_terminal(comparison: FamilyComparison, width: int) -> None:
     text = table(comparison, width)
     assert max(cell_len(line) for line in text.splitlines()) <= width
     assert "\x1b" not in text
 
 
 @WIDTHS
-def test_every_family_has_its_column_and_every_end_its_row(comparison: Comparison, width: int) -> None:
+def test_every_family_has_its_column_and_every_end_its_row(comparison: FamilyComparison, width: int) -> None:
     words = set(table(comparison, width).split())
     for family in comparison.families:
         assert {family.name, family.role} <= words
@@ -58,7 +58,7 @@ def test_every_family_has_its_column_and_every_end_its_row(comparison: Compariso
         assert set(end.value.split()) <= words
 
 
-def test_a_row_holds_the_numbers_of_all_families(comparison: Comparison) -> None:
+def test_a_row_holds_the_numbers_of_all_families(comparison: FamilyComparison) -> None:
     text = table(comparison, 120)
     row = next(line for line in text.splitlines() if "killed by check" in line)
     for family in comparison.families:
@@ -81,7 +81,7 @@ def test_what_is_not_known_is_said_and_never_nothing() -> None:
 
 
 def test_without_every_test_the_table_says_what_it_does_not_know(tmp_path: Path) -> None:
-    found = compare(campaigns.read(campaigns.write(tmp_path / "c.sqlite", complete=False)))
+    found = compare_families(campaigns.read(campaigns.write(tmp_path / "c.sqlite", complete=False)))
     text = table(found)
     assert "not known for mutants that were not run against every test" in " ".join(text.split())
     assert "joint dominators" not in text
@@ -90,7 +90,7 @@ def test_without_every_test_the_table_says_what_it_does_not_know(tmp_path: Path)
 def test_a_sample_is_named_with_what_it_was_drawn_from(tmp_path: Path) -> None:
     strata = [{"family": "text", "role": "program", "population": 600, "drawn": 60}]
     drawing = {"sample": "10%", "one_per_site": False, "selected": 2220, "strata": strata}
-    text = table(compare(campaigns.read(campaigns.write(tmp_path / "c.sqlite", drawing=drawing))))
+    text = table(compare_families(campaigns.read(campaigns.write(tmp_path / "c.sqlite", drawing=drawing))))
     assert "a sample of 10% of 2220 mutants" in text
     assert re.search(r"drawn from .* 600", text)
 
@@ -102,7 +102,7 @@ def test_times_are_said_as_people_say_them(seconds: float | None, text: str) -> 
     assert duration(seconds) == text
 
 
-def test_json_holds_the_numbers_and_where_they_come_from(comparison: Comparison) -> None:
+def test_json_holds_the_numbers_and_where_they_come_from(comparison: FamilyComparison) -> None:
     data = json.loads(dumps(comparison_data(comparison)))
     robot = data["families"][0]
     assert (robot["family"], robot["role"], robot["mutants"]) == ("robot", "program", 30)
@@ -118,12 +118,12 @@ def test_json_holds_the_numbers_and_where_they_come_from(comparison: Comparison)
     )
 
 
-def test_json_names_no_folder_of_the_machine(comparison: Comparison) -> None:
+def test_json_names_no_folder_of_the_machine(comparison: FamilyComparison) -> None:
     assert "root" in comparison.meta
     assert "root" not in comparison_data(comparison)["meta"]
 
 
-def test_every_key_is_documented_and_no_other(comparison: Comparison) -> None:
+def test_every_key_is_documented_and_no_other(comparison: FamilyComparison) -> None:
     documented = set(re.findall(r"^\| `(\w+)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE))
     data = comparison_data(comparison)
     family = data["families"][0]
@@ -137,9 +137,9 @@ def test_every_end_is_documented_in_its_order() -> None:
     assert [row for row in rows if row in set(End)][: len(End)] == [end.value for end in End]
 
 
-def test_bars_are_as_long_as_each_other_and_their_parts_as_the_shares(comparison: Comparison) -> None:
+def test_bars_are_as_long_as_each_other_and_their_parts_as_the_shares(comparison: FamilyComparison) -> None:
     picture = draw(bars_of(comparison.families), "title")
-    bars: dict[float, list[Box]] = {}
+    bars: dict[float, list[Rectangle]] = {}
     for box in picture.boxes[1:]:
         if box.height == 34:
             bars.setdefault(box.y, []).append(box)
@@ -170,7 +170,7 @@ def test_svg_is_well_formed_whatever_names_hold() -> None:
     assert "<&>\"'" in words
 
 
-def test_nothing_lies_outside_the_picture(comparison: Comparison) -> None:
+def test_nothing_lies_outside_the_picture(comparison: FamilyComparison) -> None:
     picture = draw(bars_of(comparison.families), "title")
     for box in picture.boxes:
         assert 0 <= box.x <= box.x + box.width <= picture.width
@@ -194,7 +194,7 @@ def test_a_picture_of_another_format_is_told_the_name_it_may_have(tmp_path: Path
 
 
 def test_what_mutabot_writes_into_a_project_does_not_make_it_run_again(
-    comparison: Comparison, tmp_path: Path
+    comparison: FamilyComparison, tmp_path: Path
 ) -> None:
     mission = "def run(arm):\n    arm.move_by(0.5)\n"
     test = "from mission import run\nfrom robot import Arm\n\ndef test_it():\n    run(Arm())\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from typing import Any
 
-from mutabot.settings.toml_lines import Place, key_lines
+from mutabot.settings.toml_lines import KeyPath, key_lines
 
 TEXT = '''# a comment with [brackets] = and "quotes"
 title = "a # b" # c
@@ -39,7 +39,7 @@ kind = "flag"
 text = "r"
 '''
 
-EXPECTED: dict[Place, int] = {
+EXPECTED: dict[KeyPath, int] = {
     ("title",): 2,
     ("tool", "mutabot"): 3,
     ("tool", "mutabot", "program", 0): 5,
@@ -70,7 +70,7 @@ def test_every_value_that_the_standard_library_reads_is_found() -> None:
     assert [place for place in places(tomllib.loads(TEXT)) if place not in known] == []
 
 
-def places(value: Any, place: Place = ()) -> list[Place]:
+def places(value: Any, place: KeyPath = ()) -> list[KeyPath]:
     items: Any = ()
     if isinstance(value, dict):
         items = value.items()

@@ -139,7 +139,7 @@ class Family:
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class FamilyComparison:
     """Families side by side.
 
     Attributes:
@@ -163,7 +163,7 @@ class Comparison:
     results: Results
 
 
-def compare(results: Results, without_oracle: Results | None = None) -> Comparison:
+def compare_families(results: Results, without_oracle: Results | None = None) -> FamilyComparison:
     """The comparison of all families in a campaign; ``without_oracle`` is another, of the same mutants."""
     joint = Redundancy.of({one.mutant.id: one.outcomes for one in results.mutants})
     homes = {one.mutant.id: _key(one) for one in results.mutants}
@@ -186,7 +186,7 @@ def compare(results: Results, without_oracle: Results | None = None) -> Comparis
             homes=[one for one in classes if key in one],
         )
 
-    return Comparison(
+    return FamilyComparison(
         meta=results.meta,
         state=results.state,
         rounds=results.rounds,

@@ -7,39 +7,17 @@ from __future__ import annotations
 
 import typer
 
-from .options import (
-    All,
-    BaselineRuns,
-    Confirm,
-    Engine,
-    Families,
-    Fresh,
-    Jobs,
-    Json,
-    MinScore,
-    OnePerSite,
-    Only,
-    Order,
-    Pairs,
-    Repeats,
-    Rounds,
-    Sample,
-    Seed,
-    Selection,
-    Skip,
-    Table,
-    Verify,
-)
+from . import options
 from .output import echo, leave, print_json, progress_shown, show_results
 from .request import request_of
 
 
 def check(
     context: typer.Context,
-    json: Json = False,
-    jobs: Jobs = None,
-    rounds: Rounds = None,
-    family: Families = None,
+    json: options.Json = False,
+    jobs: options.Jobs = None,
+    rounds: options.Rounds = None,
+    family: options.Families = None,
 ) -> None:
     """Try the whole set-up without running mutants."""
     from mutabot.campaign import run as campaign
@@ -52,19 +30,19 @@ def check(
 
 def list_(
     context: typer.Context,
-    only: Only = None,
-    skip: Skip = None,
-    family: Families = None,
-    order: Order = None,
-    pairs: Pairs = None,
-    selection: Selection = None,
-    sample: Sample = None,
-    one_per_site: OnePerSite = False,
-    rounds: Rounds = None,
-    seed: Seed = None,
-    jobs: Jobs = None,
-    all: All = False,
-    json: Json = False,
+    only: options.Only = None,
+    skip: options.Skip = None,
+    family: options.Families = None,
+    order: options.Order = None,
+    pairs: options.Pairs = None,
+    selection: options.Selection = None,
+    sample: options.Sample = None,
+    one_per_site: options.OnePerSite = False,
+    rounds: options.Rounds = None,
+    seed: options.Seed = None,
+    jobs: options.Jobs = None,
+    all: options.All = False,
+    json: options.Json = False,
 ) -> None:
     """List the mutants that would run, and what is left out."""
     from mutabot.campaign.run import plan_only
@@ -85,26 +63,26 @@ def list_(
 
 def run(
     context: typer.Context,
-    only: Only = None,
-    skip: Skip = None,
-    family: Families = None,
-    order: Order = None,
-    pairs: Pairs = None,
-    selection: Selection = None,
-    sample: Sample = None,
-    one_per_site: OnePerSite = False,
-    rounds: Rounds = None,
-    seed: Seed = None,
-    jobs: Jobs = None,
-    engine: Engine = "auto",
-    fresh: Fresh = False,
-    verify: Verify = 0,
-    confirm: Confirm = False,
-    repeats: Repeats = True,
-    baseline: BaselineRuns = None,
-    min_score: MinScore = None,
-    table: Table = False,
-    json: Json = False,
+    only: options.Only = None,
+    skip: options.Skip = None,
+    family: options.Families = None,
+    order: options.Order = None,
+    pairs: options.Pairs = None,
+    selection: options.Selection = None,
+    sample: options.Sample = None,
+    one_per_site: options.OnePerSite = False,
+    rounds: options.Rounds = None,
+    seed: options.Seed = None,
+    jobs: options.Jobs = None,
+    engine: options.Engine = "auto",
+    fresh: options.Fresh = False,
+    verify: options.Verify = 0,
+    confirm: options.Confirm = False,
+    repeats: options.Repeats = True,
+    baseline: options.BaselineRuns = None,
+    min_score: options.MinScore = None,
+    table: options.Table = False,
+    json: options.Json = False,
 ) -> None:
     """Run the campaign, or go on with it: baseline, controls, mutants, scores."""
     from mutabot.analysis.gate import decide

@@ -13,47 +13,31 @@ import typer
 from mutabot.families import FAMILIES
 from mutabot.journal.files import COMPARISON, find_journal
 
-from .options import (
-    Engine,
-    Families,
-    Fresh,
-    Jobs,
-    Json,
-    NoOracle,
-    OnePerSite,
-    Only,
-    Picture,
-    Rounds,
-    Sample,
-    Seed,
-    Selection,
-    Skip,
-    Stored,
-)
+from . import options
 from .output import leave, print_json, progress_shown
 from .request import request_of
 
 if TYPE_CHECKING:
-    from mutabot.analysis.families import Comparison
+    from mutabot.analysis.families import FamilyComparison
 
 
 def compare(
     context: typer.Context,
-    family: Families = None,
-    only: Only = None,
-    skip: Skip = None,
-    selection: Selection = None,
-    sample: Sample = None,
-    one_per_site: OnePerSite = False,
-    rounds: Rounds = None,
-    seed: Seed = None,
-    jobs: Jobs = None,
-    engine: Engine = "auto",
-    fresh: Fresh = False,
-    no_oracle: NoOracle = False,
-    picture: Picture = None,
-    stored: Stored = False,
-    json: Json = False,
+    family: options.Families = None,
+    only: options.Only = None,
+    skip: options.Skip = None,
+    selection: options.Selection = None,
+    sample: options.Sample = None,
+    one_per_site: options.OnePerSite = False,
+    rounds: options.Rounds = None,
+    seed: options.Seed = None,
+    jobs: options.Jobs = None,
+    engine: options.Engine = "auto",
+    fresh: options.Fresh = False,
+    no_oracle: options.NoOracle = False,
+    picture: options.Picture = None,
+    stored: options.Stored = False,
+    json: options.Json = False,
 ) -> None:
     """Compare families of operators: cost, ends, scores, and what their mutants can tell.
 
@@ -70,9 +54,9 @@ def compare(
         found = comparison.read(find_journal(context.obj, COMPARISON).parent)
     else:
         request = request_of(
-            context.obj, only=only, skip=skip, family=family or FAMILIES, order=1, selection=selection,
-            sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
-            fresh=fresh, configured_selection=False,
+            context.obj, only=only, skip=skip, family=family or FAMILIES, order=1,
+            selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed,
+            jobs=jobs, engine=engine, fresh=fresh, configured_selection=False,
         )  # fmt: skip
         with progress_shown() as progress:
             found = comparison.run(request, progress, no_oracle=no_oracle)
@@ -80,7 +64,7 @@ def compare(
     leave(decide(found.results))
 
 
-def _show(comparison: Comparison, picture: Path | None, *, json: bool) -> None:
+def _show(comparison: FamilyComparison, picture: Path | None, *, json: bool) -> None:
     from mutabot.report.comparison_json import comparison_data
     from mutabot.report.picture_file import write_picture
     from mutabot.report.terminal.console import make_console

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from mutabot.analysis.families import Comparison, compare, is_same_campaign
+from mutabot.analysis.families import FamilyComparison, compare_families, is_same_campaign
 from mutabot.analysis.results import Results, read_results
 from mutabot.campaign import run as campaign
 from mutabot.campaign.request import Progress, Request
@@ -14,7 +14,7 @@ from mutabot.journal.files import COMPARISON, WITHOUT_ORACLE
 from mutabot.journal.reader import JournalReader
 
 
-def run(request: Request, progress: Progress, *, no_oracle: bool) -> Comparison:
+def run(request: Request, progress: Progress, *, no_oracle: bool) -> FamilyComparison:
     """Run what is to be compared, and compare it.
 
     Without an oracle the first exception decides: which tests notice a mutant, the other campaign tells.
@@ -22,13 +22,13 @@ def run(request: Request, progress: Progress, *, no_oracle: bool) -> Comparison:
     first = replace(request, every_test=True, no_oracle=False, journal=COMPARISON)
     results = _read(campaign.run_campaign(first, progress))
     if not no_oracle:
-        return compare(results)
+        return compare_families(results)
     progress.note("once more, with every assertion switched off")
     second = replace(request, every_test=False, no_oracle=True, journal=WITHOUT_ORACLE)
-    return compare(results, _read(campaign.run_campaign(second, progress)))
+    return compare_families(results, _read(campaign.run_campaign(second, progress)))
 
 
-def read(home: Path) -> Comparison:
+def read(home: Path) -> FamilyComparison:
     """The last comparison, from mutabot's folder in a project.
 
     The campaign without an oracle counts only if it belongs to it. Raises JournalError if there is none.
@@ -38,7 +38,9 @@ def read(home: Path) -> Comparison:
         raise JournalError(f"{path}: there is no comparison yet; `mutabot compare` makes one", path=str(path))
     results = _read(path)
     second = _read(other) if other.is_file() else None
-    return compare(results, second if second is not None and is_same_campaign(results, second) else None)
+    return compare_families(
+        results, second if second is not None and is_same_campaign(results, second) else None
+    )
 
 
 def _read(path: Path) -> Results:

@@ -11,17 +11,17 @@ from mutabot.errors import UsageError
 from mutabot.exit_codes import ExitCode
 from mutabot.journal.files import find_journal
 
-from .options import Jobs, Json, OneMutant, Round
+from . import options
 from .output import print_json, progress_shown
 from .request import request_of
 
 
 def replay(
     context: typer.Context,
-    mutant: OneMutant,
-    round: Round = None,
-    jobs: Jobs = None,
-    json: Json = False,
+    mutant: options.OneMutant,
+    round: options.Round = None,
+    jobs: options.Jobs = None,
+    json: options.Json = False,
 ) -> None:
     """Run one mutant of the last campaign again in fresh processes; exit with 4 if it ends otherwise."""
     from mutabot.analysis.results import find_mutant, read_results

@@ -9,19 +9,19 @@ import typer
 
 from mutabot.journal.files import find_journal
 
-from .options import All, Json, OneMutant
+from . import options
 from .output import print_json, show_results
 
 
-def results(context: typer.Context, all: All = False, json: Json = False) -> None:
+def results(context: typer.Context, all: options.All = False, json: options.Json = False) -> None:
     """Show the results of the last campaign, also of one that was interrupted or still runs."""
     show_results(find_journal(context.obj), json=json, everything=all, earlier=True)
 
 
 def show(
     context: typer.Context,
-    mutant: OneMutant,
-    json: Json = False,
+    mutant: options.OneMutant,
+    json: options.Json = False,
 ) -> None:
     """Show everything about one mutant."""
     from mutabot.analysis.results import find_mutant, read_results

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mutabot.analysis.ends import end_of
-from mutabot.analysis.families import Comparison, Family, Share
+from mutabot.analysis.families import Family, FamilyComparison, Share
 from mutabot.analysis.subsumption import Redundancy
 
 from .as_json import FORMAT, drawing_data, interval_data, scores_data
@@ -16,7 +16,7 @@ _META = (
 )  # fmt: skip
 
 
-def comparison_data(comparison: Comparison) -> dict[str, Any]:
+def comparison_data(comparison: FamilyComparison) -> dict[str, Any]:
     """Everything about a comparison, as JSON-like data."""
     return {
         "format": FORMAT,
@@ -80,7 +80,7 @@ def _share(share: Share) -> dict[str, Any]:
     }
 
 
-def _mutants(comparison: Comparison) -> list[dict[str, Any]]:
+def _mutants(comparison: FamilyComparison) -> list[dict[str, Any]]:
     classes = {
         mutant: number
         for number, members in enumerate(comparison.redundancy.dominators, start=1)

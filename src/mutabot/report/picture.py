@@ -36,7 +36,7 @@ _COLOURS: Mapping[End, str] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class Rectangle:
     """A filled rectangle, in pixels from the upper left corner."""
 
     x: float
@@ -80,7 +80,7 @@ class Picture:
 
     width: int
     height: int
-    boxes: Sequence[Box]
+    boxes: Sequence[Rectangle]
     words: Sequence[Words]
 
 
@@ -97,14 +97,14 @@ def draw(bars: Sequence[Bar], title: str) -> Picture:
     rows = -(-len(occurring) // _LEGEND_COLUMNS)
     height = below + 20 + rows * _LEGEND_ROW + _MARGIN // 2
     shapes = [
-        Box(0, 0, _WIDTH, height, _PAPER),
+        Rectangle(0, 0, _WIDTH, height, _PAPER),
         Words(_MARGIN, 30, title, 16, bold=True),
         Words(_WIDTH - _MARGIN, 30, "share of outcomes, over all rounds", 11, "end", _FAINT),
         *(shape for index, bar in enumerate(bars) for shape in _bar(bar, _HEAD + index * (_BAR + _GAP))),
         *(Words(_at(n / 4), below, f"{25 * n} %", 11, "middle", _FAINT) for n in range(5)),
         *_legend(occurring, below + 20),
     ]
-    boxes = [shape for shape in shapes if isinstance(shape, Box)]
+    boxes = [shape for shape in shapes if isinstance(shape, Rectangle)]
     return Picture(_WIDTH, height, boxes, [shape for shape in shapes if isinstance(shape, Words)])
 
 
@@ -125,15 +125,15 @@ def _at(share: float) -> float:
     return _LABELS + share * (_WIDTH - _LABELS - _MARGIN - 10)
 
 
-def _legend(ends: Sequence[End], y: float) -> Iterator[Box | Words]:
+def _legend(ends: Sequence[End], y: float) -> Iterator[Rectangle | Words]:
     for index, end in enumerate(ends):
         row, column = divmod(index, _LEGEND_COLUMNS)
         x = _MARGIN + column * (_WIDTH - 2 * _MARGIN) / _LEGEND_COLUMNS
-        yield Box(x, y + row * _LEGEND_ROW, 14, 14, _COLOURS[end])
+        yield Rectangle(x, y + row * _LEGEND_ROW, 14, 14, _COLOURS[end])
         yield Words(x + 20, y + row * _LEGEND_ROW + 12, end.value)
 
 
-def _bar(bar: Bar, y: float) -> Iterator[Box | Words]:
+def _bar(bar: Bar, y: float) -> Iterator[Rectangle | Words]:
     yield Words(_MARGIN, y + 15, bar.name, bold=True)
     yield Words(_MARGIN, y + 31, bar.note, 11, fill=_FAINT)
     total = sum(bar.counts.values())
@@ -146,7 +146,7 @@ def _bar(bar: Bar, y: float) -> Iterator[Box | Words]:
         left, right = _at(before / total), _at((before + count) / total)
         before += count
         if count:
-            yield Box(left, y, right - left, _BAR, _COLOURS[end])
+            yield Rectangle(left, y, right - left, _BAR, _COLOURS[end])
         if right - left >= _ROOM:
             text = f"{100 * count / total:.0f} %"
             yield Words((left + right) / 2, y + _BAR / 2 + 4, text, 12, "middle", _legible(_COLOURS[end]))
@@ -158,7 +158,7 @@ def _legible(colour: str) -> str:
     return _INK if 0.299 * red + 0.587 * green + 0.114 * blue > 150 else _PAPER
 
 
-def _svg_of_box(box: Box) -> str:
+def _svg_of_box(box: Rectangle) -> str:
     place = f'x="{box.x:.1f}" y="{box.y:.1f}" width="{box.width:.1f}" height="{box.height:.1f}"'
     return f'<rect {place} fill="{box.fill}"/>'
 

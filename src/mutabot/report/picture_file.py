@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mutabot.analysis.families import Comparison
+from mutabot.analysis.families import FamilyComparison
 from mutabot.errors import UsageError
 
 from .picture import bars_of, draw, svg
@@ -23,7 +23,7 @@ def check_picture(path: Path) -> None:
         )
 
 
-def write_picture(comparison: Comparison, path: Path) -> None:
+def write_picture(comparison: FamilyComparison, path: Path) -> None:
     """Draw the ends of all families. Raises UsageError if the file cannot be written."""
     picture = draw(bars_of(comparison.families), _TITLE)
     try:

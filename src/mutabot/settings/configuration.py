@@ -16,7 +16,7 @@ from mutabot.families import FAMILIES, USUAL
 from .document import Document
 from .families import why_unknown
 from .mistakes import Check, raise_errors
-from .toml_lines import Place
+from .toml_lines import KeyPath
 
 _PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
 _INIT = "run `mutabot init` to propose one"
@@ -230,11 +230,11 @@ def load_configuration(folder: Path) -> Configuration:
     return Configuration(**{**dict(settings), **changed})
 
 
-def _find(folder: Path) -> tuple[Document, Place]:
+def _find(folder: Path) -> tuple[Document, KeyPath]:
     """The document with the configuration, and where in it the keys stand."""
     if not folder.is_dir():
         raise ConfigurationError("there is no such folder", file=str(folder))
-    found: list[tuple[Document, Place]] = []
+    found: list[tuple[Document, KeyPath]] = []
     hint = ""
     if (folder / _PYPROJECT).exists():
         document = Document.read(folder / _PYPROJECT, _PYPROJECT, ConfigurationError)
@@ -255,7 +255,7 @@ def _find(folder: Path) -> tuple[Document, Place]:
     return found[0]
 
 
-def _child(data: dict[str, Any], place: Place) -> Any:
+def _child(data: dict[str, Any], place: KeyPath) -> Any:
     node: Any = data
     for part in place:
         node = node[part]
@@ -265,7 +265,7 @@ def _child(data: dict[str, Any], place: Place) -> Any:
 class _Paths:
     """The paths of a configuration: inside the project, and really there."""
 
-    def __init__(self, check: Check, place: Place, root: Path) -> None:
+    def __init__(self, check: Check, place: KeyPath, root: Path) -> None:
         self.check, self.place, self.root = check, place, root
 
     def sources(self, key: str, names: tuple[str, ...]) -> tuple[str, ...]:
@@ -281,7 +281,7 @@ class _Paths:
                 found.add(PurePosixPath(name).as_posix())
         return tuple(sorted(found))
 
-    def is_inside(self, where: Place, name: str) -> bool:
+    def is_inside(self, where: KeyPath, name: str) -> bool:
         """Whether a path lies in the project; if not, that is noted."""
         path = PurePosixPath(name)
         if not name.strip():
@@ -296,7 +296,7 @@ class _Paths:
             return True
         return False
 
-    def exists(self, where: Place, name: str) -> bool:
+    def exists(self, where: KeyPath, name: str) -> bool:
         """Whether there is such a file or folder; if not, that is noted."""
         if (self.root / name).exists():
             return True
@@ -338,7 +338,7 @@ class _Paths:
         if settings.selection is not None and self.is_inside(where, settings.selection):
             self.exists(where, settings.selection)
 
-    def _expanded(self, where: Place, pattern: str) -> list[str]:
+    def _expanded(self, where: KeyPath, pattern: str) -> list[str]:
         try:
             matches = list(self.root.glob(pattern))
         except ValueError as error:

@@ -11,7 +11,7 @@ from typing import Any
 
 from mutabot.errors import ConfigurationError, VocabularyError
 
-from .toml_lines import Place, key_lines
+from .toml_lines import KeyPath, key_lines
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _AT_LINE = re.compile(r" \(at line (\d+), column (\d+)\)$")
@@ -30,7 +30,7 @@ class Document:
 
     file: str
     data: dict[str, Any]
-    lines: Mapping[Place, int] = field(repr=False)
+    lines: Mapping[KeyPath, int] = field(repr=False)
     error_type: type[ConfigurationError] = VocabularyError
 
     @classmethod
@@ -46,18 +46,18 @@ class Document:
             raise _syntax_error(str(error), text, file, error_type) from None
         return cls(file, data, key_lines(text), error_type)
 
-    def line(self, place: Place) -> int | None:
+    def line(self, place: KeyPath) -> int | None:
         """Line of the key, or of the nearest one around it."""
         for length in range(len(place), 0, -1):
             if place[:length] in self.lines:
                 return self.lines[place[:length]]
         return None
 
-    def error(self, place: Place, problem: str) -> ConfigurationError:
+    def error(self, place: KeyPath, problem: str) -> ConfigurationError:
         """The error for a problem at this place."""
         return self.error_type(problem, file=self.file, key=self.key(place), line=self.line(place))
 
-    def key(self, place: Place) -> str | None:
+    def key(self, place: KeyPath) -> str | None:
         """The place as an engineer would say it: ``robot:Arm.move_by · arguments.dx.unit``."""
         chunks: list[str] = []
         dotted = ""

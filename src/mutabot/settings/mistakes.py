@@ -14,7 +14,7 @@ from mutabot.border.lines import Problem
 from mutabot.errors import ConfigurationError, UnknownNameError, nearest_name, unknown_name_text
 
 from .document import Document
-from .toml_lines import Place
+from .toml_lines import KeyPath
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -79,11 +79,11 @@ class Check:
     document: Document
     errors: list[ConfigurationError] = field(default_factory=list)
 
-    def error(self, place: Place, problem: str) -> None:
+    def error(self, place: KeyPath, problem: str) -> None:
         """Note a mistake."""
         self.errors.append(self.document.error(place, problem))
 
-    def unknown(self, place: Place, kind: str, name: str, known: Iterable[str]) -> None:
+    def unknown(self, place: KeyPath, kind: str, name: str, known: Iterable[str]) -> None:
         """Note a name that does not exist."""
         known = list(known)
         document = self.document
@@ -99,7 +99,7 @@ class Check:
             _reword(error, f"unknown {kind} {name!r}; did you mean {alias!r}?")
         self.errors.append(error)
 
-    def table(self, model: type[M], raw: Any, place: Place, *, salvage: bool = False) -> M | None:
+    def table(self, model: type[M], raw: Any, place: KeyPath, *, salvage: bool = False) -> M | None:
         """``raw`` as a ``model``; None if it has mistakes, which are noted.
 
         With ``salvage``, what is sound comes back all the same where that makes sense.
@@ -117,7 +117,7 @@ class Check:
         except ValidationError:
             return None
 
-    def _explain(self, details: list[ErrorDetails], model: type[BaseModel], place: Place) -> None:
+    def _explain(self, details: list[ErrorDetails], model: type[BaseModel], place: KeyPath) -> None:
         keys = known_keys(model)
         extras = [str(detail["loc"][-1]) for detail in details if detail["type"] == "extra_forbidden"]
         meant = {nearest_name(extra, keys) for extra in extras}
@@ -133,7 +133,7 @@ class Check:
             elif name not in meant:
                 self.error(where[:-1], f"the key {name!r} is missing")
 
-    def _explain_enum(self, where: Place, name: str, detail: ErrorDetails, model: type[BaseModel]) -> None:
+    def _explain_enum(self, where: KeyPath, name: str, detail: ErrorDetails, model: type[BaseModel]) -> None:
         value = detail["input"]
         known = re.findall(r"'([^']*)'", detail["ctx"]["expected"])
         if isinstance(value, str):

@@ -11,7 +11,7 @@ import re
 import tomllib
 
 #: the way to a value from the top of a document: keys of tables and indices of lists
-Place = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 
 _BLANK = re.compile(r"(?:[ \t\n]|#[^\n]*)*")
 _SPACE = re.compile(r"[ \t]*")
@@ -23,7 +23,7 @@ _TEXT = re.compile(
 _SCALAR = re.compile(r"[^,\]}#\n]+")
 
 
-def key_lines(text: str) -> dict[Place, int]:
+def key_lines(text: str) -> dict[KeyPath, int]:
     """The 1-based line of every key, table header and list item of a valid TOML text."""
     scanner = _Scanner(text)
     with contextlib.suppress(_LostError):
@@ -38,18 +38,18 @@ class _LostError(Exception):
 class _Scanner:
     def __init__(self, text: str) -> None:
         self.text, self.position = text, 0
-        self.lines: dict[Place, int] = {}
-        self.tables: dict[Place, int] = {}  # arrays of tables: how many elements so far
+        self.lines: dict[KeyPath, int] = {}
+        self.tables: dict[KeyPath, int] = {}  # arrays of tables: how many elements so far
 
     def document(self) -> None:
-        table: Place = ()
+        table: KeyPath = ()
         while True:
             self.skip(_BLANK)
             if self.position >= len(self.text):
                 return
             table = self.header() if self.sees("[") else self.pair(table)
 
-    def header(self) -> Place:
+    def header(self) -> KeyPath:
         start = self.position
         is_list = self.sees("[[")
         self.position += 2 if is_list else 1
@@ -65,7 +65,7 @@ class _Scanner:
         self.note(place, start)
         return place
 
-    def pair(self, table: Place) -> Place:
+    def pair(self, table: KeyPath) -> KeyPath:
         start = self.position
         place = table + self.key()
         for length in range(len(table) + 1, len(place) + 1):
@@ -75,7 +75,7 @@ class _Scanner:
         self.value(place)
         return table
 
-    def value(self, place: Place) -> None:
+    def value(self, place: KeyPath) -> None:
         self.skip(_SPACE)
         if self.sees("["):
             self.array(place)
@@ -86,7 +86,7 @@ class _Scanner:
         else:
             self.match(_SCALAR)
 
-    def array(self, place: Place) -> None:
+    def array(self, place: KeyPath) -> None:
         self.expect("[")
         index = 0
         self.skip(_BLANK)
@@ -97,7 +97,7 @@ class _Scanner:
             self.comma("]")
         self.expect("]")
 
-    def inline_table(self, place: Place) -> None:
+    def inline_table(self, place: KeyPath) -> None:
         self.expect("{")
         self.skip(_BLANK)
         while not self.sees("}"):
@@ -111,7 +111,7 @@ class _Scanner:
             self.expect(",")
             self.skip(_BLANK)
 
-    def key(self) -> Place:
+    def key(self) -> KeyPath:
         parts: list[str] = []
         while True:
             match = self.match(_KEY)
@@ -123,16 +123,16 @@ class _Scanner:
             self.expect(".")
             self.skip(_SPACE)
 
-    def inside_tables(self, keys: Place) -> Place:
-        place: Place = ()
+    def inside_tables(self, keys: KeyPath) -> KeyPath:
+        place: KeyPath = ()
         for key in keys:
             place = self.with_index((*place, key))
         return place
 
-    def with_index(self, place: Place) -> Place:
+    def with_index(self, place: KeyPath) -> KeyPath:
         return (*place, self.tables[place] - 1) if place in self.tables else place
 
-    def note(self, place: Place, position: int) -> None:
+    def note(self, place: KeyPath, position: int) -> None:
         self.lines.setdefault(place, self.text.count("\n", 0, position) + 1)
 
     def sees(self, text: str) -> bool:

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from mutabot.model import Operation, Quantity
 from mutabot.model.values.quantity import READING_OF, is_reading_of
 from mutabot.settings.mistakes import Check
-from mutabot.settings.toml_lines import Place
+from mutabot.settings.toml_lines import KeyPath
 
 #: an operation with the document and place it was read from
-Read = tuple[Operation, Check, Place]
+Read = tuple[Operation, Check, KeyPath]
 
 
 def check_operations(read: Mapping[str, Read]) -> None:
@@ -22,7 +22,7 @@ def check_operations(read: Mapping[str, Read]) -> None:
             _check_opposite(operation, check, (*place, "opposite"), read)
 
 
-def _check_current(operation: Operation, check: Check, place: Place, read: Mapping[str, Read]) -> None:
+def _check_current(operation: Operation, check: Check, place: KeyPath, read: Mapping[str, Read]) -> None:
     name = operation.current
     assert name is not None
     if name not in read:
@@ -42,7 +42,7 @@ def _check_current(operation: Operation, check: Check, place: Place, read: Mappi
         check.error(place, f"{name} reads {found}, but here it would have to read {missing}")
 
 
-def _check_opposite(operation: Operation, check: Check, place: Place, read: Mapping[str, Read]) -> None:
+def _check_opposite(operation: Operation, check: Check, place: KeyPath, read: Mapping[str, Read]) -> None:
     name = operation.opposite
     assert name is not None
     if name == operation.target:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from mutabot.settings.mistakes import Check, shown
-from mutabot.settings.toml_lines import Place
+from mutabot.settings.toml_lines import KeyPath
 
 from .targets import target_fault
 
 
-def read_idle(check: Check, raw: Any, place: Place) -> Any:
+def read_idle(check: Check, raw: Any, place: KeyPath) -> Any:
     """``idle = …`` as data that ``model.answer.restore`` understands; mistakes are noted.
 
     A TOML value is the answer itself; ``{ call = "module:name" }`` names a function that makes it.
@@ -24,7 +24,7 @@ def read_idle(check: Check, raw: Any, place: Place) -> Any:
     return _data(check, raw, place)
 
 
-def _data(check: Check, raw: Any, place: Place) -> Any:
+def _data(check: Check, raw: Any, place: KeyPath) -> Any:
     if isinstance(raw, list):
         return {"list": [_data(check, item, place) for item in raw]}
     if isinstance(raw, dict):

@@ -10,7 +10,7 @@ from mutabot.errors import ConfigurationError, UnknownNameError
 from mutabot.model import Clock, Operation, Probe, Vocabulary
 from mutabot.settings.document import Document
 from mutabot.settings.mistakes import Check, raise_errors
-from mutabot.settings.toml_lines import Place
+from mutabot.settings.toml_lines import KeyPath
 
 from .crosscheck import Read, check_operations
 from .operations import check_targets, read_clock, read_operation, read_probe
@@ -90,7 +90,7 @@ class _Merged:
         return not is_shipped or what not in self.own
 
     def _add_operation(self, check: Check, operation: Operation, index: int) -> None:
-        place: Place = ("operation", index)
+        place: KeyPath = ("operation", index)
         known = self.read.get(operation.target)
         if known is None:
             self.read[operation.target] = (operation, check, place)

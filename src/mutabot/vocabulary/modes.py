@@ -13,13 +13,13 @@ from typing import Any
 
 from mutabot.model import Case, Mode, Path, Quantity
 from mutabot.settings.mistakes import Check, shown
-from mutabot.settings.toml_lines import Place
+from mutabot.settings.toml_lines import KeyPath
 
 _FORM = 'such as mode = { argument = "relative", true = "by", false = "to" }'
 
 
 @dataclass(frozen=True, slots=True)
-class Decision:
+class ModeChoice:
     """What decides about a mode.
 
     Attributes:
@@ -35,18 +35,18 @@ class Decision:
 class Undecided(Quantity):
     """A quantity whose mode an argument decides; ``mode`` is that of the first value."""
 
-    decision: Decision = Decision("", ())
+    choice: ModeChoice = ModeChoice("", ())
 
     @classmethod
-    def of(cls, quantity: Quantity, decision: Decision) -> Undecided:
-        return cls(**_facts(quantity), decision=decision)
+    def of(cls, quantity: Quantity, choice: ModeChoice) -> Undecided:
+        return cls(**_facts(quantity), choice=choice)
 
     def decided(self, mode: Mode) -> Quantity:
         """The quantity in this mode."""
         return Quantity(**{**_facts(self), "mode": mode})
 
 
-def read_decision(check: Check, raw: Any, place: Place) -> tuple[Any, Decision | None]:
+def read_mode_choice(check: Check, raw: Any, place: KeyPath) -> tuple[Any, ModeChoice | None]:
     """A quantity's table with a plain mode, and what decides about it; None if nothing does.
 
     Mistakes are noted.
@@ -71,19 +71,19 @@ def read_decision(check: Check, raw: Any, place: Place) -> tuple[Any, Decision |
     elif len(named) < 2:
         check.error(where, f"needs a mode for each value of {argument}, {_FORM}")
     elif _is_path(check, argument, (*where, "argument")):
-        return plain, Decision(argument, tuple(modes))
+        return plain, ModeChoice(argument, tuple(modes))
     return plain, None
 
 
 def cases_of(
-    check: Check, quantities: Sequence[Quantity], place: Place
+    check: Check, quantities: Sequence[Quantity], place: KeyPath
 ) -> list[tuple[tuple[Case, ...], tuple[Quantity, ...]]]:
     """The quantities in each case that arguments decide; one without a condition if they decide nothing."""
     values: dict[str, tuple[str, ...]] = {}
     for quantity in quantities:
         if isinstance(quantity, Undecided):
-            argument = quantity.decision.argument
-            found = tuple(value for value, _ in quantity.decision.modes)
+            argument = quantity.choice.argument
+            found = tuple(value for value, _ in quantity.choice.modes)
             if set(values.setdefault(argument, found)) != set(found):
                 check.error(
                     (*place, quantity.name),
@@ -103,8 +103,8 @@ def name_of(cases: Sequence[Case]) -> str:
 def _decided(quantity: Quantity, cases: Sequence[Case]) -> Quantity:
     if not isinstance(quantity, Undecided):
         return quantity
-    modes = dict(quantity.decision.modes)
-    value = next((case.value for case in cases if case.argument == quantity.decision.argument), "")
+    modes = dict(quantity.choice.modes)
+    value = next((case.value for case in cases if case.argument == quantity.choice.argument), "")
     return quantity.decided(modes.get(value, Mode.BY))  # else it is a mistake that was noted
 
 
@@ -112,7 +112,7 @@ def _facts(quantity: Quantity) -> dict[str, Any]:
     return {one.name: getattr(quantity, one.name) for one in fields(Quantity)}
 
 
-def _is_path(check: Check, text: str, place: Place) -> bool:
+def _is_path(check: Check, text: str, place: KeyPath) -> bool:
     try:
         path = Path.parse(text, rooted=True)
     except ValueError as error:

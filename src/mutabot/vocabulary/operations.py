@@ -8,7 +8,7 @@ from mutabot.model import Clock, Operation, Path, Pattern, Probe, Quantity
 from mutabot.model.values.signature import parse_signature
 from mutabot.model.values.units import UNITS, Dimension, dimension_of
 from mutabot.settings.mistakes import Check
-from mutabot.settings.toml_lines import Place
+from mutabot.settings.toml_lines import KeyPath
 
 from .idle import read_idle
 from .modes import Undecided, cases_of, name_of
@@ -18,7 +18,7 @@ from .schema import ClockTable, OperationTable, ProbeTable
 from .targets import target_fault
 
 
-def read_operation(check: Check, raw: Any, place: Place) -> Operation | None:
+def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
     """One ``[[operation]]``; None if not even its call can be told. Mistakes are noted."""
     table = check.table(OperationTable, raw, place, salvage=True)
     if table is None:
@@ -56,7 +56,7 @@ def read_operation(check: Check, raw: Any, place: Place) -> Operation | None:
     return operation
 
 
-def read_clock(check: Check, raw: dict[str, Any], place: Place) -> Clock | None:
+def read_clock(check: Check, raw: dict[str, Any], place: KeyPath) -> Clock | None:
     """``clock = { tick = …, time or step = …, unit = … }``; None if it has mistakes, which are noted."""
     table = check.table(ClockTable, raw, place)
     if table is None:
@@ -75,7 +75,7 @@ def read_clock(check: Check, raw: dict[str, Any], place: Place) -> Clock | None:
     return Clock(table.tick, table.time, rooted, table.unit, source_of(check, place, "clock"), table.step)
 
 
-def read_probe(check: Check, raw: Any, place: Place) -> Probe | None:
+def read_probe(check: Check, raw: Any, place: KeyPath) -> Probe | None:
     """One ``[[probe]]``; None if it has mistakes, which are noted."""
     table = check.table(ProbeTable, raw, place)
     if table is None:
@@ -85,20 +85,20 @@ def read_probe(check: Check, raw: Any, place: Place) -> Probe | None:
     return Probe(table.call, table.tolerance, source_of(check, place, table.call), result)
 
 
-def check_targets(check: Check, targets: list[str], place: Place) -> None:
+def check_targets(check: Check, targets: list[str], place: KeyPath) -> None:
     """Note each target that is not ``module:qualified.name``."""
     for index, target in enumerate(targets):
         check_target(check, target, (*place, index))
 
 
-def check_target(check: Check, target: str, place: Place) -> None:
+def check_target(check: Check, target: str, place: KeyPath) -> None:
     """Note a target that is not ``module:qualified.name``."""
     fault = target_fault(target)
     if fault is not None:
         check.error(place, fault)
 
 
-def source_of(check: Check, place: Place, name: str) -> str:
+def source_of(check: Check, place: KeyPath, name: str) -> str:
     """``robot.toml:12 · robot:Arm.move_by``"""
     line = check.document.line(place)
     return f"{check.document.file}{f':{line}' if line is not None else ''} · {name}"
@@ -110,7 +110,7 @@ def _in_cases(
     arguments: tuple[Quantity, ...],
     result: tuple[Quantity, ...],
     source: str,
-    place: Place,
+    place: KeyPath,
 ) -> tuple[tuple[Quantity, ...], tuple[Pattern, ...]]:
     """The arguments of an operation, or its commands if an argument decides about their modes."""
     found = cases_of(check, arguments, (*place, "arguments"))
@@ -131,7 +131,7 @@ def _in_cases(
 
 
 def _read_message(
-    check: Check, table: OperationTable, described: tuple[tuple[Quantity, ...], ...], place: Place
+    check: Check, table: OperationTable, described: tuple[tuple[Quantity, ...], ...], place: KeyPath
 ) -> str | None:
     """The path to what says which command a call is; None if there is none, or a mistake, which is noted."""
     if table.patterns and table.message is None:
@@ -153,7 +153,7 @@ def _read_message(
     return table.message
 
 
-def _check_from_self(check: Check, operation: Operation, place: Place) -> None:
+def _check_from_self(check: Check, operation: Operation, place: KeyPath) -> None:
     """What lies in the object tells which command it is, but cannot be said otherwise."""
     if operation.message is None or Path.parse(operation.message, rooted=True).root != "self":
         return
@@ -169,7 +169,7 @@ def _check_from_self(check: Check, operation: Operation, place: Place) -> None:
             )
 
 
-def _check_signature(check: Check, operation: Operation, place: Place) -> None:
+def _check_signature(check: Check, operation: Operation, place: KeyPath) -> None:
     if operation.signature is None:
         return
     try:

@@ -10,7 +10,7 @@ from mutabot.errors import nearest_name
 from mutabot.model import Path, Pattern, Quantity
 from mutabot.model.values.notation import Field, Notation
 from mutabot.settings.mistakes import Check
-from mutabot.settings.toml_lines import Place
+from mutabot.settings.toml_lines import KeyPath
 
 from .idle import read_idle
 from .modes import cases_of, name_of
@@ -19,7 +19,7 @@ from .schema import PatternTable, QuantityTable
 
 
 def read_patterns(
-    check: Check, raw: list[Any], place: Place, source: str, common: tuple[Quantity, ...] = ()
+    check: Check, raw: list[Any], place: KeyPath, source: str, common: tuple[Quantity, ...] = ()
 ) -> tuple[Pattern, ...]:
     """The patterns of an operation.
 
@@ -47,7 +47,7 @@ def read_patterns(
     return tuple(patterns)
 
 
-def _in_cases(check: Check, pattern: Pattern, place: Place) -> Iterator[Pattern]:
+def _in_cases(check: Check, pattern: Pattern, place: KeyPath) -> Iterator[Pattern]:
     """The pattern, once for each value of the arguments that decide about modes."""
     for cases, quantities in cases_of(check, pattern.arguments, (*place, "arguments")):
         if not cases:
@@ -63,7 +63,7 @@ def _in_cases(check: Check, pattern: Pattern, place: Place) -> Iterator[Pattern]
         )
 
 
-def _read_pattern(check: Check, raw: Any, place: Place, source: str) -> Pattern | None:
+def _read_pattern(check: Check, raw: Any, place: KeyPath, source: str) -> Pattern | None:
     table = check.table(PatternTable, raw, place)
     notation = _notation(check, table.text, (*place, "text")) if table is not None else None
     if table is None or notation is None:
@@ -86,7 +86,7 @@ def _read_pattern(check: Check, raw: Any, place: Place, source: str) -> Pattern 
 
 
 def _read_only_field(
-    check: Check, inline: dict[str, Any], place: Place, notation: Notation, table: PatternTable
+    check: Check, inline: dict[str, Any], place: KeyPath, notation: Notation, table: PatternTable
 ) -> tuple[Quantity, ...]:
     fields = notation.fields
     names = " and ".join(f"{{{field.name}}}" for field in fields)
@@ -108,7 +108,9 @@ def _read_only_field(
     return ()
 
 
-def _read_fields(check: Check, raw: dict[str, Any], place: Place, notation: Notation) -> tuple[Quantity, ...]:
+def _read_fields(
+    check: Check, raw: dict[str, Any], place: KeyPath, notation: Notation
+) -> tuple[Quantity, ...]:
     fields = {field.name: field for field in notation.fields}
     free = [name for name in fields if name not in raw]
     quantities: list[Quantity] = []
@@ -123,7 +125,7 @@ def _read_fields(check: Check, raw: dict[str, Any], place: Place, notation: Nota
     return (*quantities, *read_arguments(check, beside, place))
 
 
-def _read_field(check: Check, raw: Any, place: Place, field: Field) -> tuple[Quantity, ...]:
+def _read_field(check: Check, raw: Any, place: KeyPath, field: Field) -> tuple[Quantity, ...]:
     quantities = tuple(read_quantity(check, raw, place, Path(field.name), written=True))
     for quantity in quantities:
         fault = _field_fault(field, quantity)
@@ -143,7 +145,7 @@ def _field_fault(field: Field, quantity: Quantity) -> str | None:
     return f"{{{field.name}}} takes text; for numbers write {{{field.name}:g}} (or :d, :.2f …)"
 
 
-def _check_opposite(check: Check, text: str, place: Place, notation: Notation) -> None:
+def _check_opposite(check: Check, text: str, place: KeyPath, notation: Notation) -> None:
     opposite = _notation(check, text, place)
     if opposite is None:
         return
@@ -158,7 +160,7 @@ def _check_opposite(check: Check, text: str, place: Place, notation: Notation) -
         check.error(place, "a command cannot be its own opposite")
 
 
-def _notation(check: Check, text: str, place: Place) -> Notation | None:
+def _notation(check: Check, text: str, place: KeyPath) -> Notation | None:
     try:
         return Notation.compile(text)
     except ValueError as error:
@@ -171,7 +173,7 @@ def _form(notation: Notation) -> tuple[str, ...]:
     return tuple(part if isinstance(part, str) else f"{{:{part.kind}}}" for part in notation.parts)
 
 
-def _with_line(check: Check, source: str, place: Place) -> str:
+def _with_line(check: Check, source: str, place: KeyPath) -> str:
     line = check.document.line(place)
     _, separator, call = source.partition(" · ")
     return f"{check.document.file}:{line}{separator}{call}" if line is not None else source

@@ -7,20 +7,20 @@ from typing import Any
 
 from mutabot.model import Path, Quantity
 from mutabot.settings.mistakes import Check, shown
-from mutabot.settings.toml_lines import Place
+from mutabot.settings.toml_lines import KeyPath
 
 from .axes import slice_of, split_axes, spread
-from .modes import Decision, Undecided, read_decision
+from .modes import ModeChoice, Undecided, read_mode_choice
 from .rules import default_unit, default_values, faults
 from .schema import QuantityTable
 
 
-def read_arguments(check: Check, raw: dict[str, Any], place: Place) -> tuple[Quantity, ...]:
+def read_arguments(check: Check, raw: dict[str, Any], place: KeyPath) -> tuple[Quantity, ...]:
     """The quantities of an ``arguments`` table, whose keys are paths that start with an argument's name."""
     return _read_paths(check, raw, place, written=True)
 
 
-def read_result(check: Check, raw: dict[str, Any] | None, place: Place) -> tuple[Quantity, ...]:
+def read_result(check: Check, raw: dict[str, Any] | None, place: KeyPath) -> tuple[Quantity, ...]:
     """The quantities of a ``result``: a quantity, or a table whose keys are paths into the result."""
     if raw is None:
         return ()
@@ -35,10 +35,10 @@ def is_quantity(raw: dict[str, Any]) -> bool:
 
 
 def read_quantity(
-    check: Check, raw: Any, place: Place, path: Path, *, written: bool, name: str | None = None
+    check: Check, raw: Any, place: KeyPath, path: Path, *, written: bool, name: str | None = None
 ) -> Iterator[Quantity]:
     """The quantity of a table, or one per axis where a slice has several; mistakes are noted."""
-    raw, decision = read_decision(check, raw, place)
+    raw, choice = read_mode_choice(check, raw, place)
     table = check.table(QuantityTable, raw, place)
     if table is None:
         return
@@ -55,16 +55,16 @@ def read_quantity(
     if found:
         return
     if axes is None or not several:
-        yield _undecided(_quantity(table, path, table.axis, name), decision)
+        yield _undecided(_quantity(table, path, table.axis, name), choice)
         return
     try:
         for axis, part in zip(axes, _spread(path, axes), strict=True):
-            yield _undecided(_quantity(table, part, axis, None), decision)
+            yield _undecided(_quantity(table, part, axis, None), choice)
     except ValueError as error:
         check.error((*place, "axis"), str(error))
 
 
-def _read_paths(check: Check, raw: dict[str, Any], place: Place, *, written: bool) -> tuple[Quantity, ...]:
+def _read_paths(check: Check, raw: dict[str, Any], place: KeyPath, *, written: bool) -> tuple[Quantity, ...]:
     quantities: list[Quantity] = []
     for text, item, where in _leaves(raw, "", place):
         if not isinstance(item, dict):
@@ -80,7 +80,7 @@ def _read_paths(check: Check, raw: dict[str, Any], place: Place, *, written: boo
     return tuple(quantities)
 
 
-def _leaves(raw: dict[str, Any], before: str, place: Place) -> Iterator[tuple[str, Any, Place]]:
+def _leaves(raw: dict[str, Any], before: str, place: KeyPath) -> Iterator[tuple[str, Any, KeyPath]]:
     """Path, table and place of each quantity; ``arguments.pose.x`` without quotes is nested in TOML."""
     for key, item in raw.items():
         text = f"{before}{key}" if not before or key.startswith((".", "[")) else f"{before}.{key}"
@@ -90,7 +90,7 @@ def _leaves(raw: dict[str, Any], before: str, place: Place) -> Iterator[tuple[st
             yield text, item, (*place, key)
 
 
-def _path(check: Check, text: str, place: Place, written: bool) -> Path | None:
+def _path(check: Check, text: str, place: KeyPath, written: bool) -> Path | None:
     if not written and not text.startswith((".", "[")):
         check.error(
             place, f"a path into the result begins with a dot or a bracket: write result.{_dotted(text)}"
@@ -127,8 +127,8 @@ def _spread(path: Path, axes: Sequence[str]) -> list[Path]:
     return spread(path, tuple(axes))
 
 
-def _undecided(quantity: Quantity, decision: Decision | None) -> Quantity:
-    return quantity if decision is None else Undecided.of(quantity, decision)
+def _undecided(quantity: Quantity, choice: ModeChoice | None) -> Quantity:
+    return quantity if choice is None else Undecided.of(quantity, choice)
 
 
 def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | None) -> Quantity:

@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.analysis.ends import End
-from mutabot.analysis.families import Comparison, Family, Share
+from mutabot.analysis.families import Family, FamilyComparison, Share
 from mutabot.analysis.score import RoundScores
 from mutabot.analysis.statistics import Interval
 from mutabot.analysis.subsumption import Redundancy
@@ -27,16 +27,16 @@ _WORDS = (
 _UNKNOWN = (
     "–: not known for mutants that were not run against every test that reaches them; ≥: for some of them."
 )
-Cell = Callable[[Family], Text]
+Entry = Callable[[Family], Text]
 
 
-def print_comparison(console: Console, comparison: Comparison) -> None:
+def print_comparison(console: Console, comparison: FamilyComparison) -> None:
     """Print all of it, in several tables where one would be too wide."""
     for part in _parts(comparison, console.width):
         console.print(part)
 
 
-def _parts(comparison: Comparison, width: int) -> Iterator[RenderableType]:
+def _parts(comparison: FamilyComparison, width: int) -> Iterator[RenderableType]:
     yield Text(_title(comparison), style="bold")
     yield Text(_circumstances(comparison), style="dim")
     at_once = max(1, (width - _NAMES) // _COLUMN)
@@ -50,7 +50,7 @@ def _parts(comparison: Comparison, width: int) -> Iterator[RenderableType]:
         yield Text(_UNKNOWN, style="dim")
 
 
-def _title(comparison: Comparison) -> str:
+def _title(comparison: FamilyComparison) -> str:
     mutants = sum(family.mutants for family in comparison.families)
     done = sum(family.done for family in comparison.families)
     planned = sum(family.planned for family in comparison.families)
@@ -59,7 +59,7 @@ def _title(comparison: Comparison) -> str:
     return f"Families side by side, {size}: {comparison.state}{known}"
 
 
-def _circumstances(comparison: Comparison) -> str:
+def _circumstances(comparison: FamilyComparison) -> str:
     meta = comparison.meta
     parts = [f"{key} {meta[key]}" for key in ("mutabot", "engine", "seed") if meta.get(key) is not None]
     seconds = meta.get("seconds")
@@ -74,8 +74,8 @@ def _circumstances(comparison: Comparison) -> str:
 
 
 def _sections(
-    comparison: Comparison, families: Sequence[Family]
-) -> Iterator[tuple[str, list[tuple[str, Cell]]]]:
+    comparison: FamilyComparison, families: Sequence[Family]
+) -> Iterator[tuple[str, list[tuple[str, Entry]]]]:
     yield "Size and cost, over all rounds", _size_rows(families)
     occurring = [end for end in End if any(one.ends[end].count for one in comparison.families)]
     yield "What became of them", [(end.value, _end_cell(end)) for end in occurring]
@@ -83,7 +83,7 @@ def _sections(
     yield "What they can tell, by mutants", _worth_rows(comparison.redundancy)
 
 
-def _table(families: Sequence[Family], rows: Sequence[tuple[str, Cell]]) -> Table:
+def _table(families: Sequence[Family], rows: Sequence[tuple[str, Entry]]) -> Table:
     table = make_table()
     table.add_column("", width=_NAMES - 2, overflow="fold")
     for family in families:
@@ -94,8 +94,8 @@ def _table(families: Sequence[Family], rows: Sequence[tuple[str, Cell]]) -> Tabl
     return table
 
 
-def _size_rows(families: Sequence[Family]) -> list[tuple[str, Cell]]:
-    rows: list[tuple[str, Cell]] = [("mutants", lambda one: Text(str(one.mutants)))]
+def _size_rows(families: Sequence[Family]) -> list[tuple[str, Entry]]:
+    rows: list[tuple[str, Entry]] = [("mutants", lambda one: Text(str(one.mutants)))]
     if any(one.population is not None for one in families):
         rows.append(("drawn from", lambda one: Text(_number(one.population))))
     rows += [
@@ -109,12 +109,12 @@ def _size_rows(families: Sequence[Family]) -> list[tuple[str, Cell]]:
     return rows
 
 
-def _end_cell(end: End) -> Cell:
+def _end_cell(end: End) -> Entry:
     return lambda family: share_cell(family.ends[end])
 
 
-def _score_rows(families: Sequence[Family]) -> list[tuple[str, Cell]]:
-    rows: list[tuple[str, Cell]] = [
+def _score_rows(families: Sequence[Family]) -> list[tuple[str, Entry]]:
+    rows: list[tuple[str, Entry]] = [
         ("score", lambda one: _score_cell(one.scores)),
         ("check score", lambda one: _check_cell(one.scores)),
     ]
@@ -125,8 +125,8 @@ def _score_rows(families: Sequence[Family]) -> list[tuple[str, Cell]]:
     return rows
 
 
-def _worth_rows(all_families: Redundancy) -> list[tuple[str, Cell]]:
-    rows: list[tuple[str, Cell]] = [
+def _worth_rows(all_families: Redundancy) -> list[tuple[str, Entry]]:
+    rows: list[tuple[str, Entry]] = [
         ("valid", lambda one: share_cell(one.valid)),
         ("reached by a test", lambda one: share_cell(one.reached)),
         ("trivial", lambda one: share_cell(one.trivial)),
