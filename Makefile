@@ -32,6 +32,7 @@ docs: $(READY)
 	$(RUN) tools/make_docs.py
 	$(RUN) tools/make_classical_page.py
 	$(RUN) tools/make_comparison_page.py
+	$(RUN) tools/make_design_page.py
 
 ## compare the families of operators on the examples (of the largest a tenth of the mutants), and write
 ## docs/comparison.md from it

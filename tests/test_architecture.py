@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import ast
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-import mutabot
+from rooms import SOURCE, files, imports, levels, name_of, rooms
 
-SOURCE = Path(mutabot.__file__).parent
 #: package -> packages of ours it may import
 ALLOWED = {
     "exit_codes": set(),
@@ -40,18 +37,7 @@ ALLOWED = {
         "campaign", "proposal", "analysis", "report",
     },
 }  # fmt: skip
-FILES = sorted(SOURCE.rglob("*.py"))
-
-
-def imports(file: Path) -> Iterator[str]:
-    """Absolute names of the modules a file imports."""
-    package = ["mutabot", *file.relative_to(SOURCE).parent.parts]
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            start = package[: len(package) - node.level + 1] if node.level else []
-            yield ".".join([*start, *([node.module] if node.module else [])])
+FILES = files()
 
 
 def part(module: str) -> str | None:
@@ -72,7 +58,7 @@ def test_imports_go_one_way(file: Path) -> None:
 
 def test_no_module_imports_itself_in_a_circle() -> None:
     graph = {
-        _name(file): {module for module in imports(file) if module.startswith("mutabot.")} for file in FILES
+        name_of(file): {module for module in imports(file) if module.startswith("mutabot.")} for file in FILES
     }
     done: set[str] = set()
 
@@ -89,47 +75,14 @@ def test_no_module_imports_itself_in_a_circle() -> None:
         visit(module, ())
 
 
-def rooms() -> dict[str, set[str]]:
-    """Room -> rooms it imports; a folder without folders is a room, and so is a file beside folders."""
-    homes = {_name(file): _room(file) for file in FILES}
-    found: dict[str, set[str]] = {room: set() for room in homes.values()}
-    for file in FILES:
-        for module in imports(file):
-            other = homes.get(module)
-            if other is not None and "__init__" not in (file.stem, other):
-                found[_room(file)].add(other)
-    return found
-
-
-def _room(file: Path) -> str:
-    has_folders = any((folder / "__init__.py").exists() for folder in file.parent.iterdir())
-    place = file.with_suffix("") if has_folders else file.parent
-    return str(place.relative_to(SOURCE))
-
-
 def test_no_room_leads_back_to_itself() -> None:
-    graph = rooms()
-    order: dict[str, int] = {}
-
-    def level(room: str, path: tuple[str, ...]) -> int:
-        assert room not in path, " -> ".join((*path[path.index(room) :], room))
-        if room not in order:
-            order[room] = 1 + max([level(one, (*path, room)) for one in graph[room] - {room}], default=-1)
-        return order[room]
-
-    for room in graph:
-        level(room, ())
+    levels(rooms())
 
 
 def test_no_room_has_more_than_twelve_files() -> None:
     for folder in {file.parent for file in FILES}:
-        files = [file.name for file in folder.glob("*.py") if file.stem != "__init__"]
-        assert len(files) <= 12, f"{folder.relative_to(SOURCE)}: {len(files)} files"
-
-
-def _name(file: Path) -> str:
-    names = ["mutabot", *file.relative_to(SOURCE).with_suffix("").parts]
-    return ".".join(names[:-1] if names[-1] == "__init__" else names)
+        names = [file.name for file in folder.glob("*.py") if file.stem != "__init__"]
+        assert len(names) <= 12, f"{folder.relative_to(SOURCE)}: {len(names)} files"
 
 
 def test_the_inside_imports_the_standard_library_wrapt_and_pytest_only() -> None:

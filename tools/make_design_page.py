@@ -1,0 +1,80 @@
+"""Write the picture of the rooms into docs/design.md, from the real imports.
+
+Use: ``python tools/make_design_page.py``; with ``--check`` nothing is written, and the exit code is 1 if the
+picture is out of date.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from rooms import SOURCE, Graph, among, direct, gathered, levels, rooms
+
+PAGE = Path(__file__).parents[1] / "docs" / "design.md"
+BEGIN, END = "<!-- rooms: written by tools/make_design_page.py from the imports -->", "<!-- end of rooms -->"
+#: packages whose rooms are drawn as well
+_OPENED = ("campaign", "inside")
+#: files that belong to no room: plug-ins and `python -m mutabot` begin there
+_DOORS = ("__init__", "__main__")
+
+
+def picture() -> str:
+    """The text between the marks."""
+    graph = rooms()
+    whole = gathered(graph)
+    lines = ["", "```text", *_drawn(among(whole, (room for room in whole if room not in _DOORS))), "```", ""]
+    for package in _OPENED:
+        inside = (room for room in graph if room.startswith(f"{package}/"))
+        inner = among(graph, (room for room in inside if Path(room).name not in _DOORS))
+        lines += [f"Inside `{package}/`:", "", "```text", *_drawn(inner), "```", ""]
+    return "\n".join(lines)
+
+
+def _drawn(graph: Graph) -> Iterator[str]:
+    """Two lines per room, the highest first: level, name, the rooms directly below it; and what it is."""
+    found = levels(graph)
+    ordered = sorted(graph, key=lambda room: (-found[room], room))
+    names = max(len(_short(room)) for room in ordered)
+    before = None
+    for room in ordered:
+        mark = f"{found[room]:>2}" if found[room] != before else "  "
+        before = found[room]
+        on = ", ".join(sorted(map(_short, direct(graph, room))))
+        yield f"{mark}  {_short(room):<{names}}  {f'→ {on}' if on else ''}".rstrip()
+        yield f"    {'':<{names}}  {_summary(room)}"
+
+
+def _short(room: str) -> str:
+    return room.partition("/")[2] or room
+
+
+def _summary(room: str) -> str:
+    """The first sentence that the room says of itself, without what follows a colon."""
+    folder = SOURCE / room
+    file = folder / "__init__.py" if folder.is_dir() else folder.with_suffix(".py")
+    text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+    sentence = text.partition("\n\n")[0].replace("\n", " ").replace("`", "").partition(". ")[0]
+    return sentence.rstrip(".")
+
+
+def with_picture(text: str) -> str:
+    """The page with the picture as it is now."""
+    head, _, rest = text.partition(BEGIN)
+    return f"{head}{BEGIN}\n{picture()}\n{END}{rest.partition(END)[2]}"
+
+
+def main() -> int:
+    """Write the picture, or check it."""
+    old = PAGE.read_text(encoding="utf-8")
+    new = with_picture(old)
+    if "--check" in sys.argv:
+        return int(new != old)
+    PAGE.write_text(new, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
