@@ -22,7 +22,7 @@ from mutabot.analysis.statistics import Interval, crossed
 
 Values = NDArray[np.float64]
 Draw = Callable[[np.random.Generator, int], Values]
-CAMPAIGNS, LEVEL = 2000, 0.95
+CAMPAIGNS = 2000
 
 
 def mixture(always: float, never: float) -> Draw:
@@ -86,7 +86,7 @@ def true_score(draw: Draw, effect: float) -> float:
 def interval_of(killed: Values) -> Interval:
     """Ours."""
     table = [[None if math.isnan(value) else value for value in row] for row in killed.tolist()]
-    found = crossed(table, LEVEL)
+    found = crossed(table)
     assert found is not None
     return found
 

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 
 from mutabot.analysis.score import KillRate, RoundScores
-from mutabot.analysis.statistics import crossed, sampled, student_quantile, wilson
+from mutabot.analysis.statistics import LEVEL, crossed, sampled, student, wilson
 from mutabot.model import By, Outcome, Verdict
 
 CAMPAIGNS = 1000
@@ -162,11 +162,37 @@ def test_wilson_is_the_published_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("freedom", "quantile", "error"),
-    [(1, 12.706, 0.12), (2, 4.303, 0.01), (4, 2.776, 1e-3), (10, 2.228, 2e-4), (1000, 1.962, 2e-4)],
-)
-def test_students_quantile(freedom: float, quantile: float, error: float) -> None:
-    assert student_quantile(0.975, freedom) == pytest.approx(quantile, rel=error)
+    ("freedom", "quantile"),
+    [
+        (1, 12.706), (2, 4.303), (3, 3.182), (4, 2.776), (5, 2.571), (6, 2.447), (7, 2.365), (8, 2.306),
+        (9, 2.262), (10, 2.228), (15, 2.131), (25, 2.060), (60, 2.000), (100, 1.984), (math.inf, 1.960),
+    ],
+)  # fmt: skip
+def test_students_quantile_is_the_published_one(freedom: float, quantile: float) -> None:
+    """NIST/SEMATECH e-Handbook of Statistical Methods, 1.3.6.7.2, column 0.975."""
+    assert student(freedom) == pytest.approx(quantile, rel=5e-4)
+
+
+@pytest.mark.parametrize("freedom", [1, 1.1, 1.3, 1.6, 1.9, 2.2, 2.7, 3.4, 4.5, 7, 10, 15.5, 29, 70, 1000])
+def test_half_of_the_level_lies_within_students_quantile(freedom: float) -> None:
+    """Simpson's rule on the density: what lies beyond is within what 0.4 % of the quantile make of it."""
+    factor = math.exp(math.lgamma((freedom + 1) / 2) - math.lgamma(freedom / 2)) / math.sqrt(
+        freedom * math.pi
+    )
+    steps, end = 2000, student(freedom)
+    heights = [
+        factor * (1 + (end * n / steps) ** 2 / freedom) ** (-(freedom + 1) / 2) for n in range(steps + 1)
+    ]
+    weights = [1 if n in (0, steps) else 4 if n % 2 else 2 for n in range(steps + 1)]
+    within = (
+        end / steps / 3 * math.fsum(weight * height for weight, height in zip(weights, heights, strict=True))
+    )
+    assert abs(within - LEVEL / 2) <= 0.004 * end * heights[-1]
+
+
+def test_less_than_one_degree_of_freedom_has_no_quantile() -> None:
+    with pytest.raises(ValueError, match="1 or more"):
+        student(0.5)
 
 
 def test_scores_carry_their_intervals() -> None:
