@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from mutabot.classical import Example, names, operator
-from mutabot.inside.text.instrument import compile_text
+from mutabot.inside.text.instrument import instrumented
+from mutabot.inside.text.loading import compile_tree
 from tests.classical.build import choices, refined, spliced, text_of
 
 CASES = [(name, index) for name in names() for index in range(len(operator(name).examples))]
@@ -32,8 +33,8 @@ def test_the_example_makes_exactly_these_texts(name: str, index: int, tmp_path: 
 def test_the_example_compiles_with_all_its_alternatives(name: str, index: int, tmp_path: Path) -> None:
     example = example_of(name, index)
     text = refined(text_of(tmp_path, example.before, name), example)
-    compile_text(example.before.encode(), text.file, text)
-    compile_text(example.before.encode(), text.file, text, record=True)
+    for record in (False, True):
+        compile_tree(instrumented(ast.parse(example.before), text.places, record=record), text.file)
 
 
 @pytest.mark.parametrize("name", names())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import runpy
 import sys
@@ -17,7 +18,8 @@ import pytest
 from mutabot.border.codec import from_data, to_data
 from mutabot.classical import find_texts, merge, refine
 from mutabot.inside.text.import_hook import ImportHook
-from mutabot.inside.text.instrument import compile_text
+from mutabot.inside.text.instrument import instrumented
+from mutabot.inside.text.loading import compile_tree
 from mutabot.inside.text.switches import Alternatives, Bomb, ZeroValue
 from mutabot.model import Instrumentation
 from tests.classical.build import choices, imported, load, spliced, text_of
@@ -36,16 +38,16 @@ def test_a_program_of_everything_behaves_as_the_original(tmp_path: Path, record:
     plain = load(tmp_path / text.file).results()
     del sys.modules[Path(text.file).stem]
     with imported(tmp_path, text, record=record) as (module, hook):
-        instrumented = module.results()
+        results = module.results()
     assert hook.imported == [text.file]
     for key, value in plain.items():
-        assert same_for_all(instrumented[key]) == same_for_all(value), key
+        assert same_for_all(results[key]) == same_for_all(value), key
 
 
 def test_every_alternative_does_what_its_text_says(tmp_path: Path) -> None:
     text = text_of(tmp_path, MISSION)
     assert len(choices(text)) > 150
-    code = compile_text(MISSION.encode(), text.file, text)
+    code = compile_tree(instrumented(ast.parse(MISSION), text.places), text.file)
     alternatives = Alternatives(len(text.places))
     alternatives.install()
     for choice, place, alternative in choices(text):

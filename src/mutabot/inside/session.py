@@ -91,8 +91,9 @@ class Session:
 
     def install(self) -> None:
         """Put the interception of the whole vocabulary in place, and the mutant with it."""
-        finish = (self.returns.add_notes,) if self.returns is not None else ()
-        self.texts = Texts.of(self.job, self.pipe, partial(self._acted, ""), *finish)
+        self.texts = Texts.of(self.job, self.pipe, partial(self._acted, ""))
+        if self.returns is not None:
+            self.returns.install()  # after the alternatives, which are found by where they stand
         vocabulary = self.job.vocabulary
         for operation in vocabulary.operations:
             door = self._door(operation)

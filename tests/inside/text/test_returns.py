@@ -7,7 +7,6 @@ import importlib
 import sys
 import traceback
 from collections.abc import Iterator
-from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from textwrap import dedent
 from types import ModuleType
@@ -103,7 +102,7 @@ def program(tmp_path: Path) -> Iterator[tuple[Returns, ModuleType]]:
         yield returns, module
     finally:
         returns.stop()
-        del SourceFileLoader.get_code
+        returns.remove()
         sys.path.remove(str(tmp_path))
         sys.modules.pop(name, None)
 

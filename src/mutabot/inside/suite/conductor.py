@@ -95,7 +95,6 @@ class Conductor:
             conductor = cls(job, pipe_of(job, home, descriptor))
             conductor._make_private(home)
         conductor.session.returns = Returns(conductor.locator)
-        conductor.session.returns.install()
         conductor.session.install()
         if job.no_oracle:
             conductor.switch_off_checks()

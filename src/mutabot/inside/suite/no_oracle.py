@@ -10,19 +10,17 @@ from __future__ import annotations
 import ast
 import os
 import sys
-from collections.abc import Callable
-from importlib.machinery import SourceFileLoader
-from types import CodeType, ModuleType
-from typing import Any, cast
+from types import ModuleType
+from typing import Any
 
 import wrapt
 
 from mutabot.inside.calls.locate import Locator
+from mutabot.inside.text import loading
 from mutabot.model import Role
 
 #: of unittest and numpy.testing: these run what they are given, and so they stay
 _RUNS_SOMETHING = ("raises", "warn", "logs", "gc_cycles")
-_GetCode = Callable[[SourceFileLoader, str], CodeType | None]
 
 
 class NoOracle:
@@ -41,7 +39,7 @@ class NoOracle:
     def install(self) -> None:
         """Switch off checks in all that is imported from now on."""
         self._switch_off_rewriting()
-        self._switch_off_imports()
+        loading.add(self)
         wrapt.register_post_import_hook(_silence_unittest, "unittest.case")
         wrapt.register_post_import_hook(_silence, "numpy.testing")
 
@@ -49,7 +47,7 @@ class NoOracle:
         """Tests are about to be collected here: helpers in the same folder are the tests' own."""
         self._folders.add(os.path.dirname(os.path.realpath(path)) + os.sep)
 
-    def is_of_tests(self, path: str) -> bool:
+    def wants(self, path: str) -> bool:
         """Whether the assertions of a file are the tests' own checks."""
         role = self._locator.role(path)
         if role is not None:
@@ -67,24 +65,20 @@ class NoOracle:
         original = rewrite.rewrite_asserts
 
         def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
-            if path is not None and self.is_of_tests(path):
-                _Remover().visit(tree)
+            if path is not None and self.wants(path):
+                self.change(tree, source, path)
             original(tree, source, path, *rest)
 
         rewrite.rewrite_asserts = rewrite_asserts
         rewrite._read_pyc = lambda *arguments, **named: None
 
-    def _switch_off_imports(self) -> None:
-        original, checks = cast(_GetCode, SourceFileLoader.get_code), self
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Take the assertions out of a file of the tests."""
+        _Remover().visit(tree)
 
-        def get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
-            path = self.get_filename(fullname)
-            if not checks.is_of_tests(path):
-                return original(self, fullname)
-            tree = _Remover().visit(ast.parse(self.get_data(path), path))
-            return compile(tree, path, "exec", dont_inherit=True)
-
-        SourceFileLoader.get_code = get_code  # type: ignore[method-assign, assignment]
+    def give_up(self, path: str, error: Exception) -> None:
+        """A file whose checks stay on would say something about them: its import fails instead."""
+        raise error
 
 
 class _Remover(ast.NodeTransformer):

@@ -1,9 +1,4 @@
-"""Import hook: program files are compiled with their alternatives in them.
-
-Every way to import a source file asks ``SourceFileLoader.get_code`` for the code: the import statement,
-``importlib``, ``runpy.run_module``. That is where the hook sits; loader, spec and module stay what they
-are without it. No compiled file is read or written for an instrumented module.
-"""
+"""Import hook: program files are compiled with their alternatives in them."""
 
 from __future__ import annotations
 
@@ -12,18 +7,20 @@ import hashlib
 import os
 import sys
 from collections.abc import Callable
-from importlib.machinery import SourceFileLoader
-from types import CodeType, ModuleType
-from typing import Any, cast
+from types import ModuleType
+from typing import Any
 
 from mutabot.model.alternative import Instrumentation, ProgramText
 
+from . import loading
 from .foresee import Forms
-from .instrument import MismatchError, compile_text, forms_of
+from .instrument import MismatchError, forms_of, instrumented
 from .sightings import Recording
 from .switches import Alternatives
 
-GetCode = Callable[[SourceFileLoader, str], CodeType | None]
+
+class _ChangedError(MismatchError):
+    """A file is no longer what the plan was made for."""
 
 
 class ImportHook:
@@ -35,7 +32,7 @@ class ImportHook:
         imported: files that were instrumented, relative to the root.
         problems: files that were not, with the reason.
 
-    ``on_problem`` is told the file and the reason at once; ``finish`` may change the tree of a file at last.
+    ``on_problem`` is told the file and the reason at once.
     """
 
     def __init__(
@@ -43,7 +40,6 @@ class ImportHook:
         root: str,
         instrumentation: Instrumentation,
         on_problem: Callable[[str, str], None] = lambda file, reason: None,
-        finish: Callable[[ast.Module, str], None] = lambda tree, path: None,
     ) -> None:
         texts = instrumentation.texts
         places = [place for text in texts for place in text.places]
@@ -60,9 +56,7 @@ class ImportHook:
         self.alternatives.forms = self._forms
         self._texts = {os.path.realpath(os.path.join(root, text.file)): text for text in texts}
         self._real_paths: dict[str, str] = {}
-        self._original: GetCode | None = None
         self._on_problem = on_problem
-        self._finish = finish
 
     def install(self) -> None:
         """Instrument the program's files from now on; files imported before are told as problems."""
@@ -71,49 +65,41 @@ class ImportHook:
             text = self._text_of(_file_of(module))
             if text is not None:
                 self._refuse(text, "it was imported before mutabot could look at it")
-        # get_code is inherited; it is put where the inherited one is found last
-        self._original = cast(GetCode, SourceFileLoader.get_code)
-        original, hook = self._original, self
-
-        def get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
-            path = self.get_filename(fullname)
-            text = hook._text_of(path)
-            if text is None:
-                return original(self, fullname)
-            return hook._compiled(text, self.get_data(path), path) or original(self, fullname)
-
-        SourceFileLoader.get_code = get_code  # type: ignore[method-assign, assignment]
+        loading.add(self)
 
     def remove(self) -> None:
         """Import as ever from now on; text that is instrumented goes on as the original."""
-        if self._original is not None:
-            if "get_code" in vars(SourceFileLoader):
-                del SourceFileLoader.get_code
-            self._original = None
+        loading.remove(self)
         (self.recording or self.alternatives).remove()
+
+    def wants(self, path: str) -> bool:
+        """Whether there are alternatives for a file."""
+        return self._text_of(path) is not None
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Put the alternatives of a file into its tree. Raises MismatchError if they do not belong there."""
+        text = self._text_of(path)
+        assert text is not None
+        if hashlib.sha256(source).hexdigest() != text.digest:
+            raise _ChangedError("it has changed since its mutants were made")
+        record = self.recording is not None
+        instrumented(tree, text.places, record=record, originals=self._originals)
+        self.imported.append(text.file)
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """A file is compiled without its alternatives."""
+        text = self._text_of(path)
+        assert text is not None
+        if text.file in self.imported:
+            self.imported.remove(text.file)
+        is_known = isinstance(error, _ChangedError)
+        self._refuse(text, str(error) if is_known else f"it cannot be instrumented: {error}")
 
     def _text_of(self, path: str) -> ProgramText | None:
         real = self._real_paths.get(path)
         if real is None:
             real = self._real_paths[path] = os.path.realpath(path)
         return self._texts.get(real)
-
-    def _compiled(self, text: ProgramText, source: bytes, path: str) -> CodeType | None:
-        if hashlib.sha256(source).hexdigest() != text.digest:
-            self._refuse(text, "it has changed since its mutants were made")
-            return None
-        try:
-            record = self.recording is not None
-
-            def finish(tree: ast.Module) -> None:
-                self._finish(tree, path)
-
-            code = compile_text(source, path, text, record=record, originals=self._originals, finish=finish)
-        except (MismatchError, RecursionError, SyntaxError, ValueError) as error:
-            self._refuse(text, f"it cannot be instrumented: {error}")
-            return None
-        self.imported.append(text.file)
-        return code
 
     def _forms(self, place: int) -> Forms | None:
         original = self._originals.get(place)

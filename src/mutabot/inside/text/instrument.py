@@ -10,12 +10,10 @@ from __future__ import annotations
 
 import ast
 import copy
-import warnings
-from collections.abc import Callable, Iterable
-from types import CodeType
+from collections.abc import Iterable
 from typing import TypeVar
 
-from mutabot.model.alternative import RUNTIME, Alternative, Extent, ProgramText, TextPlace, kept_name
+from mutabot.model.alternative import RUNTIME, Alternative, Extent, TextPlace, kept_name
 
 from .foresee import Forms
 
@@ -30,29 +28,6 @@ class MismatchError(ValueError):
     """A place is not where the plan says."""
 
 
-def compile_text(
-    source: bytes,
-    filename: str,
-    text: ProgramText,
-    *,
-    record: bool = False,
-    originals: dict[int, ast.expr] | None = None,
-    finish: Callable[[ast.Module], None] = lambda tree: None,
-) -> CodeType:
-    """Code of a module with all alternatives of its places in it, or with recording.
-
-    ``originals`` takes the expressions at the places as they stand in the text, by number. ``finish`` may
-    change the tree at last.
-
-    Raises SyntaxError like ``compile``, MismatchError if a place cannot be found.
-    """
-    tree = instrumented(ast.parse(source, filename), text.places, record=record, originals=originals)
-    finish(tree)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SyntaxWarning)  # alternatives may look as if they were slips
-        return compile(tree, filename, "exec", dont_inherit=True)
-
-
 def instrumented(
     tree: ast.Module,
     places: Iterable[TextPlace],
@@ -60,7 +35,12 @@ def instrumented(
     record: bool = False,
     originals: dict[int, ast.expr] | None = None,
 ) -> ast.Module:
-    """The tree with its places instrumented; the tree itself is changed. Raises MismatchError."""
+    """The tree with all alternatives of its places in it, or with recording; the tree itself is changed.
+
+    ``originals`` takes the expressions at the places as they stand in the text, by number.
+
+    Raises MismatchError if a place cannot be found.
+    """
     instrumenter = _Instrumenter(places, record, originals)
     instrumenter.visit(tree)
     instrumenter.check()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
@@ -44,24 +43,15 @@ class Texts:
         hook.alternatives.on_act = self._acted
 
     @classmethod
-    def of(
-        cls,
-        job: Job,
-        pipe: Pipe | Held,
-        on_act: Callable[[], None],
-        finish: Callable[[ast.Module, str], None] = lambda tree, path: None,
-    ) -> Texts | None:
-        """Instrument the program from now on; None if the job leaves its text alone.
-
-        ``finish``: as the hook's.
-        """
+    def of(cls, job: Job, pipe: Pipe | Held, on_act: Callable[[], None]) -> Texts | None:
+        """Instrument the program from now on; None if the job leaves its text alone."""
         if job.instrumentation is None:
             return None
 
         def tell(file: str, why: str) -> None:
             texts.pipe.send(NotInstrumented(file, why))
 
-        texts = cls(ImportHook(job.root, job.instrumentation, tell, finish), pipe, on_act)
+        texts = cls(ImportHook(job.root, job.instrumentation, tell), pipe, on_act)
         texts.hook.install()
         return texts
 

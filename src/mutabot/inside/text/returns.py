@@ -15,16 +15,16 @@ import ast
 import builtins
 import os
 import sys
-import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from importlib.machinery import SourceFileLoader
-from types import CodeType, FrameType
-from typing import Any, TypeVar, cast
+from types import FrameType
+from typing import Any, TypeVar
 
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.readings.plain import plain, text_of_error
 from mutabot.model import Role
+
+from . import loading
 
 RETURNED, RAISED = "__mutabot_returned__", "__mutabot_raised__"
 #: values per test that are noted
@@ -35,7 +35,6 @@ _LIBRARIES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}"
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _Node = TypeVar("_Node", bound=ast.AST)
-GetCode = Callable[[SourceFileLoader, str], CodeType | None]
 
 
 class Returns:
@@ -61,15 +60,11 @@ class Returns:
         """Compile program files with notes from now on."""
         setattr(builtins, RETURNED, self._returned)
         setattr(builtins, RAISED, self._raised)
-        original, returns = cast(GetCode, SourceFileLoader.get_code), self
+        loading.add(self)
 
-        def get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
-            path = self.get_filename(fullname)
-            if not returns.is_program(path):
-                return original(self, fullname)
-            return returns._compiled(self.get_data(path), path) or original(self, fullname)
-
-        SourceFileLoader.get_code = get_code  # type: ignore[method-assign, assignment]
+    def remove(self) -> None:
+        """Compile program files without notes from now on."""
+        loading.remove(self)
 
     def is_program(self, path: str) -> bool:
         """Whether a file is one of the program's."""
@@ -77,12 +72,20 @@ class Returns:
             return False
         return self._locator.role(path) is Role.PROGRAM
 
-    def add_notes(self, tree: ast.Module, path: str) -> None:
+    def wants(self, path: str) -> bool:
+        """Whether a file gets notes."""
+        return self.is_program(path)
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
         """Put notes into the functions of a program file."""
         for function in _functions(tree):
             if not _is_generator(function) and not _is_translated(function):
                 _add_notes(function)
         self._own.add(path)
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """A program file is compiled without notes: its import will say, or it is nested too deeply."""
+        self._own.discard(path)
 
     def start(self) -> None:
         """A test begins, before its fixtures."""
@@ -104,17 +107,6 @@ class Returns:
     def stop(self) -> None:
         """What comes now is no more part of the test."""
         self._on = False
-
-    def _compiled(self, source: bytes, path: str) -> CodeType | None:
-        try:
-            tree = ast.parse(source, path)
-            self.add_notes(tree, path)
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", SyntaxWarning)  # told when it is compiled as it stands
-                return compile(tree, path, "exec", dont_inherit=True)
-        except (SyntaxError, RecursionError, ValueError):  # its import will say; or it is nested too deeply
-            self._own.discard(path)
-            return None
 
     def _returned(self, value: Any) -> Any:
         if self._on:
