@@ -154,7 +154,7 @@ def test_a_check_kills(ends: dict[str, dict[str, Outcome]]) -> None:
 def test_a_bomb_kills_by_exception_before_any_command(ends: dict[str, dict[str, Outcome]]) -> None:
     found = end(ends, "far:arm.move_by(0.5 * factor)#1:BSR")
     assert (found.verdict, found.by, found.commands) == (Verdict.KILLED, By.EXCEPTION, 0)
-    assert found.exception == "mutabot.inside.text.switches:Bomb"
+    assert found.exception == "mutabot.inside.alternatives:Bomb"
 
 
 def test_what_nothing_notices_survives(ends: dict[str, dict[str, Outcome]]) -> None:
@@ -291,7 +291,7 @@ def test_values_computed_at_import_are_mutated_in_processes_of_their_own(
 def test_a_program_that_cannot_be_imported_kills_by_exception(ends: dict[str, dict[str, Outcome]]) -> None:
     found = end(ends, "<module>:STEP = 0.4#1:BSR")
     assert (found.verdict, found.by) == (Verdict.KILLED, By.EXCEPTION)
-    assert found.exception == "mutabot.inside.text.switches:Bomb"
+    assert found.exception == "mutabot.inside.alternatives:Bomb"
     assert found.commands == 0
 
 
