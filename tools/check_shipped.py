@@ -26,6 +26,7 @@ from mutabot.border.job import Job
 from mutabot.border.lines import Problem
 from mutabot.inside.pipe import Held
 from mutabot.inside.session import Session
+from mutabot.inside.targets.callables import Callables
 from mutabot.model import Operation, Vocabulary
 from mutabot.model.values.signature import parse_signature, signature_of
 from mutabot.vocabulary import load
@@ -70,8 +71,10 @@ def compare(vocabulary: Vocabulary) -> Iterator[str]:
     for line in pipe.lines:
         if isinstance(line, Problem):
             yield f"{line.source}: {line.text}"
+    callables = session.interception.of()
+    assert isinstance(callables, Callables)
     for operation in vocabulary.operations:
-        original = session.interception.found.get(operation.target)
+        original = callables.found.get(operation.target)
         if operation.signature is not None and original is not None:
             yield from (f"{operation.source}: {text}" for text in compare_native(operation, original))
     session.interception.remove()

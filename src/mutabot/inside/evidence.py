@@ -8,7 +8,7 @@ from typing import Any
 
 from mutabot.model.outcome import added
 
-from .leaves import leaves
+from .exception_groups import leaves
 
 #: refusals of one test that are kept
 REFUSALS = 16

@@ -1,12 +1,172 @@
-"""Whether what the vocabulary names can be read the way it is meant, found out without reading it."""
+"""Whether the vocabulary fits the program: what it names is there, and can be used the way it is meant."""
 
 from __future__ import annotations
 
+import importlib
 import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.inside.calls.intercept import resolve
+from mutabot.border.lines import Line, Problem, Remark
+from mutabot.errors import PathError
+from mutabot.inside.calls.bypasses import Bypasses
 from mutabot.inside.readings.probes import is_bound, needed_arguments
+from mutabot.inside.targets.callables import not_imported
+from mutabot.inside.targets.interception import Interception
+from mutabot.inside.targets.names import NotFoundError, resolve
+from mutabot.inside.targets.target import Finding
+from mutabot.model import Call, Operation, Vocabulary
+from mutabot.model.values.quantity import Value
+
+
+@dataclass(slots=True)
+class Inspection:
+    """What is wrong with a vocabulary, told once each.
+
+    Attributes:
+        vocabulary: what is looked at.
+        is_asked: whether all of it is to be looked at; else only what comes up is told.
+        send: where it is told.
+    """
+
+    vocabulary: Vocabulary
+    is_asked: bool
+    send: Callable[[Line], None]
+    _told: set[tuple[str, str]] = field(default_factory=set)
+    _askers: dict[str, type | None] = field(default_factory=dict)
+    _unfit: dict[tuple[str, str], Callable[[], None]] = field(default_factory=dict)
+    _fit: dict[str, set[str]] = field(default_factory=dict)
+
+    def note(self, call: Call, read: Mapping[str, Value]) -> None:
+        """A call was made, and these values were read from its result."""
+        self._fit.setdefault(call.operation.target, set()).update(read)
+        instance = call.payload.instance
+        self._askers[call.operation.target] = None if instance is None else type(instance)
+
+    def target_is_wrong(self, target: str, finding: Finding) -> None:
+        """A target of the vocabulary turned out wrong when it was found."""
+        self.tell(self._source_of(target), finding)
+
+    def path_is_wrong(self, operation: Operation, key: str, error: PathError) -> None:
+        """A path does not fit what a call was given, or what it returned."""
+        # only a path has names to choose from
+        finding = Finding(key, str(error), error.step if error.path else None, error.known)
+
+        def tell() -> None:
+            if key.partition(".")[2] not in self._fit.get(operation.target, ()):
+                self.tell(operation.source, finding)
+
+        if operation.message is not None or not key.startswith("result."):
+            tell()
+        elif self.is_asked:  # one result may lack what others have
+            self._unfit.setdefault((operation.source, key), tell)
+
+    def tell(self, source: str, finding: Finding) -> None:
+        """Say what was found out about an entry of the vocabulary, unless something was said before."""
+        if (source, finding.key) in self._told:
+            return
+        self._told.add((source, finding.key))
+        if finding.is_remark:
+            self.send(Remark(source, finding.key, finding.text))
+        else:
+            self.send(Problem(source, finding.key, finding.text, finding.name, finding.known))
+
+    def look_ahead(self, interception: Interception) -> None:
+        """The tests are about to begin: say what can be said about the targets that are there already."""
+        if self.is_asked:
+            for operation in self.vocabulary.operations:
+                self.check_target(operation, interception)
+
+    def check_target(self, operation: Operation, interception: Interception) -> None:
+        """Say what of an operation does not fit its target."""
+        for finding in interception.of(operation.kind).check(operation):
+            self.tell(operation.source, finding)
+
+    def inspect(self, interception: Interception) -> None:
+        """Find what no test led to, so that every target of the vocabulary is looked at."""
+        for targets in interception.kinds:
+            for target, finding in targets.seek():
+                self.tell(self._source_of(target), finding)
+        for operation in self.vocabulary.operations:
+            self.check_target(operation, interception)
+            self._check_current(operation)
+        for tell in self._unfit.values():
+            tell()
+        self._check_idle()
+        self._check_exceptions()
+        self._check_probes()
+
+    def tell_overrides(self, interception: Interception, bypasses: Bypasses) -> None:
+        """Say which calls went past an operation because another method overrides it."""
+        for operation in self.vocabulary.operations:
+            if sentences := bypasses.sentences(operation.target):
+                self.tell(operation.source, Finding("call", sentences, is_remark=True))
+            uncovered = interception.of(operation.kind).uncovered(operation.target)
+            if operation.overrides and uncovered:
+                self.tell(operation.source, Finding("overrides", "; ".join(uncovered), is_remark=True))
+
+    def _check_current(self, operation: Operation) -> None:
+        if operation.current is None or operation.target not in self._askers:
+            return
+        try:
+            why = why_not_asked(operation.current, self._askers[operation.target])
+        except (NotFoundError, AttributeError, KeyError):  # it is told as an operation of its own
+            return
+        if why is not None:
+            self.tell(operation.source, Finding("current", why))
+
+    def _check_idle(self) -> None:
+        """Functions that make the answer of a command that is left out."""
+        for operation in self.vocabulary.operations:
+            for idle in (operation.idle, *(pattern.idle for pattern in operation.patterns)):
+                call = idle.get("call") if isinstance(idle, dict) else None
+                found = self._look_up(operation.source, "idle", call) if call is not None else None
+                if found is not None and not callable(found):
+                    text = f"{call} is {type(found).__name__}, not a function"
+                    self.tell(operation.source, Finding("idle", text))
+
+    def _check_exceptions(self) -> None:
+        """A misspelt refusal would turn refusals into kills; so each name must be an exception."""
+        for key in ("refusals", "checks", "failures"):
+            for name in getattr(self.vocabulary, key):
+                self._check_exception("vocabulary", key, name)
+        for operation in self.vocabulary.operations:
+            for name in operation.refusals:
+                self._check_exception(operation.source, "refusals", name)
+
+    def _check_exception(self, source: str, key: str, name: str) -> None:
+        found = self._look_up(source, f"{key} {name}", name)
+        if found is not None and not (isinstance(found, type) and issubclass(found, BaseException)):
+            self.tell(source, Finding(f"{key} {name}", f"{name} is no exception class"))
+
+    def _check_probes(self) -> None:
+        for probe in self.vocabulary.probes:
+            # what its objects have is not known to a class
+            owner = self._look_up(probe.source, "call", probe.owner or probe.target)
+            if owner is not None and probe.owner and not isinstance(owner, type):
+                self._look_up(probe.source, "call", probe.target)
+
+    def _look_up(self, source: str, key: str, target: str) -> Any:
+        """What ``module:qualified.name`` names; None, and a problem, if there is no such thing."""
+        module, _, qualname = target.partition(":")
+        try:
+            owner, name, _ = resolve(importlib.import_module(module), qualname)
+            return getattr(owner, name)
+        except NotFoundError as error:
+            self.tell(source, Finding(key, str(error), error.name, error.known))
+        except Exception as error:  # the user's module may fail in any way; say which and how
+            self.tell(source, not_imported(module, error, key))
+        return None
+
+    def _source_of(self, target: str) -> str:
+        operation = self.vocabulary.operation(target)
+        if operation is not None:
+            return operation.source
+        clock = self.vocabulary.clock
+        if clock is not None and clock.tick == target:
+            return clock.source
+        return next((probe.source for probe in self.vocabulary.probes if probe.target == target), "")
 
 
 def why_not_asked(reading: str, asker: type | None) -> str | None:

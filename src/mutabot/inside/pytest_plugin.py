@@ -60,6 +60,7 @@ def pytest_configure(config: pytest.Config) -> None:
     offer_at_every_scope(__name__)
     if _conductor is not None:
         config.pluginmanager.register(_conductor, "mutabot-conductor")
+        config.pluginmanager.register(_conductor.running, "mutabot-running")
     if _plain_round is not None:
         config.pluginmanager.register(_plain_round, "mutabot-round")
 

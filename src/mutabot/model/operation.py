@@ -84,6 +84,8 @@ class Operation:
         source: where the vocabulary says so (``robot.toml:12 · robot:Arm.move_by``).
         signature: what its arguments are, for a callable that does not tell; see ``model.signature``.
         overrides: whether the methods of subclasses that override it belong to it.
+        kind: what kind of target it has, which says how it is found at run time: the name of a file in
+            ``inside.targets``; None for a Python callable.
     """
 
     target: str
@@ -99,6 +101,7 @@ class Operation:
     signature: str | None = None
     overrides: bool = False
     idle: Any = None
+    kind: str | None = None
 
     @property
     def module(self) -> str:

@@ -31,6 +31,7 @@ def run(coroutine: Coroutine[Any, Any, T], *, operator: str) -> T:
     Raises OperatorError if it does suspend: the operator awaited something other than ``proceed``
     or ``call.current``.
     """
+    __tracebackhide__ = True
     try:
         coroutine.send(None)
     except StopIteration as end:

@@ -11,16 +11,16 @@ from typing import Any
 from mutabot.border.idle import Idle
 from mutabot.errors import OperatorError
 from mutabot.inside.evidence import REFUSALS, Evidence
-from mutabot.inside.leaves import leaves
+from mutabot.inside.exception_groups import leaves
+from mutabot.inside.targets.names import is_named
 from mutabot.model import Call, Middleware, Mutant, Operation, Reply, Span
 from mutabot.model.values.answer import restore
 from mutabot.operators import Operator, Subject, operator
 from mutabot.operators.control import FatalFault
-from mutabot.operators.passage import Carried, Passage, passed, run
+from mutabot.operators.passage import Carried, Passage, passed
 from mutabot.operators.subjects import subject_of
 
 from .door import Door, here
-from .intercept import is_named
 
 
 @dataclass(slots=True)
@@ -69,16 +69,20 @@ class Activation:
         """Whether the call is the text command that the mutant is about."""
         return (call.pattern.text if call.pattern is not None else None) == self.mutant.pattern
 
-    def run(self, door: Door, call: Call) -> tuple[Any, Reply | None]:
-        """Make a plain call as the mutant: (what the program receives, the robot's last answer)."""
-        return run(self.run_async(door, call, awaits=False), operator=self.mutant.operator)
+    async def perform(self, door: Door, call: Call, is_async: bool) -> tuple[Any, Reply | None]:
+        """Let the robot do what the mutant makes of a call.
 
-    async def run_async(self, door: Door, call: Call, *, awaits: bool = True) -> tuple[Any, Reply | None]:
-        """Make an async call as the mutant: (what the program receives, the robot's last answer)."""
+        Args:
+            door: its operation's.
+            call: what the program says.
+            is_async: whether what the operation returns is to be awaited; if not, nothing here suspends.
+
+        Returns what the program receives, and the robot's last answer.
+        """
         assert self._middleware is not None
         self.evidence.hits += 1
         passage = Passage(call)
-        performer = _Performer(self, door, passage, awaits)
+        performer = _Performer(self, door, passage, is_async)
         try:
             if self._idle is not None:
                 passage.call = replace(call, idle=self._answer(self._idle, door, call))
@@ -139,7 +143,7 @@ class _Performer:
     activation: Activation
     door: Door
     passage: Passage
-    awaits: bool
+    is_async: bool
     raised: BaseException | None = None
 
     async def proceed(self, call: Call) -> Reply:
@@ -153,7 +157,7 @@ class _Performer:
             self.activation.on_call(True)
         try:
             result = self.door.perform(call, self.passage.call)
-            if self.awaits and inspect.isawaitable(result):
+            if self.is_async and inspect.isawaitable(result):
                 result = await result
         except BaseException as error:
             self.raised = error

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from mutabot.errors import PathError
+from mutabot.inside.targets.names import resolve
 from mutabot.model import Call, Operation, Pattern, Quantity, Reply
 from mutabot.model.values.answer import NotKeptError, keep, restore
 from mutabot.model.values.quantity import Value, is_reading_of, same
 
 from .answers import snapshot
 from .arguments import Arguments, signature_for
-from .intercept import resolve
 from .writer import Message, Writer
 
 
@@ -101,9 +101,12 @@ class Door:
         self.commands += self.operation.command and fits  # what does not fit never reaches the robot
         is_text = call.pattern is not None and call.pattern.notation is not None
         wrapped = self._opposite(invocation) if call.reversed and not is_text else invocation.wrapped
-        changed = {
-            name: value for name, value in call.values.items() if not same(value, original.values.get(name))
-        }
+        before = original.values
+        changed = (
+            {name: value for name, value in call.values.items() if not same(value, before.get(name))}
+            if call is not original
+            else {}
+        )
         if invocation.arguments is None or (not changed and not call.reversed):
             return wrapped(*invocation.args, **invocation.kwargs)
         args, kwargs = self._writer.changed(call, changed, invocation.arguments, invocation.message)

@@ -16,7 +16,7 @@ from mutabot.inside.calls.locate import Locator
 from mutabot.inside.fork.forkable import subprocesses
 from mutabot.inside.fork.private_files import is_below, make_private, private_folders
 
-from .file_watch import Deed, FileWatch
+from .deeds import Deed, Deeds
 from .leftovers import Leftovers
 from .shared_fixtures import SharedFixtures
 
@@ -39,7 +39,7 @@ class Footprints:
 
     job: Job
     locator: Locator
-    files: FileWatch = field(init=False)
+    files: Deeds = field(init=False)
     _leftovers: Leftovers = field(init=False)
     _fixtures: SharedFixtures = field(init=False)
     _private: tuple[str, ...] = ()
@@ -53,7 +53,7 @@ class Footprints:
         targets = {operation.module for operation in vocabulary.operations}
         self._leftovers = Leftovers(self._is_project, frozenset(targets))
         self._fixtures = SharedFixtures(lambda file: self.locator.role(file) is not None)
-        self.files = FileWatch((os.path.join(os.path.realpath(self.job.root), ".mutabot"),))
+        self.files = Deeds((os.path.join(os.path.realpath(self.job.root), ".mutabot"),))
 
     def make_private(self, home: str) -> str | None:
         """Keep to this process what it does to files; why that is not possible, in words, if it is not."""

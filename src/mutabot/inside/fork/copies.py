@@ -1,4 +1,4 @@
-"""The fork server: a session that has collected its tests, and forks a copy of itself for each job.
+"""The server of copies: a session that has collected its tests, and forks a copy of itself for each job.
 
 All that lies before the first test, such as imports and collection, is done once. A copy is cut off from
 what it would share, runs its job like a session of its own, and leaves without taking down what was there
@@ -43,7 +43,7 @@ class Commission:
 
 
 @dataclass(slots=True)
-class ForkServer:
+class CopyServer:
     """The server's side.
 
     Attributes:

@@ -13,12 +13,13 @@ import signal
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Protocol
 
 from mutabot.border.job import Branching
 from mutabot.border.lines import BranchDied, TokensHeld, Unbranched, Undiverged
 from mutabot.inside.pipe import Pipe
 from mutabot.inside.watchdogs import alarm_held
-from mutabot.model import Mutant, Span
+from mutabot.model import Call, Choice, Mutant, Span
 from mutabot.model.alternative import AT_ONCE
 
 from .forkable import open_now, why_not
@@ -63,6 +64,16 @@ class Child:
     where: str | None = None
 
 
+class Branch(Protocol):
+    """The branch's side: what a process does that was forked from the trunk."""
+
+    def begin(self) -> None:
+        """First of all, right after the fork."""
+
+    def become(self, mutant: Mutant, choices: tuple[Choice, ...]) -> None:
+        """Last of all: go on from here as this mutant; ``choices`` are its alternatives in the text."""
+
+
 @dataclass(slots=True)
 class Trunk:
     """The trunk's side of branching.
@@ -71,14 +82,14 @@ class Trunk:
         branching: what to branch.
         pipe: where reports go.
         log: device and inode of this process's log.
-        on_child: called first of all in every branch.
+        branch: what every branch does.
         where_is: tells where a process is, in words, or None.
     """
 
     branching: Branching
     pipe: Pipe
     log: tuple[int, int] | None
-    on_child: Callable[[], None]
+    branch: Branch
     where_is: Callable[[int], str | None] = lambda _: None
     _tokens: Tokens = field(init=False)
     _live: dict[Key, list[Mutant]] = field(default_factory=dict)
@@ -117,18 +128,19 @@ class Trunk:
         self._branched.clear()
         self._copied = False
 
-    def branch(self, span: Span, operation: str, pattern: str | None) -> Mutant | None:
-        """Fork for every live mutant here that has no branch in this test yet.
+    def fork_at(self, span: Span, call: Call) -> None:
+        """Fork for every live mutant of this call that has no branch in this test yet.
 
-        Returns the mutant to become, in a branch; None in the trunk.
+        In a branch this process is its mutant from here on.
         """
-        key = (span, operation, pattern)
-        return self._branch(key, self._live.get(key, ()))
+        pattern = call.pattern.text if call.pattern is not None else None
+        key = (span, call.operation.target, pattern)
+        self._fork(key, self._live.get(key, ()))
 
-    def branch_at_place(self, place: int, indexes: frozenset[int]) -> Mutant | None:
+    def fork_at_place(self, place: int, indexes: frozenset[int]) -> None:
         """The same at a place of the program text, for the mutants that are these alternatives."""
         here = self._live.get(place, ())
-        return self._branch(place, [one for one in here if self._index(one, place) in indexes])
+        self._fork(place, [one for one in here if self._index(one, place) in indexes])
 
     def places(self) -> dict[int, frozenset[int]]:
         """The alternatives of the program text that are live in the running test, by place."""
@@ -166,30 +178,29 @@ class Trunk:
         is_alone = len(choices) == 1 and not any(single.operation for single in mutant.singles)
         return choices[0].index if is_alone else AT_ONCE
 
-    def _branch(self, key: Key, here: Sequence[Mutant]) -> Mutant | None:
+    def _fork(self, key: Key, here: Sequence[Mutant]) -> None:
         if not here or os.getpid() != self._pid:  # a copy that the test has forked for itself
-            return None
+            return
         with alarm_held():
-            return self._branch_due(key, here)
+            self._fork_due(key, here)
 
-    def _branch_due(self, key: Key, here: Sequence[Mutant]) -> Mutant | None:
+    def _fork_due(self, key: Key, here: Sequence[Mutant]) -> None:
         due = [mutant for mutant in here if self._is_due(mutant)]
         self._live[key] = [one for one in self._live[key] if one.id not in self._decided]
         if not due:
-            return None
+            return
         reason = why_not((child.pid for child in self._children.values()), self._known)
         if reason is not None:
             self._branched.update(mutant.id for mutant in due)
             self.pipe.send(Unbranched(self._test, tuple(mutant.id for mutant in due), reason))
-            return None
-        return self._fork_each(due)
+            return
+        self._fork_each(due)
 
-    def branch_at_start(self) -> Mutant | None:
-        """Fork for every live mutant of the test that begins, if that is asked for. As ``branch``."""
-        if not self.branching.at_start:
-            return None
-        with alarm_held():
-            return self._fork_each([mutant for mutant in self.branching.mutants if self._is_due(mutant)])
+    def fork_at_start(self) -> None:
+        """Fork for every live mutant of the test that begins, if that is asked for."""
+        if self.branching.at_start:
+            with alarm_held():
+                self._fork_each([mutant for mutant in self.branching.mutants if self._is_due(mutant)])
 
     def finish(self) -> None:
         """All tests are over: wait for the branches that still run, holding no token meanwhile."""
@@ -212,7 +223,7 @@ class Trunk:
     def _is_running(self, mutant: str) -> bool:
         return any(child.mutant == mutant for child in self._children.values())
 
-    def _fork_each(self, mutants: list[Mutant]) -> Mutant | None:
+    def _fork_each(self, mutants: list[Mutant]) -> None:
         for mutant in mutants:
             self._branched.add(mutant.id)
             foot = Foot()
@@ -220,26 +231,26 @@ class Trunk:
             pid = os.fork()
             self._forking = False
             if pid == 0:
-                self._become_branch(foot)
-                return mutant
+                self._become_branch(mutant, foot)
+                return
             limit = self.branching.walls.get(self._test, self.branching.wall)
             pidfd = os.pidfd_open(pid)
             child = Child(mutant.id, self._test, pid, pidfd, time.monotonic() + limit, limit)
             self._children[pidfd] = child
             self._take_token()
-        return None
 
     def _note_copy(self) -> None:
         """This process is about to be forked, by whomever."""
         self._copied = self._copied or not self._forking
 
-    def _become_branch(self, foot: Foot) -> None:
-        self.on_child()
+    def _become_branch(self, mutant: Mutant, foot: Foot) -> None:
+        self.branch.begin()
         for child in self._children.values():
             os.close(child.pidfd)
         self._children.clear()
         isolate_files(self.log)
         foot.restore()
+        self.branch.become(mutant, self.branching.choices.get(mutant.id, ()))
 
     def _take_token(self) -> None:
         """The trunk's token went to the branch: wait for another, from the pool or from a branch's end."""

@@ -10,8 +10,8 @@ from types import CoroutineType
 from typing import Any
 
 from mutabot.errors import PathError
-from mutabot.inside.calls.intercept import Handler
 from mutabot.inside.limits import Meter
+from mutabot.inside.targets.target import Handler
 from mutabot.model import Clock
 from mutabot.model.values.path import Path
 from mutabot.model.values.units import convert

@@ -16,7 +16,7 @@ from typing import Any
 
 import wrapt
 
-from mutabot.inside.calls.intercept import NotFoundError, resolve
+from mutabot.inside.targets.names import NotFoundError, resolve
 
 #: objects per class and test that are read
 MOST = 20

@@ -11,7 +11,7 @@ from types import FunctionType
 from typing import Any
 
 from mutabot.errors import nearest_name
-from mutabot.inside.calls.intercept import resolve
+from mutabot.inside.targets.names import resolve
 from mutabot.model import Probe
 
 from .instances import Instances

@@ -11,11 +11,11 @@ import pytest
 
 from mutabot.errors import MutabotError
 from mutabot.inside import FOLDER
-from mutabot.inside.calls.intercept import is_named
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.evidence import Evidence
-from mutabot.inside.leaves import everything, is_due_to, leaves
+from mutabot.inside.exception_groups import everything, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
+from mutabot.inside.targets.names import is_named
 from mutabot.model import By, Role, Vocabulary
 
 from .doctests import mismatch, place_of_mismatch

@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
-from mutabot.inside.calls.intercept import NotFoundError, resolve
+from mutabot.inside.targets.names import NotFoundError, resolve
 
 from .described import of_type
 

@@ -60,7 +60,7 @@ _STARTS = Deed("starts a process")
 
 
 @dataclass(slots=True)
-class FileWatch:
+class Deeds:
     """Watches one process.
 
     Args:

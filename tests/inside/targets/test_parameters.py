@@ -137,7 +137,7 @@ def looked_at(stage: Stage) -> list[Remark]:
     stage.load_program()
     session = stage.session()
     for operation in session.job.vocabulary.operations:
-        session._check_arguments(operation)
+        session.inspection.check_target(operation, session.interception)
     return remarks(stage)
 
 

@@ -18,7 +18,7 @@ from .import_hook import ImportHook
 _Counts = dict[int, tuple[int, int]]
 
 
-class Texts:
+class SessionText:
     """The program text of the job at hand.
 
     What happens while the program is imported, before any test, holds for every test after it: each test
@@ -43,17 +43,17 @@ class Texts:
         hook.alternatives.on_act = self._acted
 
     @classmethod
-    def of(cls, job: Job, pipe: Pipe | Held, on_act: Callable[[], None]) -> Texts | None:
+    def of(cls, job: Job, pipe: Pipe | Held, on_act: Callable[[], None]) -> SessionText | None:
         """Instrument the program from now on; None if the job leaves its text alone."""
         if job.instrumentation is None:
             return None
 
         def tell(file: str, why: str) -> None:
-            texts.pipe.send(NotInstrumented(file, why))
+            text.pipe.send(NotInstrumented(file, why))
 
-        texts = cls(ImportHook(job.root, job.instrumentation, tell), pipe, on_act)
-        texts.hook.install()
-        return texts
+        text = cls(ImportHook(job.root, job.instrumentation, tell), pipe, on_act)
+        text.hook.install()
+        return text
 
     @property
     def is_mutant(self) -> bool:

@@ -12,14 +12,14 @@ import pytest
 
 HEAD = """
 import json, os, pathlib, sys, tempfile
-from mutabot.inside.footprint.file_watch import FileWatch
+from mutabot.inside.footprint.deeds import Deeds
 
 root = pathlib.Path(sys.argv[1])
 (root / "there.txt").write_text("old")
 (root / "own").mkdir(exist_ok=True)
 (root / "ignored").mkdir(exist_ok=True)
 os.chdir(root)
-watch = FileWatch((str(root / "ignored"),))
+watch = Deeds((str(root / "ignored"),))
 watch.install()
 watch.start()
 """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from mutabot.model import Operation
@@ -16,26 +15,10 @@ from mutabot.model.values.signature import (
     takes_anything,
 )
 
+from .target import Finding
+
 #: how deep decorators are looked into for the function that they wrap
 _DEPTH = 5
-
-
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """What does not fit, or what is worth saying.
-
-    Attributes:
-        key: the key of the operation it is about.
-        text: a sentence.
-        name, known: the name that does not exist and those that do, where it is about a name.
-        is_remark: whether the operation can be used all the same.
-    """
-
-    key: str
-    text: str
-    name: str | None = None
-    known: tuple[str, ...] = ()
-    is_remark: bool = False
 
 
 def look_at(operation: Operation, original: Any) -> Iterator[Finding]:

@@ -1,9 +1,8 @@
-"""Putting a handler around callables of the robot API, before or after they are imported.
+"""Targets that are Python callables, ``module:qualified.name``: wrapped before or after they are imported.
 
-A handler has wrapt's wrapper signature: ``handler(wrapped, instance, args, kwargs)``. Functions, methods,
-class and static methods, async functions and properties can be wrapped. Where a module was already
-imported, names that other modules, classes and default arguments took from it (``from x import f``) are
-re-bound too; references kept in containers or closures are not found.
+Functions, methods, class and static methods, async functions and properties can be wrapped. Where a
+module was already imported, names that other modules, classes and default arguments took from it (``from
+x import f``) are re-bound too; references kept in containers or closures are not found.
 """
 
 from __future__ import annotations
@@ -11,63 +10,52 @@ from __future__ import annotations
 import functools
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
+from importlib import import_module
 from types import FunctionType, ModuleType
 from typing import Any
 
 import wrapt
 
+from mutabot.model import Operation
+
+from .names import NotFoundError, resolve
 from .overrides import overriding, watch_subclasses
+from .parameters import look_at
+from .target import Finding, Handler, Targets, Tell
 
-Handler = Callable[[Callable[..., Any], Any, tuple[Any, ...], dict[str, Any]], Any]
 Undo = Callable[[], None]
-
-
-class NotFoundError(LookupError):
-    """A target names something that its module does not have.
-
-    Attributes:
-        name: the part that does not exist.
-        known: names that exist in its place.
-    """
-
-    def __init__(self, message: str, name: str, known: tuple[str, ...]) -> None:
-        super().__init__(message)
-        self.name, self.known = name, known
 
 
 class NotCallableError(TypeError):
     """A target names something that cannot be wrapped."""
 
 
-@dataclass(slots=True)
-class Interception:
+class Callables(Targets):
     """Wrappers put in place, and how to take them away again.
 
     Attributes:
         pending: targets whose module has not been imported yet.
         found: wrapped original by target.
-        on_error: told about targets that turn out wrong when their module is imported.
         owners: the class and the attribute's name of each target that is in a class.
-        uncovered: overriding methods that cannot be intercepted, with the reason, by target.
     """
 
-    on_error: Callable[[str, Exception], None]
-    pending: set[str] = field(default_factory=set)
-    found: dict[str, Any] = field(default_factory=dict)
-    owners: dict[str, tuple[type, str]] = field(default_factory=dict)
-    uncovered: dict[str, list[str]] = field(default_factory=dict)
-    _targets: set[str] = field(default_factory=set)
-    _covering: dict[str, Callable[[type], Handler]] = field(default_factory=dict)
-    _undo: list[Undo] = field(default_factory=list)
-    _wrappers: list[tuple[Any, Any]] = field(default_factory=list)
-    _removed: bool = False
+    def __init__(self, tell: Tell) -> None:
+        self._tell = tell
+        self.pending: set[str] = set()
+        self.found: dict[str, Any] = {}
+        self.owners: dict[str, tuple[type, str]] = {}
+        self._targets: set[str] = set()
+        self._covering: dict[str, Callable[[type], Handler]] = {}
+        self._uncovered: dict[str, list[str]] = {}
+        self._undo: list[Undo] = []
+        self._wrappers: list[tuple[Any, Any]] = []
+        self._removed = False
 
     def wrap(self, target: str, handler: Handler, overrides: Callable[[type], Handler] | None = None) -> None:
-        """Wrap ``module:qualified.name`` now, or as soon as its module is imported.
+        """Wrap a callable now, or as soon as its module is imported.
 
-        With ``overrides``, which makes their handlers, also the methods that override it, of classes that
-        are there and of those that are still to be made.
+        With ``overrides`` also the methods that override it, of classes that are there and of those that are
+        still to be made.
         """
         module_name, _, qualname = target.partition(":")
         self.pending.add(target)
@@ -84,19 +72,45 @@ class Interception:
                 self._install(target, module, qualname, handler, late=late)
                 if overrides is not None:
                     self._cover(target, overrides)
-            except (NotFoundError, NotCallableError) as error:
-                self.on_error(target, error)
+            except NotFoundError as error:
+                self._tell(target, Finding("call", str(error), error.name, error.known))
+            except NotCallableError as error:
+                self._tell(target, Finding("call", str(error)))
 
         wrapt.register_post_import_hook(imported, module_name)
 
-    def look_for_subclasses(self) -> None:
+    def look_again(self) -> None:
         """Cover the classes whose making went unnoticed."""
         for target, overrides in self._covering.items():
             if target in self.owners:
-                self.wrap_overriding(target, overrides)
+                self._wrap_overriding(target, overrides)
 
-    def wrap_overriding(self, target: str, overrides: Callable[[type], Handler]) -> None:
-        """Wrap every method there is that overrides this target, which is in place, but those wrapped."""
+    def wrap_bypasses(self, targets: Iterable[str], handler: Callable[[str, type], Handler]) -> None:
+        """Wrap every method there is that overrides one of these targets, but those wrapped."""
+        wanted = frozenset(targets)
+        found = [target for target in self.owners if target in wanted]
+        for target in sorted(found, key=lambda one: len(self.owners[one][0].__mro__), reverse=True):
+            self._wrap_overriding(target, functools.partial(handler, target))
+
+    def uncovered(self, target: str) -> list[str]:
+        """Overriding methods that cannot be wrapped, with the reason."""
+        return self._uncovered.get(target, [])
+
+    def seek(self) -> Iterator[tuple[str, Finding]]:
+        """Import what nobody imported, so that every target is looked at."""
+        for target in sorted(self.pending):
+            module = target.partition(":")[0]
+            try:
+                import_module(module)
+            except Exception as error:  # the user's module may fail in any way; say which and how
+                yield target, not_imported(module, error)
+
+    def check(self, operation: Operation) -> Iterator[Finding]:
+        """What of the described arguments does not fit the callable."""
+        original = self.found.get(operation.target)
+        return look_at(operation, original) if original is not None else iter(())
+
+    def _wrap_overriding(self, target: str, overrides: Callable[[type], Handler]) -> None:
         owner, name = self.owners[target]
         for kind in overriding(owner, name):
             self._wrap_own(target, kind, name, overrides)
@@ -105,7 +119,7 @@ class Interception:
         if target not in self.owners:
             raise NotCallableError(f"{target} is no method, so nothing overrides it")
         owner, name = self.owners[target]
-        self.wrap_overriding(target, overrides)
+        self._wrap_overriding(target, overrides)
         self._undo.append(watch_subclasses(owner, lambda kind: self._wrap_own(target, kind, name, overrides)))
 
     def _wrap_own(self, target: str, kind: type, name: str, overrides: Callable[[type], Handler]) -> None:
@@ -118,8 +132,8 @@ class Interception:
             setattr(kind, name, wrapper)
         except (NotCallableError, AttributeError, TypeError) as error:
             why = f"{kind.__module__}:{kind.__qualname__}.{name} cannot be intercepted: {error}"
-            if why not in self.uncovered.setdefault(target, []):
-                self.uncovered[target].append(why)
+            if why not in self._uncovered.setdefault(target, []):
+                self._uncovered[target].append(why)
             return
         self._undo.append(functools.partial(setattr, kind, name, original))
         self._wrappers.append((original, wrapper))
@@ -168,29 +182,9 @@ class Interception:
             self._undo.extend(_rebind(original, wrapper))
 
 
-def resolve(module: ModuleType, qualname: str) -> tuple[Any, str, Any]:
-    """Owner, last name and raw attribute (descriptors unbound) of a qualified name in a module.
-
-    Raises NotFoundError, naming the part that does not exist and what there is.
-    """
-    owner: Any = module
-    *parents, name = qualname.split(".")
-    for parent in parents:
-        owner = _attribute(owner, parent, module)
-    return owner, name, _attribute(owner, name, module)
-
-
-def _attribute(owner: Any, name: str, module: ModuleType) -> Any:
-    places = owner.__mro__ if isinstance(owner, type) else (owner,)
-    for place in places:
-        if name in vars(place):
-            return vars(place)[name]
-    try:
-        return getattr(owner, name)  # a module may make its attributes on demand
-    except AttributeError:
-        known = tuple(key for key in dir(owner) if not key.startswith("_"))
-        of = f"module {module.__name__}" if owner is module else f"{module.__name__}:{owner.__qualname__}"
-        raise NotFoundError(f"{of} has no {name!r}", name, known) from None
+def not_imported(module: str, error: Exception, key: str = "call") -> Finding:
+    """What is said of a module that cannot be imported."""
+    return Finding(key, f"module {module!r} cannot be imported: {error!r}", module)
 
 
 def _wrapper(owner: Any, name: str, original: Any, handler: Handler) -> Any:
@@ -262,21 +256,5 @@ def _rebind_defaults(function: FunctionType, original: Any, wrapper: Any) -> Ite
         yield functools.partial(setattr, function, "__defaults__", defaults)
 
 
-def is_named(error: BaseException, names: Iterable[str]) -> bool:
-    """Whether one of the names ``module:Name`` means the exception's class, re-exported names included."""
-    kinds = type(error).__mro__
-    return any(f"{kind.__module__}:{kind.__qualname__}" in names for kind in kinds) or any(
-        named_class(name) in kinds for name in names
-    )
-
-
-def named_class(name: str) -> Any:
-    """What ``module:qualified.name`` is now; None if its module is not loaded or has no such name."""
-    module, _, qualname = name.partition(":")
-    if module not in sys.modules:
-        return None
-    try:
-        owner, attribute, _ = resolve(sys.modules[module], qualname)
-        return getattr(owner, attribute)
-    except (NotFoundError, AttributeError):
-        return None
+#: what this file is, to ``interception``
+KIND = Callables

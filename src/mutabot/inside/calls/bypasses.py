@@ -1,4 +1,4 @@
-"""Methods that override an operation's: which classes have one, and which of them the program calls.
+"""Calls that go past an operation, because another method overrides it.
 
 An overriding method is another callable than the one the vocabulary names. Where the vocabulary does not
 include it, its calls are watched in one run of the original, so that the user can be told what to name.
@@ -8,64 +8,23 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any
 
-_MAKING = "__init_subclass__"
+from mutabot.inside.targets.target import Handler
+
 #: methods that are named in one sentence
 _NAMED = 5
-
-Handler = Callable[[Callable[..., Any], Any, tuple[Any, ...], dict[str, Any]], Any]
 
 #: whether a watched method is under way here: only the outermost is the one that the program calls
 _watching: ContextVar[bool] = ContextVar("mutabot_watching", default=False)
 
 
-def overriding(owner: type, name: str) -> Iterator[type]:
-    """The classes below ``owner`` that define ``name`` themselves."""
-    waiting: list[type] = list(reversed(type.__subclasses__(owner)))
-    seen: set[int] = set()
-    while waiting:
-        kind = waiting.pop()
-        if id(kind) in seen:
-            continue
-        seen.add(id(kind))
-        waiting.extend(reversed(type.__subclasses__(kind)))
-        if vars(kind).get(name) is not None:
-            yield kind
-
-
-def watch_subclasses(owner: type, notice: Callable[[type], None]) -> Callable[[], None]:
-    """Be told of every class that is made below ``owner`` from now on; returns how to end that.
-
-    A class whose ``__init_subclass__`` does not call that of its bases is not told.
-    """
-    own = vars(owner).get(_MAKING)
-    base: Any = owner
-
-    def init_subclass(cls: Any, /, **options: Any) -> None:
-        if own is not None:
-            own.__get__(None, cls)(**options)
-        else:
-            super(base, cls).__init_subclass__(**options)
-        notice(cls)
-
-    setattr(owner, _MAKING, classmethod(init_subclass))
-
-    def end() -> None:
-        if own is not None:
-            setattr(owner, _MAKING, own)
-        else:
-            delattr(owner, _MAKING)
-
-    return end
-
-
 @dataclass(slots=True)
-class Watch:
+class Bypasses:
     """Calls of overriding methods that go past the operation that they override.
 
     Attributes:

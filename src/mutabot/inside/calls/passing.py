@@ -1,0 +1,161 @@
+"""The way of a call: from the program to the robot, and back.
+
+Every call of an operation goes it, mutated or not, plain or async. ``Passing.handler`` tells the calls
+that count from all others; ``Passing._pass`` has the phases of the way in their order. It is a coroutine
+function, as an operator's middleware is, so that one text serves plain and async calls: of a plain one
+nothing ever suspends.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable, Mapping
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from types import FrameType
+from typing import Any
+
+from mutabot.inside.fork.trunk import Trunk
+from mutabot.inside.limits import Meter
+from mutabot.inside.readings.along import Along
+from mutabot.inside.readings.instances import Instances
+from mutabot.inside.targets.target import Handler
+from mutabot.model import Call, Reply, Role, Span
+from mutabot.model.values.quantity import Value
+from mutabot.operators.passage import Carried, run
+
+from .activation import Activation
+from .answers import Returned
+from .door import Door, here
+from .trace import Recorder
+
+#: whether an operation is already under way here: only the outermost is a site
+_under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)
+is_under_way = _under_way.get
+
+
+@dataclass(slots=True)
+class Passing:
+    """What stands on the way of a session's calls.
+
+    Attributes:
+        locate: finds the site of a frame; None for calls that are neither the program's nor the oracle's.
+        recorder: traces the calls.
+        instances: notes which objects are used.
+        along: reads probes along the way.
+        on_error: told of each unmutated call that raised, with what it raised.
+        on_end: told of each call that is over, with what it read; None if nobody asks.
+        meter: what the running test has used; None between tests: then nothing is noted.
+        trunk: set while this process runs the original and forks a branch per mutant.
+        activations: the mutants of calls that are at work: none for the original.
+    """
+
+    locate: Callable[[FrameType | None], tuple[Span, Role] | None]
+    recorder: Recorder
+    instances: Instances
+    along: Along
+    on_error: Callable[[BaseException, Call], None]
+    on_end: Callable[[Call, Mapping[str, Value]], None] | None = None
+    meter: Meter | None = None
+    trunk: Trunk | None = None
+    activations: list[Activation] = field(default_factory=list)
+
+    def handler(self, door: Door) -> Handler:
+        """What stands around an operation."""
+
+        def handle(
+            wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
+        ) -> Any:
+            __tracebackhide__ = True
+            if self.meter is None:
+                return wrapped(*args, **kwargs)
+            if instance is not None and not self.instances.is_idle:
+                self.instances.used(instance)
+            if _under_way.get():
+                return wrapped(*args, **kwargs)
+            self.meter.count()
+            site = self.locate(sys._getframe(1))
+            if site is None:
+                return wrapped(*args, **kwargs)
+            is_async = inspect.iscoroutinefunction(wrapped)
+            on_its_way = self._pass(door, site, is_async, wrapped, instance, args, kwargs)
+            if is_async:
+                return on_its_way
+            return run(on_its_way, operator=self._operator if self.activations else "")
+
+        return handle
+
+    async def _pass(self, door: Door, site: tuple[Span, Role], is_async: bool, *made: Any) -> Any:
+        """The phases of one call.
+
+        Args:
+            door: its operation's.
+            site: where it stands.
+            is_async: whether what the operation returns is to be awaited.
+            made: the call as Python made it: what the handler was given.
+        """
+        __tracebackhide__ = True
+        token = _under_way.set(True)
+        reply: Reply | None = None
+        try:
+            # 1. The door reads which command it is, and the values it writes.
+            call = door.call(*made)
+            try:
+                # 2. A trunk forks a branch for each mutant that differs from here on, and goes on as the
+                #    original; a branch comes back from here as its mutant.
+                if self.trunk is not None:
+                    self.trunk.fork_at(site[0], call)
+                # 3. The robot does what the program says, or what a mutant at this site makes of it.
+                mutant = self._mutant_of(site[0], call)
+                if mutant is None:
+                    reply = await self._perform(door, call, is_async)
+                    result = reply.payload
+                else:
+                    result, reply = await mutant.perform(door, call, is_async)
+                # 4. The program receives the result.
+                return result
+            finally:
+                # 5. Whatever came of it is noted.
+                self._note(site, call, reply)
+        finally:
+            _under_way.reset(token)
+
+    def _mutant_of(self, span: Span, call: Call) -> Activation | None:
+        """The mutant whose site and command it is."""
+        for activation in self.activations:
+            if activation.is_here(span, call.operation.target) and activation.fits(call):
+                return activation
+        return None
+
+    @property
+    def _operator(self) -> str:
+        """Whose middleware can be on the way."""
+        return " and ".join(activation.mutant.operator for activation in self.activations)
+
+    async def _perform(self, door: Door, call: Call, is_async: bool) -> Reply:
+        """Let the robot do what the program says."""
+        __tracebackhide__ = True
+        try:
+            result = door.perform(call, call)
+            if is_async:
+                result = await result
+        except BaseException as error:
+            self.on_error(error, call)
+            if isinstance(error, StopIteration):
+                raise Carried(error) from None
+            raise
+        return door.reply(call, result)
+
+    def _note(self, site: tuple[Span, Role], call: Call, reply: Reply | None) -> None:
+        """Trace a call that is over; ``reply`` is the robot's last one, None if the call raised."""
+        span, role = site
+        pattern = call.pattern.text if call.pattern is not None else None
+        read = reply.values if reply is not None else {}
+        is_wanted = self.recorder.answers is not None and reply is not None
+        returned = Returned(reply.payload, here(call)) if reply is not None and is_wanted else None
+        self.recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned)
+        if call.operation.command:
+            self.along.after(len(self.recorder.trace))
+        if self.on_end is not None:
+            self.on_end(call, read)

@@ -1,0 +1,196 @@
+"""Pytest's hooks for a job's tests, one after the other: what goes around each, and how each has ended."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Generator
+from typing import Any
+
+import pytest
+
+from mutabot.border.footprint import Footprint
+from mutabot.border.lines import TestEnd, TestStart
+from mutabot.inside import seeds
+from mutabot.inside.calls.locate import Locator
+from mutabot.inside.evidence import Evidence
+from mutabot.inside.footprint.footprints import Footprints
+from mutabot.inside.readings.probes import Reading
+from mutabot.inside.session import Session
+from mutabot.inside.watchdogs import drop_idle_watchdog, watched, watched_by_faulthandler
+
+from .branch import BranchOfTest
+from .classify import Ending, classify, unexpected_pass
+from .outcomes import FAILED, PASSED, is_expected_failure, outcome_so_far
+
+
+class Running:
+    """The running test.
+
+    Args:
+        session: the job at hand.
+        locator: whose file is whose.
+        footprints: what tests leave.
+
+    Attributes:
+        branch: what to do if this process turns out to be a branch when the test is over.
+    """
+
+    def __init__(self, session: Session, locator: Locator, footprints: Footprints) -> None:
+        self.session = session
+        self.locator = locator
+        self.footprints = footprints
+        self.branch = BranchOfTest(session, footprints, self.start_clocks)
+        self._ending: Ending | None = None
+        self._expected: Ending | None = None
+        self._outcome = PASSED
+        self._reading = Reading()
+        self._started = (0.0, 0.0)
+
+    def start_clocks(self) -> None:
+        """What the test takes is counted from now on."""
+        self._started = (time.perf_counter(), time.process_time())
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
+        """One test, its fixtures included."""
+        self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
+        self.session.pipe.send(TestStart(item.nodeid))
+        limit = watched_by_faulthandler(item)
+        if limit is not None:
+            self.session.pipe.send(limit)
+        job = self.session.job
+        seeds.seed_all(seeds.derive(job.seed, job.round, item.nodeid))
+        self.branch.item = item
+        self.footprints.start_test()
+        self.start_clocks()
+        self.session.start_test(item.nodeid)
+        try:
+            result = yield
+        except BaseException:
+            self.branch.leave_if_it_is_one(None)
+            raise
+        self.branch.leave_if_it_is_one(lambda: self._test_end(item.nodeid))
+        end = self._test_end(item.nodeid)
+        self.session.end_test()
+        self.session.pipe.send(end)
+        if job.stop_at_kill and end.is_decided:
+            item.session.shouldstop = "the mutant's verdict is known"
+        return result
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_setup(self, item: pytest.Item) -> None:
+        """The fixtures of a test are next."""
+        if self.session.trunk is not None:
+            drop_idle_watchdog(item)
+
+    @pytest.hookimpl(optionalhook=True, tryfirst=True)
+    def pytest_timeout_set_timer(self, item: pytest.Item, settings: Any) -> None:
+        """Pytest-timeout is about to watch a test: its thread leaves the process without a word."""
+        if settings.method == "thread":
+            self.session.pipe.send(watched(item.nodeid, settings.timeout, "pytest-timeout"))
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_call(self) -> None:
+        """The test's fixtures are set up."""
+        if self.session.returns is not None:
+            self.session.returns.begin_call()
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_teardown(self, item: pytest.Item) -> Generator[None, Any, Any]:
+        """Before fixtures take the world down: take the probes."""
+        self._reading = self.session.take_probes()
+        self.footprints.take_fixtures(item)
+        return (yield)
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_makereport(
+        self, item: pytest.Item, call: pytest.CallInfo[None]
+    ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+        """Note the first thing that ended the test."""
+        report = yield
+        if report.failed:
+            self._note_failure(self._classified(item, call) or unexpected_pass(str(report.longrepr)))
+        elif self._outcome != FAILED:
+            self._outcome = outcome_so_far(report, self._outcome)
+            if is_expected_failure(report):
+                self._expected = self._classified(item, call)
+        return report
+
+    def _note_failure(self, ending: Ending) -> None:
+        """The first failure counts; of several subtests, the first that is more than a refusal."""
+        if self.session.job.no_oracle and ending.is_mere_check:
+            return
+        first = self._ending
+        if first is None or (first.refused is not None and first.phase == ending.phase and ending.is_raised):
+            self._outcome, self._ending = FAILED, ending
+
+    def _classified(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Ending | None:
+        """What ended a phase of the test; None if nothing was raised."""
+        if call.excinfo is None:
+            return None
+        return classify(
+            call.excinfo.value,
+            call.when,
+            str(item.path),
+            self.locator,
+            self.session.job.vocabulary,
+            self.session.evidence,
+        )
+
+    def _test_end(self, test: str) -> TestEnd:
+        session, evidence, ending = self.session, self.session.evidence, self._ending
+        wall, cpu = time.perf_counter() - self._started[0], time.process_time() - self._started[1]
+        meter, returns = session.meter, session.returns
+        assert meter is not None
+        cause = ending or self._expected  # what a test said that it would do ends it as well
+        ended_by_refusal = cause is not None and cause.refused is not None
+        refusal = evidence.refusal
+        if evidence.is_of_text and not ended_by_refusal:
+            refusal = None
+        return TestEnd(
+            test=test,
+            outcome=self._outcome,
+            by=ending.by if ending else None,
+            phase=ending.phase if ending else "call",
+            exception=ending.exception if ending else None,
+            message=ending.message if ending else None,
+            place=ending.place if ending else None,
+            timeout=meter.exceeded or (ending.timeout if ending else None),
+            failure=evidence.failure or (cause.failure if cause else None),
+            invalid=evidence.invalid or is_no_program(evidence, cause),
+            refused=refusal,
+            caught=refusal is not None and self._outcome == FAILED and not ended_by_refusal,
+            hits=evidence.hits,
+            acted=evidence.acted,
+            away=evidence.away,
+            partly=evidence.is_partial and not evidence.acted,
+            example=evidence.example,
+            operations=meter.operations,
+            commands=session.commands,
+            wall=wall,
+            cpu=cpu,
+            simulated=meter.simulated,
+            trace=tuple(session.recorder.trace) if self.session.job.record else (),
+            truncated=session.recorder.truncated,
+            returned=tuple(returns.entries) if returns is not None and self.session.job.record else (),
+            prepared=returns.prepared if returns is not None else 0,
+            probes=self._reading.values,
+            unread=self._reading.unread,
+            footprint=self._footprint(),
+            moments=tuple(session.along.entries) if self.session.job.record else (),
+            reading=session.rehearsal.seconds,
+            not_along=session.rehearsal.why_not,
+        )
+
+    def _footprint(self) -> Footprint | None:
+        """What the test leaves; a branch that has failed has nothing to leave it to."""
+        if not self.session.job.record or (self.session.branch is not None and self._outcome == "failed"):
+            return None
+        return self.footprints.of_test()
+
+
+def is_no_program(evidence: Evidence, ending: Ending | None) -> bool:
+    """Whether a mutant of the program text made a text that is no program or no command."""
+    if not evidence.is_of_text or ending is None:
+        return False
+    return ending.is_syntax or (evidence.is_unknown and ending.refused is not None)

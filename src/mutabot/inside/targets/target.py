@@ -1,0 +1,87 @@
+"""How an operation is found at run time: the contract of a kind of target.
+
+A target is what an operation of the vocabulary names. One object looks after all targets of a kind: it
+finds them in the running program, lets a handler stand around each, takes it away again, and says what
+does not fit. A kind is one file in this folder, whose ``KIND`` is a class that keeps the contract. The
+operation names that file in ``Operation.kind``, and ``interception`` chooses by it; an operation that
+names none is a Python callable (``callables``).
+
+Whatever the kind, a handler sees each use of its target as a call: the callable that does what the target
+stands for, the object it belongs to or None, and the arguments by position and name.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from mutabot.model import Operation
+
+#: ``handler(wrapped, instance, args, kwargs)``; what it returns is what the program receives
+Handler = Callable[[Callable[..., Any], Any, tuple[Any, ...], dict[str, Any]], Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What does not fit, or what is worth saying.
+
+    Attributes:
+        key: the key of the operation it is about.
+        text: a sentence.
+        name, known: the name that does not exist and those that do, where it is about a name.
+        is_remark: whether the operation can be used all the same.
+    """
+
+    key: str
+    text: str
+    name: str | None = None
+    known: tuple[str, ...] = ()
+    is_remark: bool = False
+
+
+#: told about a target that turns out wrong when it is found
+Tell = Callable[[str, Finding], None]
+
+
+class Targets(ABC):
+    """All targets of one kind in this process.
+
+    Args:
+        tell: told about a target that turns out wrong when it is found.
+    """
+
+    @abstractmethod
+    def __init__(self, tell: Tell) -> None: ...
+
+    @abstractmethod
+    def wrap(self, target: str, handler: Handler, overrides: Callable[[type], Handler] | None = None) -> None:
+        """Let a handler stand around a target, now or as soon as the program has it.
+
+        With ``overrides``, which makes their handlers, also around what the program puts in its place.
+        """
+
+    @abstractmethod
+    def remove(self) -> None:
+        """Take all handlers away; none comes any more."""
+
+    @abstractmethod
+    def seek(self) -> Iterator[tuple[str, Finding]]:
+        """Find what the program has not come to by itself; yields what cannot be found."""
+
+    @abstractmethod
+    def check(self, operation: Operation) -> Iterator[Finding]:
+        """What of an operation does not fit its target, once that is found."""
+
+    def look_again(self) -> None:  # noqa: B027  # most kinds have nothing to do
+        """A test begins: find what was made since the last one."""
+
+    def wrap_bypasses(  # noqa: B027  # as above
+        self, targets: Iterable[str], handler: Callable[[str, type], Handler]
+    ) -> None:
+        """Let handlers stand around what the program uses in place of these targets, which leave it out."""
+
+    def uncovered(self, target: str) -> list[str]:
+        """What the program uses in place of a target and no handler can stand around, with the reason."""
+        return []
