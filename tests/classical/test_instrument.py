@@ -20,10 +20,12 @@ from mutabot.classical import find_texts, merge, refine
 from mutabot.inside.text.import_hook import ImportHook
 from mutabot.inside.text.instrument import instrumented
 from mutabot.inside.text.loading import compile_tree
-from mutabot.inside.text.switches import Alternatives, Bomb, ZeroValue
+from mutabot.inside.text.switches import Alternatives, error_of
 from mutabot.model import Instrumentation
 from tests.classical.build import choices, imported, load, spliced, text_of
 
+#: what the operators that raise call it
+BOMB, ZERO_VALUE = error_of("Bomb"), error_of("ZeroValue")
 ORDINARY = Path(__file__).with_name("ordinary.py").read_text(encoding="utf-8")
 
 
@@ -83,11 +85,11 @@ def outcome(source: str | types.CodeType) -> str:
     """What becomes of a program: its result, or its exception."""
 
     def bomb() -> None:
-        raise Bomb
+        raise BOMB
 
     def fail_on_zero(value: Any) -> Any:
         if value == 0:
-            raise ZeroValue
+            raise ZERO_VALUE
         return value
 
     space = {"Bomb": bomb, "failOnZero": fail_on_zero}
@@ -244,7 +246,7 @@ def test_an_original_with_effects_is_not_computed_twice(tmp_path: Path) -> None:
 
 
 def call_forgiving(function: Callable[..., Any], *arguments: Any) -> None:
-    with suppress(ZeroDivisionError, ZeroValue, Bomb):
+    with suppress(ZeroDivisionError, ZERO_VALUE, BOMB):
         function(*arguments)
 
 

@@ -18,7 +18,9 @@ from mutabot.families import CLASSICAL
 from mutabot.model.alternative import Alternative
 from mutabot.operators.rule import Rule
 
-#: what the helper object is called in templates
+#: what the helper object is called in templates; an operator may call, and names what it raises by itself:
+#: ``absolute(value)``, whatever the program calls ``abs``; ``fail(name, text)``, which raises; and
+#: ``fail_if(value, wrong, name, text)``, which is the value or raises (``mutabot/inside/text/switches.py``)
 HELPER = "__mutabot__[0]"
 
 

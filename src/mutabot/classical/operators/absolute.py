@@ -34,6 +34,5 @@ class Absolute(ClassicalOperator):
         absolute = f"{HELPER}.absolute("
         yield Draft("abs", (absolute, node, ")"), "number", ("abs(", node, ")"))
         yield Draft("negAbs", (f"-{absolute}", node, ")"), "number", ("-abs(", node, ")"))
-        yield Draft(
-            "failOnZero", (f"{HELPER}.fail_on_zero(", node, ")"), "number", ("failOnZero(", node, ")")
-        )
+        not_zero = (f"{HELPER}.fail_if(", node, ", 0, 'ZeroValue', 'the value is zero')")
+        yield Draft("failOnZero", not_zero, "number", ("failOnZero(", node, ")"))

@@ -47,4 +47,5 @@ class Bomb(ClassicalOperator):
             node.value, cst.SimpleString | cst.ConcatenatedString | cst.Ellipsis
         ):
             return
-        yield Draft("", (f"{HELPER}.bomb()",), shown=("Bomb()",), raises=True)
+        bomb = f"{HELPER}.fail('Bomb', 'the mutant\\'s bomb went off')"
+        yield Draft("", (bomb,), shown=("Bomb()",), raises=True)

@@ -237,14 +237,14 @@ class _Reader:
         return known
 
 
-def _fail_on_zero(value: Any) -> Any:
-    if value == 0:
+def _fail_if(value: Any, wrong: Any, *told: str) -> Any:
+    if value == wrong:
         raise ZeroDivisionError
     return value
 
 
 #: what templates call (``Alternatives``)
-_HELPERS: dict[str, Callable[..., Any]] = {"absolute": abs, "fail_on_zero": _fail_on_zero}
+_HELPERS: dict[str, Callable[..., Any]] = {"absolute": abs, "fail_if": _fail_if}
 
 
 def _helper_name(function: ast.expr) -> str:

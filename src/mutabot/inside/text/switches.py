@@ -11,6 +11,7 @@ import builtins
 import sys
 import threading
 from collections.abc import Callable, Mapping
+from functools import cache
 from types import CodeType, FrameType
 from typing import Any, NoReturn
 
@@ -20,16 +21,11 @@ from mutabot.operators.control import FatalFault
 from .foresee import Forms, differing, locals_of, value_of
 
 
-class Bomb(Exception):  # noqa: N818  # the name that the literature gives it
-    """A statement that was replaced by a bomb was reached."""
-
-    __module__ = "mutabot.inside.alternatives"  # under which journals know it
-
-
-class ZeroValue(Exception):  # noqa: N818  # as above: failOnZero
-    """An expression that must not be zero for its mutant to survive was zero."""
-
-    __module__ = Bomb.__module__
+@cache
+def error_of(name: str) -> type[Exception]:
+    """The exception that an alternative raises itself, by the name that its operator gives it."""
+    # the module is the one under which journals know them
+    return type(name, (Exception,), {"__module__": "mutabot.inside.alternatives"})
 
 
 class Switch:
@@ -231,26 +227,24 @@ class Alternatives:
                 else False
             )
 
-    # what templates call
+    # what templates may call (``HELPER``); none of it belongs to one operator
 
-    def bomb(self) -> NoReturn:
-        """The statement that stood here is replaced by one that raises."""
+    def fail(self, name: str, text: str) -> NoReturn:
+        """Raise an exception of this name and text."""
         for place in self.active:
             self.tell(place)
-        raise Bomb("the mutant's bomb went off")
+        raise error_of(name)(text)
+
+    def fail_if(self, value: Any, wrong: Any, name: str, text: str) -> Any:
+        """The value itself; fails if it is the wrong one, or if one of several is."""
+        equal = value == wrong
+        if equal.any() if hasattr(equal, "any") else equal:
+            self.fail(name, text)
+        return value
 
     def absolute(self, value: Any) -> Any:
         """``abs``, whatever the program calls by that name."""
         return abs(value)
-
-    def fail_on_zero(self, value: Any) -> Any:
-        """The value itself; raises ZeroValue if it is zero, or if one of several is."""
-        equal = value == 0
-        if equal.any() if hasattr(equal, "any") else equal:
-            for place in self.active:
-                self.tell(place)
-            raise ZeroValue("the value is zero")
-        return value
 
 
 def _plain(value: Any) -> Any:

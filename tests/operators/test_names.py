@@ -1,0 +1,70 @@
+"""Nothing outside of the operators' own rooms knows one by name."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import mutabot
+from mutabot import classical, operators
+from mutabot.operators.control import CONTROLS
+
+SOURCE = Path(mutabot.__file__).parent
+ROOMS = {"operators", "classical"}
+NAMES = {*operators.names(), *classical.names(), *CONTROLS}
+#: words that name something else as well, where they do: keys of vocabularies, an option of the command line
+OTHERWISE = {
+    "opposite": {"proposal", "vocabulary"},
+    "noise": {"vocabulary"},
+    "skip": {"cli"},
+}
+#: what an id ends with, and what a selection may be made of
+AT_THE_END = re.compile(r"^(?:.*:)?(?P<name>[\w-]+)(?:=.*)?$", re.DOTALL)
+FILES = [file for file in sorted(SOURCE.rglob("*.py")) if file.relative_to(SOURCE).parts[0] not in ROOMS]
+
+
+def literals(tree: ast.AST) -> Iterator[ast.Constant]:
+    """Texts of a program that are no docstrings."""
+    told = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in told:
+            yield node
+
+
+def named(text: str) -> str | None:
+    """The operator that a text names, by itself or as the end of a mutant's id."""
+    found = AT_THE_END.match(text)
+    return found["name"] if found is not None and found["name"] in NAMES else None
+
+
+def knows(tree: ast.AST, file: str = "") -> list[tuple[int, str]]:
+    """Lines in which an operator is named."""
+    found = ((node.lineno, named(node.value)) for node in literals(tree))
+    return [(line, name) for line, name in found if name is not None and not is_otherwise(name, file)]
+
+
+def is_otherwise(name: str, file: str) -> bool:
+    return any(file == place or file.startswith(f"{place}/") for place in OTHERWISE.get(name, ()))
+
+
+def test_no_operator_is_named() -> None:
+    assert len(FILES) > 100
+    for file in FILES:
+        name = file.relative_to(SOURCE).as_posix()
+        assert not knows(ast.parse(file.read_text(encoding="utf-8")), name), name
+
+
+@pytest.mark.parametrize(
+    "text", ['rule.name == "skip"', 'Mutant("SVR")', 'f"{site}:BSR"', 'id.endswith(":noise")', '{"by-to": 1}']
+)
+def test_a_name_in_the_code_is_found(text: str) -> None:
+    assert knows(ast.parse(text))
+
+
+@pytest.mark.parametrize("text", ['"""skip"""', '"noise of the sensor"', '"do it by repeat or not"'])
+def test_words_of_sentences_are_no_names(text: str) -> None:
+    assert not knows(ast.parse(text))
