@@ -41,12 +41,14 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from mutabot.campaign.baseline.baseline import Baseline, take_baseline
-from mutabot.campaign.engines.branch import Remainder, branch
-from mutabot.campaign.engines.replay import Pair, replay
+from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.beginning import selected
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.engines.engine import Pair, Remainder
+from mutabot.campaign.engines.fresh import replay
+from mutabot.campaign.engines.trunk import Trunks
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.request import Request
-from mutabot.campaign.run import selected
 from mutabot.campaign.workers.workers import Workers
 from mutabot.model import Outcome
 from mutabot.settings.configuration import load_configuration
@@ -189,9 +191,10 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
             baseline, results = take_baseline(
                 request, workers, Silent(), repetitions=1 if shared else 2, may_share=shared
             )
-            mutants = selected(request, make_plan(baseline, request.vocabulary), baseline).mutants[:limit]
+            campaign = Campaign(request, baseline, workers, Silent())
+            mutants = selected(campaign, make_plan(baseline, request.vocabulary)).mutants[:limit]
             pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
-            outcomes = list(run_pairs(engine, request, baseline, workers, pairs))
+            outcomes = list(run_pairs(engine, campaign, pairs))
         wall, cpu = time.monotonic() - started, cpu_seconds() - before
     originals = sum(end.simulated or 0.0 for result in results for end in result.ends)
     if shared:
@@ -202,19 +205,18 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
     return Row(example, engine, len(outcomes), wall, cpu, simulated, peak, bound)
 
 
-def run_pairs(
-    engine: str, request: Request, baseline: Baseline, workers: Workers, pairs: list[Pair]
-) -> Iterator[Outcome]:
+def run_pairs(engine: str, campaign: Campaign, pairs: list[Pair]) -> Iterator[Outcome]:
     """All outcomes; what a fork could not do is replayed, as in a campaign."""
     if engine in ("branch", "fork"):
-        remainder = Remainder()
-        yield from branch(request, baseline, workers, pairs, remainder, at_start=engine == "fork")
-        yield from replay(request, baseline, workers, remainder.pairs)
+        left = Remainder()
+        yield from Trunks(campaign, left).run(pairs, at_start=engine == "fork")
+        yield from replay(campaign, left.pairs)
         return
     if engine == "fresh":
+        baseline = campaign.baseline
         for round, place in baseline.reaching:
             baseline.reaching[round, place] = list(baseline.tests[round])
-    yield from replay(request, baseline, workers, pairs)
+    yield from replay(campaign, pairs)
 
 
 def request_for(folder: Path, *, selection: str | None, rounds: int) -> Request:

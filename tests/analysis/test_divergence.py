@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from analysis.samples import BACK, NEGATE, REVERSE, SKIP, VOCABULARY, mutant
 from mutabot.analysis.divergence import explain, is_indistinguishable, quantity_of, rank
 from mutabot.model import By, Compared, Outcome, Verdict
+from tests.analysis.samples import BACK, NEGATE, REVERSE, SKIP, VOCABULARY, mutant
 
 READ = Outcome(
     NEGATE.id,

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from analysis.samples import MUTANTS, OUTCOMES, REVERSE, SKIP, write_journal
 from mutabot.analysis.gate import decide
 from mutabot.analysis.results import Results, find_mutant, read_results
 from mutabot.errors import SelectionError
 from mutabot.journal.journal import Journal
 from mutabot.journal.lock import WriterLock
 from mutabot.model import By, Mutant, Outcome, Verdict
+from tests.analysis.samples import MUTANTS, OUTCOMES, REVERSE, SKIP, write_journal
 
 
 def results(folder: Path, outcomes: tuple[Outcome, ...], mutants: tuple[Mutant, ...] = MUTANTS) -> Results:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from analysis.samples import MUTANTS, OUTCOMES
 from mutabot.analysis.score import KillRate, RoundScores, Score, groups_of
 from mutabot.model import By, Outcome, Verdict
+from tests.analysis.samples import MUTANTS, OUTCOMES
 
 #: verdict -> (killed, valid)
 PLACES = {

@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 
 from mutabot.border.lines import TestEnd
+from mutabot.campaign.check import check
 from mutabot.campaign.engines.judge import Run, _ruling
-from mutabot.campaign.run import check, plan_only, run_campaign
+from mutabot.campaign.run import plan_only, run_campaign
 from mutabot.errors import NothingToDoError
 from mutabot.model import By, LeftOut, Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.outcome import same_end

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mutabot.campaign.run import check
+from mutabot.campaign.check import check
 from mutabot.model import Verdict
 from tests.campaign.engines.test_branching import both_engines
 from tests.campaign.project import Quiet, request_for, write_project

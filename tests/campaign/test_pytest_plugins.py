@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from campaign.project import run, write_project
 from mutabot.errors import MutabotError
 from mutabot.model import By, Outcome, Verdict
+from tests.campaign.project import run, write_project
 
 MISSION = """
     def go(arm):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.run import check
+from mutabot.campaign.check import check
 from mutabot.proposal import propose
 from mutabot.settings.configuration import load_configuration
 from tests.campaign.project import Quiet, request_for

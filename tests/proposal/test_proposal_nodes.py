@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.run import check
+from mutabot.campaign.check import check
 from mutabot.inside.watching.told_apart import ToldApart
 from mutabot.model import Kind
 from mutabot.proposal import propose

@@ -12,7 +12,6 @@ import pytest
 from rich.cells import cell_len
 
 from analysis import campaigns
-from campaign.project import Quiet, request_for, write_project
 from mutabot.analysis.ends import End
 from mutabot.analysis.families import FamilyComparison, Share, compare_families
 from mutabot.analysis.statistics import Interval
@@ -24,6 +23,7 @@ from mutabot.report.picture import _COLOURS, Bar, Rectangle, bars_of, draw, svg
 from mutabot.report.picture_file import check_picture, write_picture
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.side_by_side import duration, print_comparison, share_cell
+from tests.campaign.project import Quiet, request_for, write_project
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "compare.md"
 WIDTHS = pytest.mark.parametrize("width", [60, 80, 120, 200])

@@ -39,7 +39,7 @@ class Branching:
     Attributes:
         mutants: the mutants that are alive in this round.
         tests: per mutant id, the tests in which it is to be branched, in the order of the job's tests.
-        tokens: descriptors of the token pool: reading end, writing end.
+        tokens: descriptors of the token pool: reading end, writing end; filled in by whoever runs the job.
         walls: wall-clock seconds that a branch may take, by test.
         wall: the same for tests that are missing there.
         at_start: whether to fork when a test begins instead of at the site: nothing but the imports is
@@ -50,7 +50,7 @@ class Branching:
 
     mutants: tuple[Mutant, ...]
     tests: Mapping[str, tuple[str, ...]]
-    tokens: tuple[int, int]
+    tokens: tuple[int, int] = (-1, -1)
     walls: Mapping[str, float] = field(default_factory=dict)
     wall: float = 600.0
     at_start: bool = False

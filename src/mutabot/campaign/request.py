@@ -25,7 +25,8 @@ class Request:
         rounds, seed, jobs: as in the configuration, unless the command line says otherwise.
         only, skip: selections as in ``select``.
         selection: file with the ids to run; None for all.
-        engine: ``auto``, ``branch`` or ``replay``.
+        engine: name of the engine; ``auto`` for the first that can judge a mutant.
+        executor: name of what runs the tasks.
         fresh: whether to run everything, also what an earlier campaign has found.
         verify: how many outcomes to run once more in fresh processes, and compare.
         confirm: whether to run kills, survivors and time-outs once more.
@@ -50,6 +51,7 @@ class Request:
     skip: tuple[str, ...] = ()
     selection: Path | None = None
     engine: str = "auto"
+    executor: str = "local"
     fresh: bool = False
     verify: int = 0
     confirm: bool = False

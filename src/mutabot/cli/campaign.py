@@ -20,7 +20,7 @@ def check(
     family: options.Families = None,
 ) -> None:
     """Try the whole set-up without running mutants."""
-    from mutabot.campaign import run as campaign
+    from mutabot.campaign import check as campaign
 
     request = request_of(context.obj, jobs=jobs, rounds=rounds, family=family)
     with progress_shown() as progress:

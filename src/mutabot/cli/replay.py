@@ -25,7 +25,7 @@ def replay(
 ) -> None:
     """Run one mutant of the last campaign again in fresh processes; exit with 4 if it ends otherwise."""
     from mutabot.analysis.results import find_mutant, read_results
-    from mutabot.campaign.engines.second_look import replay_one
+    from mutabot.campaign.again import replay_one
     from mutabot.journal.reader import JournalReader
     from mutabot.report.as_json import replayed_data
     from mutabot.report.terminal.console import make_console

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.run import check, run_campaign
+from mutabot.campaign.check import check
+from mutabot.campaign.run import run_campaign
 from mutabot.errors import (
     BaselineError,
     ConfigurationError,

@@ -9,7 +9,7 @@ import pytest
 
 from mutabot.border.lines import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.moments import strides_of
+from mutabot.campaign.comparing.moments import strides_of
 from mutabot.campaign.comparing.observation import Event, Observation, compare
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers.forkserver import _template

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.run import check, plan_only, run_campaign
+from mutabot.campaign.check import check
+from mutabot.campaign.run import plan_only, run_campaign
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
 

@@ -9,7 +9,7 @@ import pytest
 
 from mutabot.border import stack
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.workers import Task
+from mutabot.campaign.workers.task import Task
 from mutabot.errors import BaselineError, ControlError
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
 
@@ -108,7 +108,7 @@ Current thread 0x00007f0000000002 (most recent call first):
 def test_a_baseline_that_hangs_says_where(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mission = "import time\n\ndef run(arm):\n    arm.move_by(0.5)\n    time.sleep(3600)\n"
     write_project(tmp_path, mission, TESTS)
-    monkeypatch.setattr("mutabot.campaign.baseline.baseline.Task", partial(Task, deadline=2.0))
+    monkeypatch.setattr("mutabot.campaign.baseline.taking.Task", partial(Task, deadline=2.0))
     with pytest.raises(
         BaselineError, match=r"it was at mission\.py:5 run, called from tests/test_mission\.py"
     ):

@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from analysis import samples
-from campaign.project import Quiet, request_for, write_project
 from mutabot.border.codec import from_data
 from mutabot.campaign.plan.sampling import draw
 from mutabot.campaign.run import run_campaign
@@ -19,6 +18,7 @@ from mutabot.journal.journal import Journal
 from mutabot.journal.records import DRAWING, Drawing
 from mutabot.model import Mutant, Role
 from mutabot.settings.sample import Sample
+from tests.campaign.project import Quiet, request_for, write_project
 
 SIZES = ("10%", "33 %", "0.01%", "100%", "1", "7", "50", "100000")
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from analysis.samples import BY_TO, LEFT_OUT, MUTANTS, NEGATE, NOISE, REVERSE, SKIP
 from mutabot import classical
 from mutabot.campaign.plan.selection import select
 from mutabot.errors import SelectionError
 from mutabot.model.selector import is_like
 from mutabot.operators import registry
+from tests.analysis.samples import BY_TO, LEFT_OUT, MUTANTS, NEGATE, NOISE, REVERSE, SKIP
 
 
 @pytest.mark.parametrize(

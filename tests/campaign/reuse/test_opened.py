@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from campaign.project import Quiet, request_for, write_project
 from mutabot.campaign import run as campaign
 from mutabot.campaign.reuse.counted import counted
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import Watch
 from mutabot.campaign.reuse.snapshot import Snapshot
+from tests.campaign.project import Quiet, request_for, write_project
 
 MISSION = """
     def go(arm):

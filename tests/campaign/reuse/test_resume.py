@@ -18,9 +18,10 @@ from typing import Any
 import pytest
 
 import mutabot
-from campaign.project import Quiet, request_for, write_project
 from mutabot.analysis.results import Results, read_results
+from mutabot.campaign import beginning
 from mutabot.campaign import run as campaign
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import changes
 from mutabot.campaign.reuse.snapshot import Snapshot
@@ -30,6 +31,7 @@ from mutabot.errors import BaselineError, JournalError, NothingToDoError, Select
 from mutabot.journal.database import connect
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant, Outcome, Verdict
+from tests.campaign.project import Quiet, request_for, write_project
 
 MISSION = """
     def left(arm):
@@ -114,7 +116,7 @@ def project(tmp_path: Path) -> Project:
 def quick(project: Project, monkeypatch: pytest.MonkeyPatch) -> Project:
     """The same without running mutants, and without running the baseline twice, for edits that keep it."""
     known: dict[Any, Any] = {}
-    take = campaign.take_baseline
+    take = beginning.take_baseline
 
     def baseline(request: Request, *arguments: Any, **options: Any) -> Any:
         key = (request.rounds, request.seed, request.families)
@@ -123,16 +125,15 @@ def quick(project: Project, monkeypatch: pytest.MonkeyPatch) -> Project:
         return copy.deepcopy(known[key])
 
     def run_mutants(
-        request: Request, _b: Any, _w: Any, progress: Quiet, mutants: list[Mutant], sink: Sink,
-        done: Collection[Pair] = (),
-    ) -> None:  # fmt: skip
-        for round in range(request.rounds):
+        under_way: Campaign, mutants: list[Mutant], sink: Sink, done: Collection[Pair] = ()
+    ) -> None:
+        for round in range(under_way.request.rounds):
             for mutant in mutants:
                 if (mutant.id, round) not in done:
                     sink.add_outcome(Outcome(mutant.id, round, Verdict.SURVIVED))
-                    progress.advance("#")
+                    under_way.progress.advance("#")
 
-    monkeypatch.setattr(campaign, "take_baseline", baseline)
+    monkeypatch.setattr(beginning, "take_baseline", baseline)
     monkeypatch.setattr(campaign, "run_mutants", run_mutants)
     return project
 
@@ -405,7 +406,7 @@ def test_an_interrupted_campaign_goes_on(project: Project, monkeypatch: pytest.M
     assert project.state() == ("complete", len(ran) + 3)
 
 
-@pytest.mark.parametrize("phase", ["take_baseline", "make_plan"])
+@pytest.mark.parametrize("phase", ["begin", "make_plan"])
 def test_a_campaign_that_ends_before_its_first_mutant_loses_nothing(
     project: Project, monkeypatch: pytest.MonkeyPatch, phase: str
 ) -> None:

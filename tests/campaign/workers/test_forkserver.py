@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.run import check, run_campaign
+from mutabot.campaign.check import check
+from mutabot.campaign.run import run_campaign
 from mutabot.errors import BaselineError, MutabotError
 from mutabot.model import Verdict
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
-from mutabot.campaign.workers.workers import Result
+from mutabot.campaign.workers.task import Result
 from mutabot.classical import Planted, find_texts, merge, names, plant, program_files, refine
 from mutabot.classical.mutants import LeftOutText
 from mutabot.families import CONTROL, OF_TEXT, ROBOT

@@ -21,17 +21,16 @@ from dataclasses import dataclass, replace
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.places import Place
-from mutabot.campaign.baseline.site_names import Sources
-from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.workers.workers import Task, Workers
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.workers.task import Task
 from mutabot.errors import ControlError
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.operators.control import Fatal, Identity
 
+from .fresh import run_of, task
 from .judge import judge
-from .replay import run_of, task
 
 IDENTITY, FATAL = Identity.name, Fatal.name
 
@@ -62,9 +61,9 @@ class Control:
             0, CONTROL, self.name, place.site, place.operation, place.pattern, None, self.subject, self.name
         )
 
-    def task(self, request: Request, baseline: Baseline) -> Task:
+    def task(self, campaign: Campaign) -> Task:
         """The task that runs it by replay."""
-        made = task(request, baseline, self.mutant, self.round, self.tests, stop=self.name == FATAL)
+        made = task(campaign, self.mutant, self.round, self.tests, stop=self.name == FATAL)
         return replace(made, key=self)
 
     def end(self, outcome: Outcome) -> ControlEnd:
@@ -92,19 +91,18 @@ class Control:
         )
 
 
-def run_controls(
-    request: Request, baseline: Baseline, workers: Workers, progress: Progress, mutants: Iterable[Mutant]
-) -> Iterator[ControlEnd]:
-    """Run by replay the controls for these mutants; marks in the baseline which tests need the whole suite.
+def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[ControlEnd]:
+    """Run by replay the controls for these mutants; tells the baseline which tests need the whole suite.
 
     Raises ControlError for a control that ends wrongly, after it was yielded.
     """
+    baseline, progress = campaign.baseline, campaign.progress
     mutants = list(mutants)
     identities = _identities_by_selection(baseline, mutants)
     progress.stage("controls", len(identities) + len(_fatals(baseline, mutants)))
     together: list[Control] = []
-    for control, outcome in _replayed(request, baseline, workers, identities):
-        end = end_of(control, outcome, request, baseline, progress)
+    for control, outcome in _replayed(campaign, identities):
+        end = end_of(campaign, control, outcome)
         ended = "survives, as it must" if end.ok else end.detail
         progress.advance(f"{control.name}, {control.subject}: {ended}")
         if end.ok:
@@ -113,7 +111,7 @@ def run_controls(
             yield end
             raise control.error(end.detail)
         else:
-            baseline.dependent.add(control.tests)
+            baseline.passes_only_together(control.tests)
             together.append(_with_whole_suite(control, baseline))
             progress.note(f"{control.subject} pass only after other tests: judged by the whole suite")
     # only now is it known which selections pass by themselves
@@ -121,8 +119,8 @@ def run_controls(
         replace(fatal, tests=baseline.selection(fatal.round, fatal.place))
         for fatal in _fatals(baseline, mutants)
     ]
-    for control, outcome in _replayed(request, baseline, workers, [*together, *fatals]):
-        end = end_of(control, outcome, request, baseline, progress)
+    for control, outcome in _replayed(campaign, [*together, *fatals]):
+        end = end_of(campaign, control, outcome)
         progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
         yield end
         if not end.ok:
@@ -146,34 +144,29 @@ def controls_in_branches(baseline: Baseline, mutants: Iterable[Mutant]) -> list[
     return [*found, *(one for one in fatals if baseline.why_not_branch(one.round, one.tests) is None)]
 
 
-def end_of(
-    control: Control, outcome: Outcome, request: Request, baseline: Baseline, progress: Progress
-) -> ControlEnd:
+def end_of(campaign: Campaign, control: Control, outcome: Outcome) -> ControlEnd:
     """How a control ended. One that ended wrongly is tried again in a process that shares nothing."""
     end = control.end(outcome)
     if end.ok:
         return end
-    with Workers(request.root, request.arguments, jobs=1) as workers:  # the others are at work meanwhile
-        ((_, again),) = _replayed(request, baseline, workers, [control])
+    with campaign.executor.apart() as executor:  # the other processes are at work meanwhile
+        ((_, again),) = _replayed(replace(campaign, executor=executor), [control])
     second = control.end(again)
     if not second.ok:
         return second
     if outcome.test is not None:
-        baseline.doubted.add(outcome.test)
-    progress.note(
+        campaign.baseline.doubt(outcome.test)
+    campaign.progress.note(
         f"the {control.name} control of {control.subject} ended wrongly once ({end.detail}), but as it must "
         "when it was tried again"
     )
     return second
 
 
-def _replayed(
-    request: Request, baseline: Baseline, workers: Workers, controls: Iterable[Control]
-) -> Iterator[tuple[Control, Outcome]]:
-    sources = Sources(request.root)
-    for result in workers.run(control.task(request, baseline) for control in controls):
+def _replayed(campaign: Campaign, controls: Iterable[Control]) -> Iterator[tuple[Control, Outcome]]:
+    for result in campaign.executor.run(control.task(campaign) for control in controls):
         control: Control = result.task.key
-        yield control, judge(run_of(result, sources), request, baseline)
+        yield control, judge(campaign, run_of(result, campaign.sources))
 
 
 def _identities_by_selection(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:

@@ -1,178 +1,81 @@
-"""The engines put to work: branch where it is safe to fork, replay where it is not."""
+"""The contract of an engine: what gives mutants their outcomes.
+
+An engine is one file in ``campaign/engines/kinds/`` that sets ``ENGINE``; ``choice`` asks all of them, in
+their order. What one cannot judge goes to the next, by what the baseline knows of the tests that judge it, or
+because something went wrong on the way. The last takes everything: replay, the reference.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Protocol
 
-from mutabot.campaign.baseline.baseline import REPETITIONS, Baseline
-from mutabot.campaign.baseline.order_dependence import clear_up
-from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.sink import Sink
-from mutabot.campaign.workers.workers import Workers
+from mutabot.campaign.campaign import Campaign
 from mutabot.journal.records import ControlEnd
-from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model import Mutant, Outcome
 
-from .branch import Remainder, branch
-from .controls import Control, controls_in_branches, end_of, run_controls
-from .replay import Pair, replay
-
-
-def engine_of(request: Request) -> str:
-    """The engine that ``auto`` means: branch."""
-    return "replay" if request.engine == "replay" else "branch"
+#: what to run: a mutant in a round
+Pair = tuple[Mutant, int]
 
 
-def repetitions_for(request: Request) -> int:
-    """How often the baseline runs each round; the trunks of the branch engine are its second run.
+@dataclass(slots=True)
+class Remainder:
+    """What an engine leaves to the next one.
 
-    More than that, if it was asked for: a test that fails at random shows itself the sooner.
+    Attributes:
+        pairs: mutants and rounds.
+        early: mutants that act while the program is imported, before any test.
+        reasons: test to why mutants cannot be judged in it by this engine.
+        notes: what else went wrong, in words.
     """
-    least = REPETITIONS if engine_of(request) == "replay" else REPETITIONS - 1
-    return max(least, request.baseline or 0)
+
+    pairs: list[Pair] = field(default_factory=list)
+    early: list[Pair] = field(default_factory=list)
+    reasons: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    def leave(self, mutant: Mutant, round: int, test: str, reason: str) -> None:
+        """Leave a mutant because of a test."""
+        self.pairs.append((mutant, round))
+        self.reasons.setdefault(test, reason)
+
+    @property
+    def all(self) -> list[Pair]:
+        """All that is left."""
+        return [*self.pairs, *self.early]
+
+    def why(self, mutant: Mutant) -> str:
+        """Why a mutant is left, in words."""
+        if any(one.id == mutant.id for one, _ in self.early):
+            return "it acts while the program is imported"
+        return "; ".join(dict.fromkeys([*self.reasons.values(), *self.notes]))
 
 
-def run_mutants(
-    request: Request,
-    baseline: Baseline,
-    workers: Workers,
-    progress: Progress,
-    mutants: Sequence[Mutant],
-    sink: Sink,
-    done: Collection[tuple[str, int]] = (),
-) -> None:
-    """Run controls and mutants in all rounds; every outcome is in the journal as soon as it is known.
+class Engine(Protocol):
+    """Gives mutants their outcomes.
 
-    ``done`` are the ids and rounds that need not be run.
-
-    Raises ControlError for a control that ends wrongly.
+    Attributes:
+        name: as ``--engine``, journals and outcomes have it.
+        order: who is asked first; the one with the highest number takes everything.
+        runs: how often the baseline runs the original in each round before this engine begins. One that runs
+            the original itself, beside its mutants, needs one run less than one that does not.
+        may_share: whether the baseline's runs may begin where the tests are collected already.
     """
-    pairs = [
-        (mutant, round)
-        for round in range(request.rounds)
-        for mutant in mutants
-        if (mutant.id, round) not in done
-    ]
-    if not pairs:
-        return
-    report = _Report(progress, sink, {mutant.id: mutant.number for mutant in mutants})
-    if engine_of(request) == "branch":
-        pairs = _branched(request, baseline, workers, report, pairs)
-    if not pairs:
-        return
-    needed = list({mutant.id: mutant for mutant, _ in pairs}.values())
-    for end in run_controls(request, baseline, workers, progress, needed):
-        report.control(end)
-    progress.stage("mutants" if engine_of(request) == "replay" else "mutants by replay", len(pairs))
-    for outcome in replay(request, baseline, workers, pairs):
-        report.outcome(outcome)
 
+    name: str
+    order: int
+    runs: int
+    may_share: bool
 
-def try_controls(
-    request: Request, baseline: Baseline, workers: Workers, progress: Progress, mutants: Sequence[Mutant]
-) -> tuple[int, Remainder]:
-    """Run the controls alone: how many ended as they must, and in which tests it is not safe to fork.
+    def run(self, campaign: Campaign, pairs: list[Pair], left: Remainder) -> Iterator[Outcome | ControlEnd]:
+        """Outcomes of mutants in rounds as they come, and before they are believed those of controls.
 
-    Raises ControlError for a control that ends wrongly.
-    """
-    remainder = Remainder()
-    ended = 0
-    if engine_of(request) == "branch":
-        controls = controls_in_branches(baseline, mutants)
-        for mutant, round in ((mutant, round) for mutant in mutants for round in range(request.rounds)):
-            forbidding = baseline.why_not_branch(round, baseline.judges(round, mutant))
-            if forbidding is not None:
-                remainder.leave(mutant, round, *forbidding)
-        progress.stage("controls", len(controls))
-        ended = sum(1 for _ in _controls(request, baseline, workers, controls, remainder, progress))
-        mutants = [mutant for mutant in mutants if remainder.pairs or baseline.is_early(mutant)]
-    if mutants:
-        ended += sum(1 for _ in run_controls(request, baseline, workers, progress, mutants))
-    return ended, remainder
+        ``left`` is filled with what could not be judged, and why. Raises ControlError for a control that ends
+        wrongly, after it was yielded.
+        """
 
-
-class _Report:
-    """Outcomes and controls on their way to the journal and the screen."""
-
-    def __init__(self, progress: Progress, sink: Sink, numbers: dict[str, int]) -> None:
-        self.progress, self._sink, self._numbers = progress, sink, numbers
-
-    def outcome(self, outcome: Outcome) -> None:
-        self._sink.add_outcome(outcome)
-        by = f" by {outcome.by}" if outcome.by is not None else ""
-        number = self._numbers[outcome.mutant]
-        self.progress.advance(f"#{number} round {outcome.round + 1}: {outcome.verdict}{by}")
-
-    def control(self, end: ControlEnd) -> None:
-        self._sink.journal.add_control(end.test_file, end.control, end.ok, end.detail)
-
-
-def _branched(
-    request: Request, baseline: Baseline, workers: Workers, report: _Report, pairs: list[Pair]
-) -> list[Pair]:
-    """Run by branching what can be; returns what is left to replay."""
-    controls = controls_in_branches(baseline, [mutant for mutant, _ in pairs])
-    by_id = {control.mutant.id: control for control in controls}
-    only = {mutant: control.tests for mutant, control in by_id.items()}
-    first = [(control.mutant, control.round) for control in controls]
-    remainder = Remainder()
-    report.progress.stage("mutants", len(pairs))
-    for outcome in branch(request, baseline, workers, [*first, *pairs], remainder, only=only):
-        if outcome.mutant in by_id:
-            control = by_id[outcome.mutant]
-            end = end_of(control, outcome, request, baseline, report.progress)
-            report.control(end)
-            if not end.ok:
-                raise control.error(end.detail)
-        else:
-            report.outcome(outcome)
-    _note(report.progress, remainder)
-    clear_up(request, baseline, workers, report.progress, remainder.suspects, remainder.orders)
-    rest = [(mutant, round) for mutant, round in remainder.pairs if mutant.id not in by_id]
-    rest += remainder.early
-    if request.engine == "branch":
-        for outcome in _refused(rest, remainder):
-            report.outcome(outcome)
-        return []
-    return rest
-
-
-def _controls(
-    request: Request,
-    baseline: Baseline,
-    workers: Workers,
-    controls: list[Control],
-    remainder: Remainder,
-    progress: Progress,
-) -> Iterator[ControlEnd]:
-    by_id = {control.mutant.id: control for control in controls}
-    only = {mutant: control.tests for mutant, control in by_id.items()}
-    pairs = [(control.mutant, control.round) for control in controls]
-    for outcome in branch(request, baseline, workers, pairs, remainder, only=only):
-        control = by_id[outcome.mutant]
-        end = end_of(control, outcome, request, baseline, progress)
-        progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
-        if not end.ok:
-            raise control.error(end.detail)
-        yield end
-
-
-def _note(progress: Progress, remainder: Remainder) -> None:
-    for test, reason in remainder.reasons.items():
-        progress.note(f"no branches in {test}: {reason}; its mutants run in processes of their own")
-    if remainder.early:
-        number = len({mutant.id for mutant, _ in remainder.early})
-        progress.note(
-            f"{number} mutants act while the program is imported: each runs in a process of its own"
-        )
-    for note in remainder.notes:
-        progress.note(note)
-
-
-def _refused(pairs: Iterable[Pair], remainder: Remainder) -> Iterator[Outcome]:
-    """With ``--engine branch`` nothing is replayed: what could not be branched is an error."""
-    reasons = "; ".join(dict.fromkeys([*remainder.reasons.values(), *remainder.notes]))
-    early = {mutant.id for mutant, _ in remainder.early}
-    for mutant, round in pairs:
-        why = "it acts while the program is imported" if mutant.id in early else reasons
-        text = f"it could not be branched: {why or 'its branch gave no answer'}"
-        yield Outcome(mutant.id, round, Verdict.ERROR, message=text, engine="branch")
+    def try_controls(
+        self, campaign: Campaign, mutants: Iterable[Mutant], left: Remainder
+    ) -> Iterator[ControlEnd]:
+        """The controls for these mutants alone; ``left`` as far as it is known without running them."""

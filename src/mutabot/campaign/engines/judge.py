@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from mutabot.border.lines import TestEnd
-from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.observation import Observation, compare, farthest
-from mutabot.campaign.request import Request
 from mutabot.model import By, Kill, Mutant, Outcome, Verdict
 from mutabot.model.outcome import added
 
@@ -70,8 +69,9 @@ class Run:
     problem: str | None = None
 
 
-def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
+def judge(campaign: Campaign, run: Run) -> Outcome:
     """The outcome of a run."""
+    request, baseline = campaign.request, campaign.baseline
     verdict, end, message = _ruling(run)
     aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
     if aside:
@@ -104,7 +104,7 @@ def judge(run: Run, request: Request, baseline: Baseline) -> Outcome:
         commands=end.commands if end is not None else None,
         stuck=run.death.where if run.death is not None else None,
     )
-    return _compared(outcome, run, request, baseline) if verdict is Verdict.SURVIVED else outcome
+    return _compared(campaign, outcome, run) if verdict is Verdict.SURVIVED else outcome
 
 
 def _let_through_without(aside: Sequence[str]) -> str:
@@ -184,15 +184,16 @@ def _ruling_on_survivor(run: Run, acted: bool) -> Ruling:
     return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"
 
 
-def _compared(outcome: Outcome, run: Run, request: Request, baseline: Baseline) -> Outcome:
+def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
     """The outcome of a survivor with how far its world is from the original's."""
+    baseline, vocabulary = campaign.baseline, campaign.request.vocabulary
     comparisons = []
     for test, found in run.observations.items():
         key = (run.round, test)
         if key in baseline.restless:
             return replace(outcome, gaps=(f"equal runs of the original differ in {test}",))
         if key in baseline.observations:
-            known = (request.vocabulary.probes, request.vocabulary.operations)
+            known = (vocabulary.probes, vocabulary.operations)
             comparisons.append(compare(baseline.observations[key], found, *known))
     worst = farthest(comparisons)
     # Without a probe, equal traces say only that the program did the same, not that the world ended so.

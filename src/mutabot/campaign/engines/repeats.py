@@ -12,10 +12,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from mutabot.border.codec import to_data
-from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.request import Progress
 from mutabot.campaign.sink import Sink
-from mutabot.campaign.workers.workers import Workers
 from mutabot.journal.records import (
     CONFIRMATION,
     FLAKY,
@@ -28,7 +27,7 @@ from mutabot.journal.records import (
 from mutabot.model import Mutant, Verdict
 
 from .doubt import Doubts, Key
-from .replay import Pair
+from .engine import Pair
 from .second_look import Looker, choose, disagreement, flaky_of, unconfirmed
 
 #: repeats of kills in doubt may take this share of the time that the campaign has taken, or so many seconds
@@ -36,24 +35,17 @@ SHARE, SECONDS = 0.2, 10.0
 _CONFIRMED = (Verdict.SURVIVED, Verdict.TIMEOUT, Verdict.KILLED)
 
 
-def look_again(
-    request: Request,
-    baseline: Baseline,
-    workers: Workers,
-    progress: Progress,
-    mutants: Sequence[Mutant],
-    sink: Sink,
-    spent: float,
-) -> None:
+def look_again(campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, spent: float) -> None:
     """Verify, confirm and repeat, and write down what came of it, flaky tests included.
 
     ``spent``: seconds that the campaign has taken until now.
     """
+    request, baseline, progress = campaign.request, campaign.baseline, campaign.progress
     journal = sink.journal
     journal.set_meta(FLAKY, to_data(flaky_of(baseline)))
     by_id = {mutant.id: mutant for mutant in mutants}
     outcomes = {(one.mutant, one.round): one for one in journal.outcomes() if one.mutant in by_id}
-    looker = Looker(request, baseline, workers, progress)
+    looker = Looker(campaign)
     second = _SecondLook(Doubts(baseline, by_id, outcomes), looker, sink, progress)
     chosen = choose(outcomes.values(), request.verify, request.seed)
     wanted = second.confirmable() if request.confirm else []

@@ -10,146 +10,24 @@ import os
 import selectors
 import tempfile
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import Any
 
 from mutabot.border import stack
-from mutabot.border.job import Job
 from mutabot.border.lines import (
-    Acted,
-    CalledAtImport,
     Line,
-    MutatedCall,
-    NotInstrumented,
-    PlacesReached,
-    Problem,
-    SessionEnd,
-    SiteSeen,
     TestEnd,
     TestStart,
-    TextsSeen,
-    TokensHeld,
-    Watched,
 )
 from mutabot.errors import JournalError
 
 from .forkserver import Copy, ForkServer
 from .interruption import interruptible
 from .processes import Home, LineReader, Spawned, refuse_full_disk
+from .task import Result, Task
 from .token_pool import TokenPool
-
-#: seconds a worker may take until its first test begins, at least
-STARTUP_SECONDS = 60.0
-
-
-@dataclass(frozen=True, slots=True)
-class Task:
-    """A job with what the controller needs to run it.
-
-    Attributes:
-        key: what the caller knows it by.
-        job: the job.
-        deadlines: wall-clock seconds each test may take; tests that are missing get ``deadline``.
-        deadline: wall-clock seconds for any other test.
-        startup: wall-clock seconds until the first test begins.
-        is_trunk: whether it branches: it then runs on a token of the pool.
-        may_share: whether it may begin as a copy of a fork server instead of in a fresh process.
-        alone: whether nothing may run beside it.
-    """
-
-    key: Any
-    job: Job
-    deadlines: Mapping[str, float] = field(default_factory=dict)
-    deadline: float = 600.0
-    startup: float = STARTUP_SECONDS
-    is_trunk: bool = False
-    may_share: bool = False
-    alone: bool = False
-
-
-@dataclass(slots=True)
-class Result:
-    """What became of a worker.
-
-    Attributes:
-        task: its task.
-        sites, ends, problems: what it reported.
-        acted: tests in which its mutant did something; the empty one stands for before any test.
-        reached: places of the program text by test, likewise.
-        called_at_import: trace of the operations that were called before any test.
-        seen: what a recording saw of the program text.
-        not_instrumented: files whose mutants cannot run, with the reason.
-        in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
-        held: tokens that it and its branches held when it was last heard of.
-        running: test that was under way when it ended, or None.
-        watched: limits of the suite's own that would end it during that test.
-        end: its orderly end; None if there was none.
-        exit_code: its exit code, negative for a signal.
-        overdue: which wall-clock limit it exceeded, in words, or None.
-        where: where it was then: its innermost calls; None if that is not known.
-        wall: seconds from its start to its end.
-        log: the last lines it printed.
-    """
-
-    task: Task
-    sites: list[SiteSeen] = field(default_factory=list)
-    ends: list[TestEnd] = field(default_factory=list)
-    problems: list[Problem] = field(default_factory=list)
-    acted: list[str] = field(default_factory=list)
-    reached: dict[str, tuple[int, ...]] = field(default_factory=dict)
-    called_at_import: tuple[Any, ...] = ()
-    seen: TextsSeen | None = None
-    not_instrumented: dict[str, str] = field(default_factory=dict)
-    in_mutated_call: bool = False
-    held: int = 0
-    running: str | None = None
-    watched: list[Watched] = field(default_factory=list)
-    end: SessionEnd | None = None
-    exit_code: int = 0
-    overdue: str | None = None
-    where: str | None = None
-    wall: float = 0.0
-    log: str = ""
-
-    def take(self, line: Line) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
-        """Sort in one report line."""
-        match line:
-            case SiteSeen():
-                self.sites.append(line)
-            case TestStart():
-                self.running = line.test
-                self.watched.clear()
-            case Watched():
-                self.watched.append(line)
-            case Acted() if line.mutant is None:
-                self.acted.append(line.test)
-            case PlacesReached():
-                self.reached[line.test] = line.places
-            case CalledAtImport():
-                self.called_at_import = line.trace
-            case TextsSeen():
-                self.seen = line
-            case NotInstrumented():
-                self.not_instrumented[line.file] = line.reason
-            case MutatedCall() if line.mutant is None:
-                self.in_mutated_call = line.began
-            case TokensHeld():
-                self.held = line.held
-            case TestEnd():
-                self.ends.append(line)
-                self.running = None
-            case Problem():
-                self.problems.append(line)
-            case SessionEnd():
-                self.end = line
-
-    def find_overdue(self, now: float) -> None:
-        """Say so if a limit of the suite's own ended the process, by ``now`` (``time.monotonic``)."""
-        if self.end is None and self.overdue is None and self.running is not None and self.exit_code == 1:
-            self.overdue = next((one.text for one in self.watched if now >= one.until), None)
 
 
 class Workers:
@@ -159,22 +37,28 @@ class Workers:
         root: the project's root; workers start there.
         arguments: pytest arguments of the project.
         jobs: how many run side by side.
+        on_unshared: told why tasks that might begin as copies of a fork server do not, once that is known.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
     Attributes:
         pool: the tokens of trunks and branches.
-        on_unshared: told why tasks that might begin as copies of a fork server do not, once that is known.
     """
 
-    def __init__(self, root: Path, arguments: Iterable[str], jobs: int) -> None:
+    def __init__(
+        self,
+        root: Path,
+        arguments: Iterable[str],
+        jobs: int,
+        on_unshared: Callable[[str], None] = lambda reason: None,
+    ) -> None:
         self._root = root
         self._arguments = tuple(arguments)
         self._jobs = max(1, jobs)
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
         self._servers: list[ForkServer] = []
-        self.on_unshared: Callable[[str], None] = lambda reason: None
+        self._on_unshared = on_unshared
         self._may_share = True
         self.pool = TokenPool(self._jobs)
         home = root / ".mutabot"
@@ -221,6 +105,10 @@ class Workers:
                 return
             yield from self._wait(for_token=next_task is not None and next_task.is_trunk)
 
+    def apart(self) -> Workers:
+        """One more worker process, which shares nothing with these."""
+        return Workers(self._root, self._arguments, jobs=1)
+
     def _has_place(self, task: Task) -> bool:
         if len(self._workers) >= self._jobs or (self._workers and self._is_alone(task)):
             return False
@@ -234,6 +122,9 @@ class Workers:
         return task.alone or any(worker.task.alone for worker in self._workers)
 
     def _start(self, task: Task) -> None:
+        if task.job.branching is not None:
+            branching = replace(task.job.branching, tokens=self.pool.descriptors)
+            task = replace(task, job=replace(task.job, branching=branching))
         home = Home.make(Path(self._folder.name), task.job)
         reading, writing = os.pipe()
         try:
@@ -270,7 +161,7 @@ class Workers:
         if reason is None:
             return server
         self._may_share = False
-        self.on_unshared(reason)
+        self._on_unshared(reason)
         self._end_server(server)
         return None
 

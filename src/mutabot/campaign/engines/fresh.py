@@ -1,43 +1,40 @@
-"""The replay engine: one fresh process per (mutant, round). Simple; it defines what is right."""
+"""One fresh process per (mutant, round), and what was seen of it: replay, and every second look."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from mutabot.campaign.baseline.baseline import Baseline, death, observation, places_of
-from mutabot.campaign.baseline.moments import moments_in
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.baseline.observed import observation, places_of
 from mutabot.campaign.baseline.site_names import Sources
-from mutabot.campaign.request import Request
-from mutabot.campaign.workers.workers import Result, Task, Workers
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.comparing.moments import moments_in
+from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.model import Mutant, Outcome, Verdict
 
+from .engine import Pair
 from .judge import Death, Run, judge
 
 #: how many times its baseline's wall clock a test may take before the safety net ends it
 WALL_FACTOR = 10.0
 
-#: what to run: a mutant in a round
-Pair = tuple[Mutant, int]
 
-
-def replay(
-    request: Request, baseline: Baseline, workers: Workers, pairs: Iterable[Pair]
-) -> Iterator[Outcome]:
+def replay(campaign: Campaign, pairs: Iterable[Pair]) -> Iterator[Outcome]:
     """Outcomes of mutants in rounds, as they come."""
-    sources = Sources(request.root)
+    baseline = campaign.baseline
     uncovered: list[Outcome] = []
     widened: list[Pair] = []
-    for result in workers.run(_tasks(request, baseline, pairs, uncovered)):
+    for result in campaign.executor.run(_tasks(campaign, pairs, uncovered)):
         yield from _drain(uncovered)
-        run = run_of(result, sources)
-        outcome = judge(run, request, baseline)
+        run = run_of(result, campaign.sources)
+        outcome = judge(campaign, run)
         if outcome.verdict is Verdict.SURVIVED and baseline.must_widen(run.mutant, run.round, run.ends):
             widened.append((run.mutant, run.round))
         else:
             yield outcome
     yield from _drain(uncovered)
     if widened:
-        yield from replay(request, baseline, workers, widened)
+        yield from replay(campaign, widened)
 
 
 def _drain(outcomes: list[Outcome]) -> Iterator[Outcome]:
@@ -45,29 +42,22 @@ def _drain(outcomes: list[Outcome]) -> Iterator[Outcome]:
         yield outcomes.pop(0)
 
 
-def _tasks(
-    request: Request, baseline: Baseline, pairs: Iterable[Pair], uncovered: list[Outcome]
-) -> Iterator[Task]:
+def _tasks(campaign: Campaign, pairs: Iterable[Pair], uncovered: list[Outcome]) -> Iterator[Task]:
     for mutant, round in pairs:
-        tests = baseline.judges(round, mutant)
+        tests = campaign.baseline.judges(round, mutant)
         if tests:
-            yield task(request, baseline, mutant, round, tests)
+            yield task(campaign, mutant, round, tests)
         else:
-            uncovered.append(without_tests(baseline, mutant, round))
+            uncovered.append(without_tests(campaign.baseline, mutant, round))
 
 
 def task(
-    request: Request,
-    baseline: Baseline,
-    mutant: Mutant,
-    round: int,
-    tests: tuple[str, ...],
-    *,
-    stop: bool = True,
+    campaign: Campaign, mutant: Mutant, round: int, tests: tuple[str, ...], *, stop: bool = True
 ) -> Task:
     """The task of running these tests as this mutant."""
+    request, baseline = campaign.request, campaign.baseline
     budgets = {test: baseline.budget(round, test, request.configuration.timeout_factor) for test in tests}
-    walls = {test: wall_limit(request, baseline, round, test) for test in tests}
+    walls = {test: wall_limit(campaign, round, test) for test in tests}
     job = request.job(
         round,
         tests=tests,
@@ -85,9 +75,10 @@ def task(
     )
 
 
-def wall_limit(request: Request, baseline: Baseline, round: int, test: str) -> float:
+def wall_limit(campaign: Campaign, round: int, test: str) -> float:
     """Seconds of wall clock that a test may take: the safety net behind the other limits."""
-    return max(request.configuration.timeout_seconds, WALL_FACTOR * baseline.ends[round, test].wall)
+    least = campaign.request.configuration.timeout_seconds
+    return max(least, WALL_FACTOR * campaign.baseline.ends[round, test].wall)
 
 
 def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:

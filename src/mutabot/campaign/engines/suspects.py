@@ -12,10 +12,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.workers.workers import Task, Workers
-
-from .baseline import Baseline
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.workers.task import Task
 
 #: seconds for a test of the suite without any mutant
 _DEADLINE = 600.0
@@ -30,17 +28,13 @@ class _Run:
 
 
 def clear_up(
-    request: Request,
-    baseline: Baseline,
-    workers: Workers,
-    progress: Progress,
-    suspects: Iterable[tuple[int, str]],
-    orders: Mapping[int, tuple[str, ...]],
+    campaign: Campaign, suspects: Iterable[tuple[int, str]], orders: Mapping[int, tuple[str, ...]]
 ) -> None:
     """Run the tests twice more in each round that has suspects, and note in the baseline what they are.
 
     ``orders``: per round, the tests of the trunk in its order.
     """
+    request, baseline = campaign.request, campaign.baseline
     by_round: dict[int, list[str]] = {}
     for round, test in suspects:
         by_round.setdefault(round, []).append(test)
@@ -50,29 +44,28 @@ def clear_up(
         for in_trunks_order, tests in ((False, tuple(baseline.tests[round])), (True, orders[round]))
     ]
     passed: dict[_Run, set[str]] = {}
-    for result in workers.run(tasks):
+    for result in campaign.executor.run(tasks):
         run: _Run = result.task.key
         ends = ((end, baseline.ends[run.round, end.test]) for end in result.ends)
         passed[run] = {end.test for end, first in ends if end.lasting == first.lasting}
     for round, tests in by_round.items():
         for test in tests:
             in_suite, in_order = (test in passed[_Run(round, trunks)] for trunks in (False, True))
-            _clear_up_one(baseline, progress, round, test, in_suite=in_suite, in_order=in_order)
+            _clear_up_one(campaign, round, test, in_suite=in_suite, in_order=in_order)
 
 
-def _clear_up_one(
-    baseline: Baseline, progress: Progress, round: int, test: str, *, in_suite: bool, in_order: bool
-) -> None:
+def _clear_up_one(campaign: Campaign, round: int, test: str, *, in_suite: bool, in_order: bool) -> None:
     """What is known of a suspect from whether it passes in the suite's order, and in the trunk's."""
+    baseline, progress = campaign.baseline, campaign.progress
     if not in_suite:
         baseline.set_aside(round, test, "passed in the baseline, but not in equal runs")
         progress.note(f"set aside as flaky in round {round + 1}: {test}")
     elif in_order:
-        baseline.doubted.add(test)
+        baseline.doubt(test)
         progress.note(
             f"{test} failed once while mutants were branched off in round {round + 1}, and passes without: "
             "by chance, or by what a branch left behind; its mutants run in processes of their own"
         )
     else:
         progress.note(f"{test} passes only after other tests: its mutants are judged by the whole suite")
-        baseline.judge_by_whole_suite(round, test)
+        baseline.passes_only_after_others(round, test)

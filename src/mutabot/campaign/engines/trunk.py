@@ -1,7 +1,8 @@
-"""The branch engine, seen from the controller: one trunk per round, and what its branches report.
+"""Trunks, seen from the controller: one per round, and what its branches report.
 
 A branch's report counts only once the trunk itself has passed the same test as in the baseline: the trunk is
-the second run of the original. What could not be branched, or got lost with a trunk, is left to replay.
+the second run of the original. What could not be branched, or got lost with a trunk, is left to another
+engine.
 """
 
 from __future__ import annotations
@@ -21,93 +22,86 @@ from mutabot.border.lines import (
     Unbranched,
     Undiverged,
 )
-from mutabot.campaign.baseline.baseline import Baseline, at, death, observation, place_of
-from mutabot.campaign.baseline.moments import moments_in
+from mutabot.campaign.baseline.observed import observation, place_of
 from mutabot.campaign.baseline.places import Place
-from mutabot.campaign.baseline.site_names import Sources
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.comparing.moments import moments_in
 from mutabot.campaign.comparing.observation import Observation
-from mutabot.campaign.request import Request
-from mutabot.campaign.workers.workers import Result, Task, Workers
+from mutabot.campaign.workers.task import Result, Task, at, death
 from mutabot.model import Instrumentation, Mutant, Outcome, Verdict
 
+from .engine import Pair, Remainder
+from .fresh import wall_limit, without_tests
 from .judge import Death, Run, judge
-from .replay import Pair, wall_limit, without_tests
 
 #: seconds without any word from a trunk, beyond what its tests and branches may take
 _PATIENCE = 60.0
 
 
-@dataclass(slots=True)
-class Remainder:
-    """What the branch engine leaves to replay.
+class Trunks:
+    """The trunks of all rounds.
+
+    Args:
+        campaign: the campaign.
+        left: is filled with what is left to another engine.
 
     Attributes:
-        pairs: mutants and rounds.
-        early: mutants that act while the program is imported, before a trunk could branch.
-        reasons: test to why it was not safe to fork in it.
         suspects: (round, test) that ended otherwise in a trunk than in the baseline.
         orders: per round, the tests of the trunk in its order.
-        notes: what else went wrong, in words.
     """
 
-    pairs: list[Pair] = field(default_factory=list)
-    early: list[Pair] = field(default_factory=list)
-    reasons: dict[str, str] = field(default_factory=dict)
-    suspects: list[tuple[int, str]] = field(default_factory=list)
-    orders: dict[int, tuple[str, ...]] = field(default_factory=dict)
-    notes: list[str] = field(default_factory=list)
+    def __init__(self, campaign: Campaign, left: Remainder) -> None:
+        self._campaign, self._left = campaign, left
+        self.suspects: list[tuple[int, str]] = []
+        self.orders: dict[int, tuple[str, ...]] = {}
+        self._trunks: dict[int, _Trunk] = {}
 
-    def leave(self, mutant: Mutant, round: int, test: str, reason: str) -> None:
-        """Leave a mutant to replay because of a test."""
-        self.pairs.append((mutant, round))
-        self.reasons.setdefault(test, reason)
+    def run(
+        self,
+        pairs: Iterable[Pair],
+        *,
+        only: Mapping[str, tuple[str, ...]] | None = None,
+        at_start: bool = False,
+    ) -> Iterator[Outcome]:
+        """Outcomes of mutants in rounds, as they come.
 
+        ``only`` names the tests that judge certain mutants, by id; all others are judged by every test that
+        reaches them. ``at_start`` forks when a test begins instead of at the site, to measure what sharing is
+        worth.
+        """
+        baseline = self._campaign.baseline
+        for mutant, round in pairs:
+            tests = (only or {}).get(mutant.id) or baseline.judges(round, mutant)
+            if tests:
+                self._add(mutant, round, tests)
+            else:
+                yield without_tests(baseline, mutant, round)
+        self.orders.update((round, trunk.order) for round, trunk in self._trunks.items())
+        # the text of all rounds alike, so that one fork server can serve them
+        text = baseline.program.instrumentation(
+            {one.id: one for trunk in self._trunks.values() for one in trunk.mutants}.values()
+        )
+        tasks = (trunk.task(text, at_start=at_start) for trunk in self._trunks.values())
+        for event in self._campaign.executor.events(tasks):
+            if isinstance(event, Result):
+                yield from self._trunks[event.task.job.round].finish(event)
+            else:
+                task, line = event
+                yield from self._trunks[task.job.round].take(line)
 
-def branch(
-    request: Request,
-    baseline: Baseline,
-    workers: Workers,
-    pairs: Iterable[Pair],
-    remainder: Remainder,
-    *,
-    only: Mapping[str, tuple[str, ...]] | None = None,
-    at_start: bool = False,
-) -> Iterator[Outcome]:
-    """Outcomes of mutants in rounds, as they come; ``remainder`` is filled with what is left to replay.
-
-    ``only`` names the tests that judge certain mutants, by id; all others are judged by every test that
-    reaches them. ``at_start`` forks when a test begins instead of at the site, to measure what sharing is
-    worth.
-    """
-    trunks: dict[int, _Trunk] = {}
-    for mutant, round in pairs:
-        tests = (only or {}).get(mutant.id) or baseline.judges(round, mutant)
-        if not tests:
-            yield without_tests(baseline, mutant, round)
-            continue
+    def _add(self, mutant: Mutant, round: int, tests: tuple[str, ...]) -> None:
+        baseline = self._campaign.baseline
         if baseline.is_early(mutant):
-            remainder.early.append((mutant, round))
-            continue
-        if round not in trunks:
-            trunks[round] = _Trunk(request, baseline, round)
+            self._left.early.append((mutant, round))
+            return
+        if round not in self._trunks:
+            self._trunks[round] = _Trunk(self._campaign, round, self._left, self.suspects)
         forbidding = baseline.why_not_branch(round, tests)
         if forbidding is not None:
-            remainder.leave(mutant, round, *forbidding)
-            trunks[round].run_too(tests)
+            self._left.leave(mutant, round, *forbidding)
+            self._trunks[round].run_too(tests)
         else:
-            trunks[round].add(mutant, tests)
-    remainder.orders.update((round, trunk.order) for round, trunk in trunks.items())
-    # the text of all rounds alike, so that one fork server can serve them
-    text = baseline.program.instrumentation(
-        {one.id: one for trunk in trunks.values() for one in trunk.mutants}.values()
-    )
-    tasks = (trunk.task(workers.pool.descriptors, text, at_start=at_start) for trunk in trunks.values())
-    for event in workers.events(tasks):
-        if isinstance(event, Result):
-            yield from trunks[event.task.job.round].finish(event, remainder)
-        else:
-            task, line = event
-            yield from trunks[task.job.round].take(line, remainder)
+            self._trunks[round].add(mutant, tests)
 
 
 @dataclass(slots=True)
@@ -142,9 +136,11 @@ class _Branches:
 class _Trunk:
     """The trunk of one round and its branches."""
 
-    def __init__(self, request: Request, baseline: Baseline, round: int) -> None:
-        self._request, self._baseline, self._round = request, baseline, round
-        self._sources = Sources(request.root)
+    def __init__(
+        self, campaign: Campaign, round: int, left: Remainder, suspects: list[tuple[int, str]]
+    ) -> None:
+        self._campaign, self._round, self._left, self._suspects = campaign, round, left, suspects
+        self._baseline, self._sources = campaign.baseline, campaign.sources
         self._open: dict[str, _Branches] = {}
         self._needed: set[str] = set()
         self._passed: set[str] = set()
@@ -172,18 +168,17 @@ class _Trunk:
         """The tests it runs, in their order."""
         return self._baseline.in_order(self._round, self._needed)
 
-    def task(self, tokens: tuple[int, int], text: Instrumentation | None, *, at_start: bool = False) -> Task:
+    def task(self, text: Instrumentation | None, *, at_start: bool = False) -> Task:
         """The task that runs the trunk."""
-        request, baseline, round = self._request, self._baseline, self._round
+        request, baseline, round = self._campaign.request, self._baseline, self._round
         in_order = self.order
-        walls = {test: wall_limit(request, baseline, round, test) for test in in_order}
+        walls = {test: wall_limit(self._campaign, round, test) for test in in_order}
         longest = max(walls.values(), default=0.0)
         mutants = self.mutants
         choices = {mutant.id: baseline.program.choices(mutant) for mutant in mutants}
         branching = Branching(
             mutants=mutants,
             tests={mutant: branches.tests for mutant, branches in self._open.items()},
-            tokens=tokens,
             walls=walls,
             wall=longest,
             at_start=at_start,
@@ -204,7 +199,7 @@ class _Trunk:
         patience = 2.0 * longest + _PATIENCE
         return Task(round, job, {}, patience, patience, is_trunk=True, may_share=True)
 
-    def take(self, line: Line, remainder: Remainder) -> Iterator[Outcome]:
+    def take(self, line: Line) -> Iterator[Outcome]:
         """Sort in a report line; yields the outcomes that it settles."""
         match line:
             case BranchEnd() if line.mutant in self._open:
@@ -214,21 +209,21 @@ class _Trunk:
             case Acted() | MutatedCall():
                 self._note(line)
             case Unbranched():
-                remainder.reasons.setdefault(line.test, line.reason)
+                self._left.reasons.setdefault(line.test, line.reason)
             case Undiverged():
                 self._undiverged[line.test] = line.hits
             case SiteSeen():
                 self._trunk_places[line.index] = place_of(line, self._sources)
             case TestEnd():
-                yield from self._test_ended(line, remainder)
+                yield from self._test_ended(line)
 
-    def finish(self, result: Result, remainder: Remainder) -> Iterator[Outcome]:
+    def finish(self, result: Result) -> Iterator[Outcome]:
         """The trunk is gone: settle what can be settled, and leave the rest to replay."""
         if result.end is None:
-            remainder.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}{at(result)}")
+            self._left.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}{at(result)}")
         for mutant in list(self._open):
             yield from self._settle(mutant)
-        remainder.pairs.extend((branches.mutant, self._round) for branches in self._open.values())
+        self._left.pairs.extend((branches.mutant, self._round) for branches in self._open.values())
 
     def _branch_ended(self, line: BranchEnd) -> Iterator[Outcome]:
         branches = self._open[line.mutant]
@@ -264,17 +259,17 @@ class _Trunk:
         else:
             branches.calling.discard(line.test)
 
-    def _test_ended(self, end: TestEnd, remainder: Remainder) -> Iterator[Outcome]:
+    def _test_ended(self, end: TestEnd) -> Iterator[Outcome]:
         """The trunk has run a test: the second opinion on the original."""
         undiverged = self._undiverged.pop(end.test, {})
         if end.lasting == self._baseline.ends[self._round, end.test].lasting:
             self._passed.add(end.test)
             found = observation(end, self._trunk_places)
-            self._baseline.compare_runs(self._round, end, found, self._request.vocabulary)
+            self._baseline.compare_runs(self._round, end, found, self._campaign.request.vocabulary)
             self._take_undiverged(end, found, undiverged)
         else:
             self._failed.add(end.test)
-            remainder.suspects.append((self._round, end.test))
+            self._suspects.append((self._round, end.test))
         for mutant in self._waiting.pop(end.test, set()) | undiverged.keys():
             if mutant in self._open:
                 yield from self._settle(mutant)
@@ -291,6 +286,7 @@ class _Trunk:
         """Yield the mutant's outcome if all that it depends on is known."""
         branches = self._open[mutant]
         run = Run(branches.mutant, self._round, branches.tests, engine="branch", shared=branches.shared)
+        goes_on = self._campaign.request.every_test
         for test in branches.tests:
             if test in self._failed:
                 return  # replay will find out what is the matter with this test
@@ -304,11 +300,11 @@ class _Trunk:
                 run.death = run.death or death
             else:
                 run.ends.append(branches.ends[test])
-            if not self._request.every_test and (death is not None or branches.ends[test].is_decided):
+            if not goes_on and (death is not None or branches.ends[test].is_decided):
                 break
         run.observations = branches.observations
         run.wall = sum(end.wall for end in run.ends)
-        outcome = judge(run, self._request, self._baseline)
+        outcome = judge(self._campaign, run)
         survived = outcome.verdict is Verdict.SURVIVED
         if survived and self._baseline.must_widen(run.mutant, run.round, run.ends):
             return  # to replay

@@ -1,0 +1,299 @@
+"""Taking the baseline: the runs of the suite on the original, and what they tell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from mutabot.border.lines import Line, Remark, TestEnd
+from mutabot.campaign.comparing.moments import moments_in, note_moments, strides_of
+from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.workers.executor import Executor
+from mutabot.campaign.workers.said import ABNORMAL, said_in
+from mutabot.campaign.workers.task import Result, Task, at, death
+from mutabot.errors import BaselineError, NothingToDoError
+from mutabot.families import FAMILIES
+from mutabot.model import Instrumentation, ProgramText
+from mutabot.operators import load_all
+from mutabot.vocabulary import problem_error
+
+from .answers import Answers
+from .baseline import Baseline, Hit, cost
+from .failing import refuse_failing, rounds_to_repeat, why_set_aside
+from .observed import observations_of, places_of
+from .places import Place
+from .program_text import ProgramTexts, read_texts
+from .readability import note_readability, refuse_unreadable
+from .sharing import Sharing
+from .sharing import remarks as sharing_remarks
+from .site_names import Sources
+
+REPETITIONS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """Which run of the suite: the key of its task."""
+
+    round: int
+    repetition: int
+
+
+@dataclass(slots=True)
+class _Suite:
+    """The suite on the original, run as often as need be.
+
+    Attributes:
+        results: by round and repetition.
+        remarks: what is to be known about the vocabulary.
+    """
+
+    request: Request
+    executor: Executor
+    progress: Progress
+    results: dict[tuple[int, int], Result] = field(default_factory=dict)
+    remarks: list[Remark] = field(default_factory=list)
+
+    def run(self, tasks: Iterable[Task]) -> None:
+        """Run these; one that cannot be a baseline ends all. Raises as ``take_baseline``."""
+        for result in _told_as_they_come(self.executor.events(tasks), self.progress, self.remarks):
+            run: _Run = result.task.key
+            self.results[run.round, run.repetition] = result
+            _refuse(result, self.request.arguments)
+            which = f"round {run.round + 1}, run {run.repetition + 1}"
+            self.progress.advance(f"baseline, {which}: {_counts(result)}")
+
+    def of(self, round: int) -> list[Result]:
+        """The runs of a round, in their order."""
+        return [self.results[key] for key in sorted(self.results) if key[0] == round]
+
+    def strides(self) -> dict[tuple[int, str], int]:
+        """After every how many commands probes can be read along the way, by (round, test)."""
+        ends = {(run[0], end.test): end for run, result in self.results.items() for end in result.ends}
+        return strides_of(ends)
+
+
+def take_baseline(
+    request: Request,
+    executor: Executor,
+    progress: Progress,
+    *,
+    repetitions: int = REPETITIONS,
+    may_share: bool = False,
+) -> tuple[Baseline, list[Result]]:
+    """Run the suite on the original and look at what it does.
+
+    With one repetition the second run is left to the trunks of the branch engine. ``may_share``: whether
+    imports and collection may be done once for all runs.
+
+    Returns the baseline and the raw results, first repetitions first.
+
+    Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
+    tests, BaselineError when tests fail.
+    """
+    texts, refused = read_texts(request.root, request.configuration.program, request.families)
+    for file, why in refused.items():
+        progress.note(f"no mutants of the text of {file}: {why}")
+    for family in dict.fromkeys(rule.family for rule in load_all()):  # a broken plug-in is told now
+        if family not in (*request.families, *FAMILIES):
+            progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
+    progress.stage("baseline", request.rounds * repetitions)
+    suite = _Suite(request, executor, progress)
+    suite.run(_tasks(request, texts, may_share))
+    strides = suite.strides()
+    if repetitions > 1:
+        suite.run(_again(request, repetitions, strides, may_share))
+    else:  # was it chance, or the round's seed?
+        failing = rounds_to_repeat({run[0]: result.ends for run, result in suite.results.items()})
+        suite.run(
+            Task(_Run(round, 1), request.job(round, record=True), startup=300.0, may_share=may_share)
+            for round in failing
+        )
+    baseline = _read(suite, texts, strides)
+    results = suite.results
+    return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
+
+
+def _read(suite: _Suite, texts: tuple[ProgramText, ...], strides: Mapping[tuple[int, str], int]) -> Baseline:
+    """What all runs tell, and what is to be said about it."""
+    request, progress = suite.request, suite.progress
+    baseline = Baseline(strides=strides, remarks=tuple(dict.fromkeys(suite.remarks)))
+    sources = Sources(request.root)
+    failing: dict[tuple[int, str], TestEnd] = {}
+    for round in range(request.rounds):
+        failing |= _add_round(baseline, request, sources, round, suite.of(round))
+    refuse_failing(request, failing)
+    if texts:
+        first = {round: suite.results[round, 0] for round in range(request.rounds)}
+        baseline.program = ProgramTexts.of(texts, first, request.families)
+        _add_text_places(baseline)
+    if not any(baseline.ran(round) for round in range(request.rounds)):
+        raise NothingToDoError(_no_tests(baseline))
+    ends = list(baseline.ends.values())
+    refuse_unreadable(request.vocabulary, ends)
+    note_readability(request.vocabulary, ends, progress)
+    for remark in sharing_remarks(baseline.sharing, _not_private(suite.results.values())):
+        progress.note(remark)
+    note_moments(ends, progress)
+    return baseline
+
+
+def _not_private(results: Iterable[Result]) -> str | None:
+    """Why a run could not keep its files to itself."""
+    return next((one.end.not_private for one in results if one.end and one.end.not_private), None)
+
+
+def _told_as_they_come(
+    events: Iterator[Result | tuple[Task, Line]], progress: Progress, remarks: list[Remark]
+) -> Iterator[Result]:
+    """Results; remarks are told when they are made, which is before the tests run where that is possible."""
+    for event in events:
+        if isinstance(event, Result):
+            yield event
+        elif isinstance(event[1], Remark):
+            remarks.append(event[1])
+            progress.note(str(event[1]))
+
+
+def _tasks(request: Request, texts: tuple[ProgramText, ...], may_share: bool) -> Iterator[Task]:
+    """The first run of each round."""
+    recording = Instrumentation(texts, record=True) if texts else None
+    for round in range(request.rounds):
+        job = request.job(round, record=True, inspect=round == 0, instrumentation=recording)
+        yield Task(_Run(round, 0), job, startup=300.0, may_share=may_share)
+
+
+def _again(
+    request: Request, repetitions: int, strides: Mapping[tuple[int, str], int], may_share: bool
+) -> Iterator[Task]:
+    """Further runs, of the text as it stands: neither looking at it nor probes may change anything."""
+    for repetition in range(1, repetitions):
+        for round in range(request.rounds):
+            job = request.job(round, record=True, moments=moments_in(strides, round))
+            yield Task(_Run(round, repetition), job, startup=300.0, may_share=may_share)
+
+
+def _refuse(result: Result, arguments: Sequence[str]) -> None:
+    """Stop at once if this run of the suite cannot be a baseline."""
+    if result.problems:
+        raise _worst_problem(result)
+    if result.end is None:
+        text = f"the tests cannot be run on the original: {death(result, said=False)}{at(result)}"
+        raise BaselineError(f"{text}{said_in(result.log)}", tests=_running(result))
+    if result.end.errors:
+        raise BaselineError("the tests cannot be collected:\n" + "\n".join(result.end.errors))
+    how = ABNORMAL.get(result.end.exit_status)
+    if how is not None:
+        text = f"pytest ended with exit status {result.end.exit_status} ({how})"
+        raise BaselineError(f"the tests cannot be run on the original: {text}{said_in(result.log)}")
+    if not result.end.collected:
+        raise NothingToDoError(f"pytest finds no tests with {' '.join(arguments)}{said_in(result.log)}")
+    broken = [end for end in result.ends if end.failure is not None and end.outcome == "failed"]
+    if broken:
+        raise BaselineError(
+            f"{broken[0].test}: {broken[0].failure}; the original must run before mutants can",
+            tests=[end.test for end in broken],
+        )
+
+
+def _worst_problem(result: Result) -> Exception:
+    errors = [problem_error(problem) for problem in result.problems]
+    if len(errors) > 1:
+        errors[0].args = ("\n".join(str(error) for error in errors[:10]),)
+    return errors[0]
+
+
+def _running(result: Result) -> list[str]:
+    return [result.running] if result.running is not None else []
+
+
+def _counts(result: Result) -> str:
+    counts: dict[str, int] = {}
+    for end in result.ends:
+        counts[end.outcome] = counts.get(end.outcome, 0) + 1
+    return ", ".join(f"{count} {outcome}" for outcome, count in counts.items()) or "nothing ran"
+
+
+def _add_round(
+    baseline: Baseline, request: Request, sources: Sources, round: int, repetitions: list[Result]
+) -> dict[tuple[int, str], TestEnd]:
+    """Take in the runs of a round; returns the tests that fail in all of them."""
+    runs = [{end.test: end for end in result.ends} for result in repetitions]
+    observed = [observations_of(result, sources) for result in repetitions]
+    failed: dict[tuple[int, str], TestEnd] = {}
+    good: list[str] = []
+    for test, end in runs[0].items():
+        others = [run.get(test) for run in runs[1:]]
+        outcomes = {other.lasting if other is not None else "missing" for other in [end, *others]}
+        if outcomes == {"failed"}:
+            failed[round, test] = end
+            baseline.unstable[round, test] = why_set_aside(request, round, end)
+        elif len(outcomes) > 1:
+            baseline.unstable[round, test] = f"{' and '.join(sorted(outcomes))} in equal runs"
+        elif end.failure is not None:  # it says that the simulator will fail in it, so it judges nothing
+            baseline.skipped += 1
+        else:
+            baseline.skipped += end.outcome == "skipped"
+            good.append(test)
+            baseline.ends[round, test] = replace(end, wall=max([end.wall, *(o.wall for o in others if o)]))
+            baseline.observations[round, test] = observed[0][test]
+            for again, found in zip(others, observed[1:], strict=True):
+                if again is not None:
+                    baseline.compare_runs(round, again, found[test], request.vocabulary)
+    baseline.tests.append(good)
+    spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
+    baseline.startup = max([baseline.startup, *spent])
+    baseline.sharing.append(Sharing.of([(end.test, end.footprint) for end in repetitions[0].ends]))
+    _add_hits(baseline, sources, round, repetitions[0], good)
+    return failed
+
+
+def _no_tests(baseline: Baseline) -> str:
+    if baseline.unstable:
+        test, reason = next((key[1], reason) for key, reason in baseline.unstable.items())
+        return f"no test can be relied on: all are flaky, such as {test} ({reason})"
+    return f"no test ran: {baseline.skipped} skipped"
+
+
+def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, good: list[str]) -> None:
+    places = places_of(result, sources)
+    reaching: dict[Place, list[str]] = {}
+    for end in result.ends:
+        if end.test not in good:
+            _add_set_aside(baseline, round, end.test, {places[index] for index, *_ in end.trace})
+            continue
+        for index, written, read, answer in end.trace:
+            place = places[index]
+            baseline.hits.setdefault(place, []).append(Hit(written, read))
+            baseline.answers.setdefault(place, Answers()).add(round, end.test, answer)
+            tests = reaching.setdefault(place, [])
+            if end.test not in tests:
+                tests.append(end.test)
+    for index, written, read, answer in result.called_at_import:
+        place = places[index]
+        baseline.hits.setdefault(place, []).append(Hit(written, read))
+        baseline.answers.setdefault(place, Answers()).add(round, "", answer)
+        baseline.early.add(place)
+        reaching[place] = list(good)
+    for place, tests in reaching.items():
+        baseline.reaching[round, place] = sorted(tests, key=lambda test: cost(baseline.ends[round, test]))
+
+
+def _add_set_aside(baseline: Baseline, round: int, test: str, places: Iterable[Place]) -> None:
+    """Where a test that is set aside would have judged mutants."""
+    for place in places if (round, test) in baseline.unstable else ():
+        baseline.flaky_reaching.setdefault((round, place), []).append(test)
+
+
+def _add_text_places(baseline: Baseline) -> None:
+    """Which tests reach which place; what is evaluated before the tests, or at import, is there for all."""
+    for (round, place), reached in baseline.program.reached.items():
+        aside = [test for where, test in baseline.unstable if where == round]
+        if place in baseline.program.early:
+            baseline.reaching[round, place] = baseline.by_cost(round)
+        else:
+            tests = set(reached)
+            aside = [test for test in aside if test in tests]
+            baseline.reaching[round, place] = [test for test in baseline.by_cost(round) if test in tests]
+        for test in aside:
+            _add_set_aside(baseline, round, test, [place])

@@ -1,0 +1,91 @@
+"""How a campaign begins: an executor, the baseline, and the mutants that were asked for."""
+
+from __future__ import annotations
+
+import importlib
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
+
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.baseline.ranges import note_ranges
+from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.baseline.unfit import refuse_unfit
+from mutabot.campaign.engines.choice import first_engine, repetitions_for
+from mutabot.campaign.plan.plan import Plan
+from mutabot.campaign.plan.sampling import draw
+from mutabot.campaign.plan.second_order import pairs
+from mutabot.campaign.plan.selection import select
+from mutabot.campaign.workers.executor import Executor
+from mutabot.campaign.workers.interruption import interruptions_kept
+from mutabot.campaign.workers.task import Result
+from mutabot.errors import NothingToDoError
+from mutabot.journal.lock import at_work
+
+from . import executors
+from .campaign import Campaign
+from .request import Progress, Request
+
+
+def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
+    """What runs the tasks of a campaign."""
+    chosen = importlib.import_module(f"{executors.__name__}.{request.executor}")
+    opened: AbstractContextManager[Executor] = chosen.executor(request, progress.note)
+    return opened
+
+
+@contextmanager
+def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
+    """The same, while the project is locked and Ctrl-C takes effect where it is safe."""
+    with (
+        interruptions_kept(),
+        at_work(request.journal_path.parent),
+        open_executor(request, progress) as opened,
+    ):
+        yield opened
+
+
+def begin(request: Request, executor: Executor, progress: Progress) -> tuple[Campaign, list[Result]]:
+    """Take the baseline. Returns the campaign and the raw results of the baseline.
+
+    Raises what ``take_baseline`` raises, and ConfigurationError for orientations that the original lacks.
+    """
+    baseline, results = take_baseline(
+        request, executor, progress,
+        repetitions=repetitions_for(request), may_share=first_engine(request).may_share,
+    )  # fmt: skip
+    refuse_unfit(baseline, request.vocabulary)
+    note_ranges(baseline, request.vocabulary, progress)
+    return Campaign(request, baseline, executor, progress), results
+
+
+def selected(campaign: Campaign, plan: Plan) -> Plan:
+    """The plan with the mutants that were asked for.
+
+    Raises NothingToDoError if none is left, saying why.
+    """
+    request = campaign.request
+    if not plan.mutants:
+        raise NothingToDoError(_why_no_mutants(request, plan, campaign.baseline))
+    mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
+    if not mutants:
+        raise NothingToDoError("the selection leaves no mutant to run")
+    if request.order == 2:
+        mutants = pairs(campaign.baseline, mutants, request.pairs, request.seed)
+        if not mutants:
+            raise NothingToDoError("no test reaches two mutants of this selection at different places")
+    if request.sample is None and not request.one_per_site:
+        return Plan(mutants, plan.left_out)
+    drawn, drawing = draw(mutants, request.seed, sample=request.sample, one_per_site=request.one_per_site)
+    return Plan(drawn, plan.left_out, drawing)
+
+
+def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
+    of_text = Counter(item.reason for item in baseline.program.left_out)
+    if of_text:
+        reason, count = of_text.most_common(1)[0]
+        return f"no mutants: all {len(plan.left_out)} are left out, {count} of them because {reason}"
+    if not baseline.hits:
+        files = ", ".join((*request.configuration.program, *request.configuration.oracle))
+        return f"no mutants: no test reaches a call of the vocabulary's operations in {files}"
+    return f"no mutants: all {len(plan.left_out)} would change nothing"

@@ -1,0 +1,95 @@
+"""Checking a set-up: all that comes before the first mutant, and what is to be said about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from mutabot.border.codec import to_data
+from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.engines.choice import try_controls
+from mutabot.campaign.engines.engine import Remainder
+from mutabot.campaign.plan.plan import Plan, make_plan
+from mutabot.model import Mutant, Vocabulary
+from mutabot.vocabulary.load import shipped
+
+from .beginning import at_it, begin, selected
+from .campaign import Campaign
+from .request import CheckReport, Progress, Request
+
+
+def check(request: Request, progress: Progress) -> CheckReport:
+    """Try the whole set-up, controls included, without running mutants."""
+    with at_it(request, progress) as opened:
+        campaign, _ = begin(request, opened, progress)
+        plan = make_plan(campaign.baseline, request.vocabulary, request.families)
+        mutants = selected(campaign, plan).mutants
+        controls, remainder = try_controls(campaign, mutants)
+    return _report(campaign, plan, mutants, controls, remainder)
+
+
+def _report(
+    campaign: Campaign, plan: Plan, mutants: list[Mutant], controls: int, remainder: Remainder
+) -> CheckReport:
+    request, baseline = campaign.request, campaign.baseline
+    tests = sorted({test for round in range(request.rounds) for test in baseline.ran(round)})
+    never = _never_called(request.vocabulary, baseline)
+    lines = [
+        f"tests     {len(tests)} pass in {request.rounds} rounds"
+        + (f", {baseline.skipped} skipped" if baseline.skipped else ""),
+        f"sites     {len({place.site for place in baseline.places})} reached",
+        f"controls  {controls} ended as they must",
+        f"mutants   {len(mutants)}"
+        + (f" selected of {len(plan.mutants)}" if len(mutants) != len(plan.mutants) else "")
+        + f", {len(plan.left_out)} left out because they {_why_left_out(baseline)}",
+    ]
+    lines += [
+        f"flaky     {test} in round {round + 1}: {why}" for (round, test), why in baseline.unstable.items()
+    ]
+    lines += [
+        f"restless  {test} in round {round + 1}: equal runs differ in values"
+        for round, test in sorted(baseline.restless)
+    ]
+    lines += _unused(request.vocabulary, never)
+    clock = request.vocabulary.clock
+    if clock is not None and all(end.simulated is None for end in baseline.ends.values()):
+        lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
+    lines += [f"note      {remark}" for remark in baseline.remarks]
+    lines += [f"replay    {test}: {why}" for test, why in remainder.reasons.items()]
+    data = {
+        "replay": dict(remainder.reasons),
+        "tests": tests,
+        "sites": [place.key for place in baseline.places],
+        "mutants": len(mutants),
+        "planned": len(plan.mutants),
+        "left_out": len(plan.left_out),
+        "controls": controls,
+        "unstable": [{"round": r, "test": t, "reason": why} for (r, t), why in baseline.unstable.items()],
+        "restless": [{"round": r, "test": t} for r, t in sorted(baseline.restless)],
+        "unused": never,
+        "remarks": [to_data(remark) for remark in baseline.remarks],
+    }
+    return CheckReport(lines, data)
+
+
+def _why_left_out(baseline: Baseline) -> str:
+    return "cannot matter" if baseline.program.left_out else "would change nothing"
+
+
+def _unused(vocabulary: Vocabulary, never: Sequence[str]) -> Iterator[str]:
+    """Operations that no test reaches; of a shipped vocabulary nobody uses all, so one line is enough."""
+    of = {operation.target: operation.source.partition(":")[0] for operation in vocabulary.operations}
+    ours = set(shipped())
+    yield from (
+        f"unused    {target}: no test reaches it from the program or the oracle"
+        for target in never
+        if of[target] not in ours
+    )
+    for name in sorted({of[target] for target in never} & ours):
+        there = sum(other == name for other in of.values())
+        unused = sum(of[target] == name for target in never)
+        yield f"unused    {unused} of {there} operations of the vocabulary {name!r}, which no test reaches"
+
+
+def _never_called(vocabulary: Vocabulary, baseline: Baseline) -> list[str]:
+    reached = {place.operation for place in baseline.places}
+    return [operation.target for operation in vocabulary.operations if operation.target not in reached]

@@ -1,0 +1,109 @@
+"""The engines put to work, one after the other: each mutant by the first that can judge it."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Collection, Iterator, Sequence
+from functools import cache
+
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.sink import Sink
+from mutabot.journal.records import ControlEnd
+from mutabot.model import Mutant, Outcome, Verdict
+
+from . import kinds
+from .engine import Engine, Pair, Remainder
+
+#: the engine that stands for all of them
+AUTO = "auto"
+
+
+@cache
+def all_engines() -> tuple[Engine, ...]:
+    """Every engine there is, in the order in which they are asked."""
+    names = [module.name for module in pkgutil.iter_modules(kinds.__path__)]
+    found: list[Engine] = [importlib.import_module(f"{kinds.__name__}.{name}").ENGINE for name in names]
+    return tuple(sorted(found, key=lambda engine: engine.order))
+
+
+def engines_of(request: Request) -> tuple[Engine, ...]:
+    """The engines that a campaign may use, in the order in which they are asked."""
+    return tuple(engine for engine in all_engines() if request.engine in (AUTO, engine.name))
+
+
+def first_engine(request: Request) -> Engine:
+    """The engine that is asked first."""
+    return engines_of(request)[0]
+
+
+def repetitions_for(request: Request) -> int:
+    """How often the baseline runs each round.
+
+    More than an engine needs, if it was asked for: a test that fails at random shows itself the sooner.
+    """
+    return max(first_engine(request).runs, request.baseline or 0)
+
+
+def run_mutants(
+    campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, done: Collection[tuple[str, int]] = ()
+) -> None:
+    """Run controls and mutants in all rounds; every outcome is in the journal as soon as it is known.
+
+    ``done`` are the ids and rounds that need not be run.
+
+    Raises ControlError for a control that ends wrongly.
+    """
+    rounds = range(campaign.request.rounds)
+    pairs = [(mutant, round) for round in rounds for mutant in mutants if (mutant.id, round) not in done]
+    report = _Report(campaign.progress, sink, {mutant.id: mutant.number for mutant in mutants})
+    left = Remainder()
+    for engine in engines_of(campaign.request):
+        if not pairs:
+            return
+        left = Remainder()
+        for found in engine.run(campaign, pairs, left):
+            report.take(found)
+        pairs = left.all
+    for outcome in _refused(pairs, left, campaign.request.engine):
+        report.take(outcome)
+
+
+def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Remainder]:
+    """Run the controls alone: how many ended as they must, and what the first engine leaves to others.
+
+    Raises ControlError for a control that ends wrongly.
+    """
+    first, *others = engines_of(campaign.request)
+    left = Remainder()
+    ended = sum(1 for _ in first.try_controls(campaign, mutants, left))
+    early = {mutant.id for mutant, _ in left.early}
+    rest = mutants if left.pairs else [mutant for mutant in mutants if mutant.id in early]
+    for engine in others:
+        if rest:
+            ended += sum(1 for _ in engine.try_controls(campaign, rest, Remainder()))
+    return ended, left
+
+
+class _Report:
+    """Outcomes and controls on their way to the journal and the screen."""
+
+    def __init__(self, progress: Progress, sink: Sink, numbers: dict[str, int]) -> None:
+        self._progress, self._sink, self._numbers = progress, sink, numbers
+
+    def take(self, found: Outcome | ControlEnd) -> None:
+        if isinstance(found, ControlEnd):
+            self._sink.journal.add_control(found.test_file, found.control, found.ok, found.detail)
+            return
+        self._sink.add_outcome(found)
+        by = f" by {found.by}" if found.by is not None else ""
+        number = self._numbers[found.mutant]
+        self._progress.advance(f"#{number} round {found.round + 1}: {found.verdict}{by}")
+
+
+def _refused(pairs: Sequence[Pair], left: Remainder, engine: str) -> Iterator[Outcome]:
+    """What no engine that may be used could judge is an error."""
+    for mutant, round in pairs:
+        text = f"it could not be branched: {left.why(mutant) or 'its branch gave no answer'}"
+        yield Outcome(mutant.id, round, Verdict.ERROR, message=text, engine=engine)

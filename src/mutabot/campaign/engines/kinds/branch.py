@@ -1,0 +1,104 @@
+"""Branch: each test runs once as the original, and forks where a mutant differs; the fork ends as the mutant.
+
+Mutants whose tests share anything with others, or do what a forked process would share, are left to the next
+engine, as are those that act before any test.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from mutabot.campaign.baseline.taking import REPETITIONS
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.engines.controls import Control, controls_in_branches, end_of
+from mutabot.campaign.engines.engine import Engine, Pair, Remainder
+from mutabot.campaign.engines.suspects import clear_up
+from mutabot.campaign.engines.trunk import Trunks
+from mutabot.journal.records import ControlEnd
+from mutabot.model import Mutant, Outcome
+
+
+@dataclass(frozen=True, slots=True)
+class _Controls:
+    """The controls of a campaign as branches."""
+
+    by_id: Mapping[str, Control]
+
+    @classmethod
+    def of(cls, campaign: Campaign, mutants: Iterable[Mutant]) -> _Controls:
+        found = controls_in_branches(campaign.baseline, mutants)
+        return cls({control.mutant.id: control for control in found})
+
+    @property
+    def pairs(self) -> list[Pair]:
+        return [(control.mutant, control.round) for control in self.by_id.values()]
+
+    @property
+    def tests(self) -> dict[str, tuple[str, ...]]:
+        return {mutant: control.tests for mutant, control in self.by_id.items()}
+
+
+class Branch:
+    """The engine; see ``Engine``. Its trunks are the second run of the original in each round."""
+
+    name = "branch"
+    order = 0
+    runs = REPETITIONS - 1
+    may_share = True
+
+    def run(self, campaign: Campaign, pairs: list[Pair], left: Remainder) -> Iterator[Outcome | ControlEnd]:
+        """One trunk per round, with controls and mutants as its branches."""
+        controls = _Controls.of(campaign, (mutant for mutant, _ in pairs))
+        campaign.progress.stage("mutants", len(pairs))
+        trunks = Trunks(campaign, left)
+        for outcome in trunks.run([*controls.pairs, *pairs], only=controls.tests):
+            control = controls.by_id.get(outcome.mutant)
+            if control is None:
+                yield outcome
+                continue
+            end = end_of(campaign, control, outcome)
+            yield end
+            if not end.ok:
+                raise control.error(end.detail)
+        _tell(campaign, left)
+        clear_up(campaign, trunks.suspects, trunks.orders)
+        left.pairs = [pair for pair in left.pairs if pair[0].id not in controls.by_id]
+
+    def try_controls(
+        self, campaign: Campaign, mutants: Iterable[Mutant], left: Remainder
+    ) -> Iterator[ControlEnd]:
+        """Identity in every test of the first round, fatal once per test file."""
+        mutants = list(mutants)
+        controls = _Controls.of(campaign, mutants)
+        baseline, progress = campaign.baseline, campaign.progress
+        for mutant, round in ((one, round) for one in mutants for round in range(campaign.request.rounds)):
+            forbidding = baseline.why_not_branch(round, baseline.judges(round, mutant))
+            if forbidding is not None:
+                left.leave(mutant, round, *forbidding)
+            elif baseline.is_early(mutant):
+                left.early.append((mutant, round))
+        progress.stage("controls", len(controls.by_id))
+        for outcome in Trunks(campaign, left).run(controls.pairs, only=controls.tests):
+            control = controls.by_id[outcome.mutant]
+            end = end_of(campaign, control, outcome)
+            progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
+            if not end.ok:
+                raise control.error(end.detail)
+            yield end
+
+
+def _tell(campaign: Campaign, left: Remainder) -> None:
+    progress = campaign.progress
+    for test, reason in left.reasons.items():
+        progress.note(f"no branches in {test}: {reason}; its mutants run in processes of their own")
+    if left.early:
+        number = len({mutant.id for mutant, _ in left.early})
+        progress.note(
+            f"{number} mutants act while the program is imported: each runs in a process of its own"
+        )
+    for note in left.notes:
+        progress.note(note)
+
+
+ENGINE: Engine = Branch()

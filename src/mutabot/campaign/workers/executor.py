@@ -1,0 +1,32 @@
+"""The contract of whatever runs tasks: worker processes on this machine, or on others.
+
+An executor is one file in ``campaign/executors/`` that names it and opens it. It only runs what it is given:
+which tasks there are, and what their results mean, is the engines' business.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import AbstractContextManager
+from typing import Protocol
+
+from mutabot.border.lines import Line
+
+from .task import Result, Task
+
+
+class Executor(Protocol):
+    """Runs tasks, as many at a time as it may. Leaving its context ends whatever still runs."""
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
+        """Results in the order in which tasks end. Tasks are taken from the iterable as places free up."""
+
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
+        """The same, with each report line as it comes.
+
+        A task whose job branches is a trunk: the executor gives it and its branches the tokens by which they
+        share its places with the other tasks. A task that is ``alone`` has nothing beside it.
+        """
+
+    def apart(self) -> AbstractContextManager[Executor]:
+        """An executor for one task at a time, which shares nothing with what runs here meanwhile."""
