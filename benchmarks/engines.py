@@ -44,7 +44,7 @@ from rich.table import Table
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.beginning import selected
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.engine import Pair, Remainder
+from mutabot.campaign.engines.engine import Remainder, Trial
 from mutabot.campaign.engines.fresh import replay
 from mutabot.campaign.engines.trunk import Trunks
 from mutabot.campaign.plan.plan import make_plan
@@ -193,8 +193,8 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
             )
             campaign = Campaign(request, baseline, workers, Silent())
             mutants = selected(campaign, make_plan(baseline, request.vocabulary)).mutants[:limit]
-            pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
-            outcomes = list(run_pairs(engine, campaign, pairs))
+            trials = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
+            outcomes = list(run_pairs(engine, campaign, trials))
         wall, cpu = time.monotonic() - started, cpu_seconds() - before
     originals = sum(end.simulated or 0.0 for result in results for end in result.ends)
     if shared:
@@ -205,18 +205,18 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
     return Row(example, engine, len(outcomes), wall, cpu, simulated, peak, bound)
 
 
-def run_pairs(engine: str, campaign: Campaign, pairs: list[Pair]) -> Iterator[Outcome]:
+def run_pairs(engine: str, campaign: Campaign, trials: list[Trial]) -> Iterator[Outcome]:
     """All outcomes; what a fork could not do is replayed, as in a campaign."""
     if engine in ("branch", "fork"):
         left = Remainder()
-        yield from Trunks(campaign, left).run(pairs, at_start=engine == "fork")
-        yield from replay(campaign, left.pairs)
+        yield from Trunks(campaign, left).run(trials, at_start=engine == "fork")
+        yield from replay(campaign, left.trials)
         return
     if engine == "fresh":
         baseline = campaign.baseline
         for round, place in baseline.reaching:
             baseline.reaching[round, place] = list(baseline.tests[round])
-    yield from replay(campaign, pairs)
+    yield from replay(campaign, trials)
 
 
 def request_for(folder: Path, *, selection: str | None, rounds: int) -> Request:

@@ -100,3 +100,45 @@ def test_the_sleeping_plugin_loads_neither_operators_nor_wrapt() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+_CHANGES = {"add", "append", "clear", "discard", "extend", "insert", "pop", "remove", "setdefault", "update"}
+
+
+def _is_of_baseline(node: ast.expr) -> bool:
+    """Whether something is an attribute of a baseline, or an item of one."""
+    while isinstance(node, ast.Subscript):
+        node = node.value
+    if not isinstance(node, ast.Attribute):
+        return False
+    owner = node.value
+    return "baseline" in (getattr(owner, "id", None), getattr(owner, "attr", None))
+
+
+def test_the_baseline_is_changed_by_its_own_room_alone() -> None:
+    for file in (SOURCE / "campaign").rglob("*.py"):
+        if file.parent.name == "baseline":
+            continue
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            changed: list[ast.expr] = []
+            if isinstance(node, ast.Assign | ast.Delete):
+                changed = [*node.targets]
+            elif isinstance(node, ast.AugAssign | ast.AnnAssign):
+                changed = [node.target]
+            elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+                changed = [node.func.value] if node.func.attr in _CHANGES else []
+            assert not any(_is_of_baseline(one) for one in changed), f"{file}:{node.lineno}"
+
+
+@pytest.mark.parametrize("text", ["baseline.x.add(1)", "a.baseline.x[1] = 2", "baseline.x += 1"])
+def test_a_change_of_the_baseline_is_seen(text: str) -> None:
+    statement = ast.parse(text).body[0]
+    if isinstance(statement, ast.Expr):
+        assert isinstance(statement.value, ast.Call)
+        assert isinstance(statement.value.func, ast.Attribute)
+        assert _is_of_baseline(statement.value.func.value)
+    else:
+        assert isinstance(statement, ast.Assign | ast.AugAssign)
+        assert _is_of_baseline(
+            statement.target if isinstance(statement, ast.AugAssign) else statement.targets[0]
+        )

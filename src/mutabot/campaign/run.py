@@ -22,7 +22,7 @@ from mutabot.campaign.plan.earlier import carry, note_outdated
 from mutabot.campaign.plan.plan import Plan, make_plan
 from mutabot.campaign.plan.selection import numbered
 from mutabot.campaign.reuse.keys import Dependencies
-from mutabot.campaign.reuse.opened import Watch
+from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.reuse.reuse import reuse
 from mutabot.campaign.reuse.snapshot import Snapshot
 from mutabot.campaign.workers.executor import Executor
@@ -69,7 +69,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
 def _run(request: Request, opened: Executor, progress: Progress, journal: Journal) -> None:
     started = time.monotonic()
     before = Snapshot.take(request.root)
-    with Watch(request.root, before.folders) as watch:
+    with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress)
     baseline = campaign.baseline
     whole = make_plan(baseline, request.vocabulary, request.families)

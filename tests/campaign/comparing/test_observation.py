@@ -9,7 +9,7 @@ import pytest
 
 from mutabot.campaign.comparing.observation import (
     OTHER_WORLD,
-    Comparison,
+    Difference,
     Event,
     Observation,
     compare,
@@ -27,7 +27,7 @@ def seen(*events: Event, truncated: bool = False, **probes: Any) -> Observation:
 
 def test_equal_worlds_are_indistinguishable() -> None:
     one = seen(Event("a", {"x": 1.0}, {"y": 2.0}), x=1.0, colour="red")
-    assert compare(one, one, [BOX]) == Comparison(True, 0.0, ())
+    assert compare(one, one, [BOX]) == Difference(True, 0.0, ())
 
 
 def test_a_difference_within_the_tolerance_is_none() -> None:
@@ -76,7 +76,7 @@ def test_a_probe_that_only_one_side_has_is_a_difference() -> None:
 
 
 def test_without_probes_there_is_no_distance() -> None:
-    assert compare(seen(), seen()) == Comparison(True, None, ())
+    assert compare(seen(), seen()) == Difference(True, None, ())
 
 
 @pytest.mark.parametrize(
@@ -100,11 +100,11 @@ def test_traces_that_were_cut_off_are_compared_as_far_as_they_go() -> None:
 
 
 def test_several_tests_of_a_mutant_are_as_far_as_the_farthest() -> None:
-    near, far = Comparison(True, 0.5, ()), Comparison(False, 7.0, ("x", "y"))
-    bare = Comparison(False, None, ("1 call fewer",))
-    assert farthest([near, bare, far]) == Comparison(False, 7.0, ("x", "y", "1 call fewer"))
+    near, far = Difference(True, 0.5, ()), Difference(False, 7.0, ("x", "y"))
+    bare = Difference(False, None, ("1 call fewer",))
+    assert farthest([near, bare, far]) == Difference(False, 7.0, ("x", "y", "1 call fewer"))
     assert farthest([near, near]) == near
-    assert farthest([]) == Comparison(True, None, ())
+    assert farthest([]) == Difference(True, None, ())
 
 
 def test_values_that_differ_late_are_printed_with_as_many_digits_as_it_takes() -> None:

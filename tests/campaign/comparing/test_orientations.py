@@ -12,7 +12,7 @@ from mutabot.border.lines import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline, Hit
 from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.baseline.unfit import refuse_unfit
-from mutabot.campaign.comparing.observation import OTHER_WORLD, Comparison, Event, Observation, compare
+from mutabot.campaign.comparing.observation import OTHER_WORLD, Difference, Event, Observation, compare
 from mutabot.errors import ConfigurationError
 from mutabot.model import Kind, Mode, Operation, Path, Probe, Quantity, Role, Site, Span, Vocabulary
 from tests.campaign.project import CONFIGURATION, run, write_project
@@ -102,7 +102,7 @@ def test_what_is_no_orientation_is_never_equal_to_one(after: Any) -> None:
     assert (found.indistinguishable, found.distance) == (False, OTHER_WORLD)
 
 
-def traced(quantity: Quantity, before: Any, after: Any) -> Comparison:
+def traced(quantity: Quantity, before: Any, after: Any) -> Difference:
     operation = Operation("robot:turn", (quantity,), ())
     events = [
         Observation([Event("a", {quantity.name: value}, {}, ("robot:turn", None))])

@@ -34,10 +34,10 @@ ENGINE = """
     class Idle:
         name, order, runs, may_share = "idle", 50, 1, True
 
-        def run(self, campaign, pairs, left):
-            for mutant, round in pairs:
+        def run(self, campaign, trials, left):
+            for mutant, round in trials:
                 if mutant.operator == "skip":
-                    left.pairs.append((mutant, round))
+                    left.trials.append((mutant, round))
                 else:
                     yield Outcome(mutant.id, round, Verdict.NO_EFFECT, engine=self.name)
 

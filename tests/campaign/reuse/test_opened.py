@@ -12,7 +12,7 @@ import pytest
 from mutabot.campaign import run as campaign
 from mutabot.campaign.reuse.counted import counted
 from mutabot.campaign.reuse.keys import Dependencies
-from mutabot.campaign.reuse.opened import Watch
+from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.reuse.snapshot import Snapshot
 from tests.campaign.project import Quiet, request_for, write_project
 
@@ -62,7 +62,7 @@ def test_a_watch_sees_what_any_process_opens(tmp_path: Path, read: Callable[[Pat
     for name in ("a.txt", "b.txt", "deep/er/c.txt"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("text")
-    with Watch(tmp_path, Snapshot.take(tmp_path).folders) as watch:
+    with OpenedFiles(tmp_path, Snapshot.take(tmp_path).folders) as watch:
         read(tmp_path / "b.txt")
         read(tmp_path / "deep" / "er" / "c.txt")
     (tmp_path / "a.txt").read_text()
@@ -75,7 +75,7 @@ def test_a_watch_that_missed_something_knows_nothing(tmp_path: Path) -> None:
     files = [tmp_path / "a.txt", tmp_path / "b.txt"]
     for file in files:
         file.write_text("text")
-    with Watch(tmp_path, ["."]) as watch:
+    with OpenedFiles(tmp_path, ["."]) as watch:
         for number in range(longest + 2):  # equal events in a row count as one
             files[number % 2].open().close()
     assert watch.opened is None

@@ -21,7 +21,7 @@ class NoAnswerError(MutabotError):
 
 
 @dataclass(slots=True)
-class Answers:
+class RecordedAnswers:
     """The notes of what calls of one place returned, as ``inside.answers`` writes them.
 
     Attributes:
@@ -44,7 +44,7 @@ class Answers:
             self.varying[key] = None
 
 
-def idle_of(operation: Operation, pattern: Pattern | None, answers: Answers) -> Any:
+def idle_of(operation: Operation, pattern: Pattern | None, answers: RecordedAnswers) -> Any:
     """What the program gets when the command is left out, as a mutant carries it.
 
     What the vocabulary says goes first. Raises NoAnswerError.

@@ -15,7 +15,7 @@ from mutabot.border.lines import Remark, TestEnd
 from mutabot.campaign.comparing.observation import Observation, as_steady
 from mutabot.model import Mutant, Vocabulary
 
-from .answers import Answers
+from .answers import RecordedAnswers
 from .places import Place
 from .program_text import ProgramTexts
 from .sharing import Sharing
@@ -67,7 +67,7 @@ class Baseline:
     tests: list[list[str]] = field(default_factory=list)
     ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
     hits: dict[Place, list[Hit]] = field(default_factory=dict)
-    answers: dict[Place, Answers] = field(default_factory=dict)
+    answers: dict[Place, RecordedAnswers] = field(default_factory=dict)
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)

@@ -17,7 +17,7 @@ from mutabot.model import Instrumentation, ProgramText
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 
-from .answers import Answers
+from .answers import RecordedAnswers
 from .baseline import Baseline, Hit, cost
 from .failing import refuse_failing, rounds_to_repeat, why_set_aside
 from .observed import observations_of, places_of
@@ -32,7 +32,7 @@ REPETITIONS = 2
 
 
 @dataclass(frozen=True, slots=True)
-class _Run:
+class _SuiteRun:
     """Which run of the suite: the key of its task."""
 
     round: int
@@ -57,7 +57,7 @@ class _Suite:
     def run(self, tasks: Iterable[Task]) -> None:
         """Run these; one that cannot be a baseline ends all. Raises as ``take_baseline``."""
         for result in _told_as_they_come(self.executor.events(tasks), self.progress, self.remarks):
-            run: _Run = result.task.key
+            run: _SuiteRun = result.task.key
             self.results[run.round, run.repetition] = result
             _refuse(result, self.request.arguments)
             which = f"round {run.round + 1}, run {run.repetition + 1}"
@@ -106,7 +106,7 @@ def take_baseline(
     else:  # was it chance, or the round's seed?
         failing = rounds_to_repeat({run[0]: result.ends for run, result in suite.results.items()})
         suite.run(
-            Task(_Run(round, 1), request.job(round, record=True), startup=300.0, may_share=may_share)
+            Task(_SuiteRun(round, 1), request.job(round, record=True), startup=300.0, may_share=may_share)
             for round in failing
         )
     baseline = _read(suite, texts, strides)
@@ -160,7 +160,7 @@ def _tasks(request: Request, texts: tuple[ProgramText, ...], may_share: bool) ->
     recording = Instrumentation(texts, record=True) if texts else None
     for round in range(request.rounds):
         job = request.job(round, record=True, inspect=round == 0, instrumentation=recording)
-        yield Task(_Run(round, 0), job, startup=300.0, may_share=may_share)
+        yield Task(_SuiteRun(round, 0), job, startup=300.0, may_share=may_share)
 
 
 def _again(
@@ -170,7 +170,7 @@ def _again(
     for repetition in range(1, repetitions):
         for round in range(request.rounds):
             job = request.job(round, record=True, moments=moments_in(strides, round))
-            yield Task(_Run(round, repetition), job, startup=300.0, may_share=may_share)
+            yield Task(_SuiteRun(round, repetition), job, startup=300.0, may_share=may_share)
 
 
 def _refuse(result: Result, arguments: Sequence[str]) -> None:
@@ -265,14 +265,14 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
         for index, written, read, answer in end.trace:
             place = places[index]
             baseline.hits.setdefault(place, []).append(Hit(written, read))
-            baseline.answers.setdefault(place, Answers()).add(round, end.test, answer)
+            baseline.answers.setdefault(place, RecordedAnswers()).add(round, end.test, answer)
             tests = reaching.setdefault(place, [])
             if end.test not in tests:
                 tests.append(end.test)
     for index, written, read, answer in result.called_at_import:
         place = places[index]
         baseline.hits.setdefault(place, []).append(Hit(written, read))
-        baseline.answers.setdefault(place, Answers()).add(round, "", answer)
+        baseline.answers.setdefault(place, RecordedAnswers()).add(round, "", answer)
         baseline.early.add(place)
         reaching[place] = list(good)
     for place, tests in reaching.items():

@@ -64,7 +64,7 @@ class Observation:
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
+class Difference:
     """How far a mutant's test is from the original's.
 
     Attributes:
@@ -91,7 +91,7 @@ def compare(
     mutant: Observation,
     probes: Sequence[Probe] = (),
     operations: Sequence[Operation] = (),
-) -> Comparison:
+) -> Difference:
     """Compare a mutant's test with the original's.
 
     Numbers are equal when they differ by no more than their probe's tolerance; values in the trace, when
@@ -128,7 +128,7 @@ def compare(
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
     compared = _compared(original, mutant, way.count)
-    return Comparison(not lines, distance, tuple(lines), gaps, way.distance, compared)
+    return Difference(not lines, distance, tuple(lines), gaps, way.distance, compared)
 
 
 def as_steady(
@@ -148,10 +148,10 @@ def as_steady(
     return None
 
 
-def farthest(comparisons: Sequence[Comparison]) -> Comparison:
+def farthest(comparisons: Sequence[Difference]) -> Difference:
     """One comparison for several tests of the same mutant: the worst of them, all of them equal or not."""
     if not comparisons:
-        return Comparison(True, None, ())
+        return Difference(True, None, ())
     ranked = sorted(
         comparisons, key=lambda one: (one.distance or 0.0, not one.indistinguishable), reverse=True
     )
@@ -164,7 +164,7 @@ def farthest(comparisons: Sequence[Comparison]) -> Comparison:
         distance = None
     compared = Compared.together(one.compared for one in comparisons)
     way = max((one.way for one in comparisons if one.way is not None), default=None)
-    return Comparison(together, distance, tuple(lines), gaps, way, compared)
+    return Difference(together, distance, tuple(lines), gaps, way, compared)
 
 
 def _outcome_lines(original: Observation, mutant: Observation) -> list[str]:

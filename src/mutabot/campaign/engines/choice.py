@@ -14,7 +14,7 @@ from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 
 from . import kinds
-from .engine import Engine, Pair, Remainder
+from .engine import Engine, Remainder, Trial
 
 #: the engine that stands for all of them
 AUTO = "auto"
@@ -56,17 +56,17 @@ def run_mutants(
     Raises ControlError for a control that ends wrongly.
     """
     rounds = range(campaign.request.rounds)
-    pairs = [(mutant, round) for round in rounds for mutant in mutants if (mutant.id, round) not in done]
+    trials = [(mutant, round) for round in rounds for mutant in mutants if (mutant.id, round) not in done]
     report = _Report(campaign.progress, sink, {mutant.id: mutant.number for mutant in mutants})
     left = Remainder()
     for engine in engines_of(campaign.request):
-        if not pairs:
+        if not trials:
             return
         left = Remainder()
-        for found in engine.run(campaign, pairs, left):
+        for found in engine.run(campaign, trials, left):
             report.take(found)
-        pairs = left.all
-    for outcome in _refused(pairs, left, campaign.request.engine):
+        trials = left.all
+    for outcome in _refused(trials, left, campaign.request.engine):
         report.take(outcome)
 
 
@@ -79,7 +79,7 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Re
     left = Remainder()
     ended = sum(1 for _ in first.try_controls(campaign, mutants, left))
     early = {mutant.id for mutant, _ in left.early}
-    rest = mutants if left.pairs else [mutant for mutant in mutants if mutant.id in early]
+    rest = mutants if left.trials else [mutant for mutant in mutants if mutant.id in early]
     for engine in others:
         if rest:
             ended += sum(1 for _ in engine.try_controls(campaign, rest, Remainder()))
@@ -102,8 +102,8 @@ class _Report:
         self._progress.advance(f"#{number} round {found.round + 1}: {found.verdict}{by}")
 
 
-def _refused(pairs: Sequence[Pair], left: Remainder, engine: str) -> Iterator[Outcome]:
+def _refused(trials: Sequence[Trial], left: Remainder, engine: str) -> Iterator[Outcome]:
     """What no engine that may be used could judge is an error."""
-    for mutant, round in pairs:
+    for mutant, round in trials:
         text = f"it could not be branched: {left.why(mutant) or 'its branch gave no answer'}"
         yield Outcome(mutant.id, round, Verdict.ERROR, message=text, engine=engine)

@@ -15,8 +15,8 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome
 
-#: what to run: a mutant in a round
-Pair = tuple[Mutant, int]
+#: what is run: a mutant in a round
+Trial = tuple[Mutant, int]
 
 
 @dataclass(slots=True)
@@ -24,26 +24,26 @@ class Remainder:
     """What an engine leaves to the next one.
 
     Attributes:
-        pairs: mutants and rounds.
+        trials: mutants and rounds.
         early: mutants that act while the program is imported, before any test.
         reasons: test to why mutants cannot be judged in it by this engine.
         notes: what else went wrong, in words.
     """
 
-    pairs: list[Pair] = field(default_factory=list)
-    early: list[Pair] = field(default_factory=list)
+    trials: list[Trial] = field(default_factory=list)
+    early: list[Trial] = field(default_factory=list)
     reasons: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
     def leave(self, mutant: Mutant, round: int, test: str, reason: str) -> None:
         """Leave a mutant because of a test."""
-        self.pairs.append((mutant, round))
+        self.trials.append((mutant, round))
         self.reasons.setdefault(test, reason)
 
     @property
-    def all(self) -> list[Pair]:
+    def all(self) -> list[Trial]:
         """All that is left."""
-        return [*self.pairs, *self.early]
+        return [*self.trials, *self.early]
 
     def why(self, mutant: Mutant) -> str:
         """Why a mutant is left, in words."""
@@ -68,7 +68,7 @@ class Engine(Protocol):
     runs: int
     may_share: bool
 
-    def run(self, campaign: Campaign, pairs: list[Pair], left: Remainder) -> Iterator[Outcome | ControlEnd]:
+    def run(self, campaign: Campaign, trials: list[Trial], left: Remainder) -> Iterator[Outcome | ControlEnd]:
         """Outcomes of mutants in rounds as they come, and before they are believed those of controls.
 
         ``left`` is filled with what could not be judged, and why. Raises ControlError for a control that ends

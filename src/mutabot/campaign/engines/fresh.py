@@ -12,19 +12,19 @@ from mutabot.campaign.comparing.moments import moments_in
 from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.model import Mutant, Outcome, Verdict
 
-from .engine import Pair
+from .engine import Trial
 from .judge import Death, Run, judge
 
 #: how many times its baseline's wall clock a test may take before the safety net ends it
 WALL_FACTOR = 10.0
 
 
-def replay(campaign: Campaign, pairs: Iterable[Pair]) -> Iterator[Outcome]:
+def replay(campaign: Campaign, trials: Iterable[Trial]) -> Iterator[Outcome]:
     """Outcomes of mutants in rounds, as they come."""
     baseline = campaign.baseline
     uncovered: list[Outcome] = []
-    widened: list[Pair] = []
-    for result in campaign.executor.run(_tasks(campaign, pairs, uncovered)):
+    widened: list[Trial] = []
+    for result in campaign.executor.run(_tasks(campaign, trials, uncovered)):
         yield from _drain(uncovered)
         run = run_of(result, campaign.sources)
         outcome = judge(campaign, run)
@@ -42,8 +42,8 @@ def _drain(outcomes: list[Outcome]) -> Iterator[Outcome]:
         yield outcomes.pop(0)
 
 
-def _tasks(campaign: Campaign, pairs: Iterable[Pair], uncovered: list[Outcome]) -> Iterator[Task]:
-    for mutant, round in pairs:
+def _tasks(campaign: Campaign, trials: Iterable[Trial], uncovered: list[Outcome]) -> Iterator[Task]:
+    for mutant, round in trials:
         tests = campaign.baseline.judges(round, mutant)
         if tests:
             yield task(campaign, mutant, round, tests)

@@ -27,7 +27,7 @@ from mutabot.journal.records import (
 from mutabot.model import Mutant, Verdict
 
 from .doubt import Doubts, Key
-from .engine import Pair
+from .engine import Trial
 from .second_look import Looker, choose, disagreement, flaky_of, unconfirmed
 
 #: repeats of kills in doubt may take this share of the time that the campaign has taken, or so many seconds
@@ -78,8 +78,8 @@ class _SecondLook:
 
     def run(self, keys: Iterable[Key], until: float | None = None) -> None:
         """Run these once more, as far as ``until`` (``time.monotonic``) allows."""
-        pairs: list[Pair] = [(self.doubts.mutants[mutant], round) for mutant, round in keys]
-        self.looker.look(pairs, self.doubts.outcomes, until)
+        trials: list[Trial] = [(self.doubts.mutants[mutant], round) for mutant, round in keys]
+        self.looker.look(trials, self.doubts.outcomes, until)
 
     def confirm(self, keys: Sequence[Key]) -> None:
         """Write down what ``--confirm`` found about these."""

@@ -21,7 +21,7 @@ from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.outcome import in_words, same_end
 
 from .controls import run_controls
-from .engine import Pair
+from .engine import Trial
 from .fresh import replay
 
 
@@ -34,24 +34,24 @@ class Looker:
 
     def look(
         self,
-        pairs: Sequence[Pair],
+        trials: Sequence[Trial],
         first: Mapping[tuple[str, int], Outcome],
         until: float | None = None,
     ) -> None:
         """Run these again in fresh processes; none begins after ``until`` (``time.monotonic``)."""
-        if not pairs or (until is not None and time.monotonic() >= until):
+        if not trials or (until is not None and time.monotonic() >= until):
             return
-        self.campaign.progress.stage("second look", len(pairs))
-        self.run(takewhile(lambda _: until is None or time.monotonic() < until, pairs))
-        found = [pair for pair in pairs if _key(pair) in self.found]
-        doubtful = [pair for pair in found if not same_end(first[_key(pair)], self.found[_key(pair)])]
+        self.campaign.progress.stage("second look", len(trials))
+        self.run(takewhile(lambda _: until is None or time.monotonic() < until, trials))
+        found = [trial for trial in trials if _key(trial) in self.found]
+        doubtful = [trial for trial in found if not same_end(first[_key(trial)], self.found[_key(trial)])]
         if doubtful and self._learn_dependent(mutant for mutant, _ in doubtful):
             self.campaign.progress.stage("second look, with the whole suite", len(doubtful))
             self.run(doubtful)
 
-    def run(self, pairs: Iterable[Pair]) -> None:
+    def run(self, trials: Iterable[Trial]) -> None:
         """Run these, whatever they did before."""
-        for outcome in replay(self.campaign, pairs):
+        for outcome in replay(self.campaign, trials):
             self.found[outcome.mutant, outcome.round] = outcome
             self.campaign.progress.advance(in_words(outcome))
 
@@ -99,8 +99,8 @@ def unconfirmed(first: Outcome, second: Outcome) -> Outcome:
     )  # fmt: skip
 
 
-def _key(pair: Pair) -> tuple[str, int]:
-    return pair[0].id, pair[1]
+def _key(trial: Trial) -> tuple[str, int]:
+    return trial[0].id, trial[1]
 
 
 def disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> Disagreement | None:

@@ -20,7 +20,7 @@ _DEADLINE = 600.0
 
 
 @dataclass(frozen=True, slots=True)
-class _Run:
+class _Order:
     """Which run: the key of its task."""
 
     round: int
@@ -39,18 +39,18 @@ def clear_up(
     for round, test in suspects:
         by_round.setdefault(round, []).append(test)
     tasks = [
-        Task(_Run(round, in_trunks_order), request.job(round, tests=tests), deadline=_DEADLINE)
+        Task(_Order(round, in_trunks_order), request.job(round, tests=tests), deadline=_DEADLINE)
         for round in by_round
         for in_trunks_order, tests in ((False, tuple(baseline.tests[round])), (True, orders[round]))
     ]
-    passed: dict[_Run, set[str]] = {}
+    passed: dict[_Order, set[str]] = {}
     for result in campaign.executor.run(tasks):
-        run: _Run = result.task.key
+        run: _Order = result.task.key
         ends = ((end, baseline.ends[run.round, end.test]) for end in result.ends)
         passed[run] = {end.test for end, first in ends if end.lasting == first.lasting}
     for round, tests in by_round.items():
         for test in tests:
-            in_suite, in_order = (test in passed[_Run(round, trunks)] for trunks in (False, True))
+            in_suite, in_order = (test in passed[_Order(round, trunks)] for trunks in (False, True))
             _clear_up_one(campaign, round, test, in_suite=in_suite, in_order=in_order)
 
 

@@ -30,7 +30,7 @@ from mutabot.campaign.comparing.observation import Observation
 from mutabot.campaign.workers.task import Result, Task, at, death
 from mutabot.model import Instrumentation, Mutant, Outcome, Verdict
 
-from .engine import Pair, Remainder
+from .engine import Remainder, Trial
 from .fresh import wall_limit, without_tests
 from .judge import Death, Run, judge
 
@@ -58,7 +58,7 @@ class Trunks:
 
     def run(
         self,
-        pairs: Iterable[Pair],
+        trials: Iterable[Trial],
         *,
         only: Mapping[str, tuple[str, ...]] | None = None,
         at_start: bool = False,
@@ -70,7 +70,7 @@ class Trunks:
         worth.
         """
         baseline = self._campaign.baseline
-        for mutant, round in pairs:
+        for mutant, round in trials:
             tests = (only or {}).get(mutant.id) or baseline.judges(round, mutant)
             if tests:
                 self._add(mutant, round, tests)
@@ -223,7 +223,7 @@ class _Trunk:
             self._left.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}{at(result)}")
         for mutant in list(self._open):
             yield from self._settle(mutant)
-        self._left.pairs.extend((branches.mutant, self._round) for branches in self._open.values())
+        self._left.trials.extend((branches.mutant, self._round) for branches in self._open.values())
 
     def _branch_ended(self, line: BranchEnd) -> Iterator[Outcome]:
         branches = self._open[line.mutant]

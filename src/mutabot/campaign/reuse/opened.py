@@ -14,7 +14,7 @@ _EVENT = struct.Struct("iIII")  # watch, mask, cookie, length of the name that f
 _BYTES = 1 << 16
 
 
-class Watch:
+class OpenedFiles:
     """Notes which files in some folders are opened; use as a context manager.
 
     Args:
@@ -32,7 +32,7 @@ class Watch:
         self._folders: dict[int, str] = {}
         self._descriptor = -1
 
-    def __enter__(self) -> Watch:
+    def __enter__(self) -> OpenedFiles:
         libc = ctypes.CDLL(None, use_errno=True)
         self._descriptor = libc.inotify_init1(os.O_NONBLOCK | os.O_CLOEXEC)
         if self._descriptor < 0:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from mutabot.campaign.baseline.taking import REPETITIONS
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import Control, controls_in_branches, end_of
-from mutabot.campaign.engines.engine import Engine, Pair, Remainder
+from mutabot.campaign.engines.engine import Engine, Remainder, Trial
 from mutabot.campaign.engines.suspects import clear_up
 from mutabot.campaign.engines.trunk import Trunks
 from mutabot.journal.records import ControlEnd
@@ -31,7 +31,7 @@ class _Controls:
         return cls({control.mutant.id: control for control in found})
 
     @property
-    def pairs(self) -> list[Pair]:
+    def trials(self) -> list[Trial]:
         return [(control.mutant, control.round) for control in self.by_id.values()]
 
     @property
@@ -47,12 +47,12 @@ class Branch:
     runs = REPETITIONS - 1
     may_share = True
 
-    def run(self, campaign: Campaign, pairs: list[Pair], left: Remainder) -> Iterator[Outcome | ControlEnd]:
+    def run(self, campaign: Campaign, trials: list[Trial], left: Remainder) -> Iterator[Outcome | ControlEnd]:
         """One trunk per round, with controls and mutants as its branches."""
-        controls = _Controls.of(campaign, (mutant for mutant, _ in pairs))
-        campaign.progress.stage("mutants", len(pairs))
+        controls = _Controls.of(campaign, (mutant for mutant, _ in trials))
+        campaign.progress.stage("mutants", len(trials))
         trunks = Trunks(campaign, left)
-        for outcome in trunks.run([*controls.pairs, *pairs], only=controls.tests):
+        for outcome in trunks.run([*controls.trials, *trials], only=controls.tests):
             control = controls.by_id.get(outcome.mutant)
             if control is None:
                 yield outcome
@@ -63,7 +63,7 @@ class Branch:
                 raise control.error(end.detail)
         _tell(campaign, left)
         clear_up(campaign, trunks.suspects, trunks.orders)
-        left.pairs = [pair for pair in left.pairs if pair[0].id not in controls.by_id]
+        left.trials = [trial for trial in left.trials if trial[0].id not in controls.by_id]
 
     def try_controls(
         self, campaign: Campaign, mutants: Iterable[Mutant], left: Remainder
@@ -79,7 +79,7 @@ class Branch:
             elif baseline.is_early(mutant):
                 left.early.append((mutant, round))
         progress.stage("controls", len(controls.by_id))
-        for outcome in Trunks(campaign, left).run(controls.pairs, only=controls.tests):
+        for outcome in Trunks(campaign, left).run(controls.trials, only=controls.tests):
             control = controls.by_id[outcome.mutant]
             end = end_of(campaign, control, outcome)
             progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")

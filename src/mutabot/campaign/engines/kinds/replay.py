@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from mutabot.campaign.baseline.taking import REPETITIONS
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
-from mutabot.campaign.engines.engine import Engine, Pair, Remainder
+from mutabot.campaign.engines.engine import Engine, Remainder, Trial
 from mutabot.campaign.engines.fresh import replay
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome
@@ -21,12 +21,12 @@ class Replay:
     runs = REPETITIONS
     may_share = False
 
-    def run(self, campaign: Campaign, pairs: list[Pair], left: Remainder) -> Iterator[Outcome | ControlEnd]:
+    def run(self, campaign: Campaign, trials: list[Trial], left: Remainder) -> Iterator[Outcome | ControlEnd]:
         """Controls first, then each mutant by itself."""
-        yield from run_controls(campaign, {mutant.id: mutant for mutant, _ in pairs}.values())
+        yield from run_controls(campaign, {mutant.id: mutant for mutant, _ in trials}.values())
         is_all = campaign.request.engine == self.name
-        campaign.progress.stage("mutants" if is_all else "mutants by replay", len(pairs))
-        yield from replay(campaign, pairs)
+        campaign.progress.stage("mutants" if is_all else "mutants by replay", len(trials))
+        yield from replay(campaign, trials)
 
     def try_controls(
         self, campaign: Campaign, mutants: Iterable[Mutant], left: Remainder
