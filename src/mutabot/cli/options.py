@@ -10,7 +10,9 @@ import typer
 from mutabot import __version__
 from mutabot.families import FAMILIES
 
-ENGINES = ("auto", "branch", "replay")
+_KINDS = Path(__file__).parent.parent / "campaign" / "engines" / "kinds"
+#: an engine is a file; its name is told without loading it, so that `--help` is fast
+ENGINES = ("auto", *sorted(file.stem for file in _KINDS.glob("[!_]*.py")))
 
 
 def _print_version(wanted: bool) -> None:

@@ -13,6 +13,7 @@ from mutabot.campaign import executors
 from mutabot.campaign.engines import kinds
 from mutabot.campaign.engines.choice import all_engines
 from mutabot.campaign.run import run_campaign
+from mutabot.cli.options import ENGINES
 from mutabot.model import Verdict
 from tests.campaign.project import Quiet, outcomes, request_for, run, write_project
 
@@ -28,7 +29,7 @@ TESTS = """
         run(Arm())
     """
 #: says of each mutant that it did nothing, but for those that skip: these go to the next engine
-ENGINE = """
+IDLE = """
     from mutabot.model import Outcome, Verdict
 
     class Idle:
@@ -81,8 +82,12 @@ def more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         del sys.modules[name]
 
 
+def test_the_command_line_knows_each_engine_by_its_file() -> None:
+    assert {"auto", *(engine.name for engine in all_engines())} == set(ENGINES)
+
+
 def test_an_engine_is_a_file(more: Path, tmp_path: Path) -> None:
-    (more / "engines" / "idle.py").write_text(dedent(ENGINE))
+    (more / "engines" / "idle.py").write_text(dedent(IDLE))
     assert [engine.name for engine in all_engines()] == ["branch", "idle", "replay"]
     ends = run(write_project(tmp_path / "project", MISSION, TESTS), engine="idle", rounds=1)
     found = {mutant.rpartition(":")[2]: (one.verdict, one.engine) for mutant, one in ends.items()}
