@@ -13,10 +13,12 @@ import hashlib
 import json
 import random
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
 import time
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from textwrap import dedent
@@ -184,7 +186,7 @@ class Trial:
 
     def phase(self) -> str:
         """How far the campaign in the journal was."""
-        if not self.journal.exists():
+        if not self.has_begun():
             return "start-up"
         with Journal.open(self.journal) as journal:
             results = read_results(journal)
@@ -197,9 +199,16 @@ class Trial:
             return "mutants" if results.done else "controls"
         return "baseline"
 
+    def has_begun(self) -> bool:
+        """Whether there is a journal: its file is there a little earlier."""
+        if not self.journal.exists():
+            return False
+        with closing(sqlite3.connect(self.journal)) as connection:
+            return connection.execute("SELECT 1 FROM sqlite_master").fetchone() is not None
+
     def known(self) -> set[Pair]:
         """The mutants and rounds that the journal has an outcome of."""
-        if not self.journal.exists():
+        if not self.has_begun():
             return set()
         with Journal.open(self.journal) as journal:
             found = {(outcome.mutant, outcome.round) for outcome in journal.outcomes()}

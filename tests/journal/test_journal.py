@@ -285,6 +285,12 @@ def test_a_missing_journal_names_the_command_that_writes_it(path: Path) -> None:
         Journal.open(path)
 
 
+def test_a_campaign_killed_before_it_began_has_no_journal_yet(path: Path) -> None:
+    path.write_bytes(b"")
+    with pytest.raises(JournalError, match="there is no journal yet; `mutabot run` writes it"):
+        Journal.open(path)
+
+
 def test_a_file_that_is_no_database_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "journal.sqlite"
     path.write_text("these are no tables, and long enough for a header of one hundred bytes " * 3)

@@ -54,7 +54,7 @@ class Store:
     def to_read(cls, path: Path) -> Self:
         """Open an existing journal of this version to read it."""
         if not path.is_file():
-            raise JournalError(f"{path}: there is no journal yet; `mutabot run` writes it", path=str(path))
+            raise _no_journal(path)
         with guarded(path):
             connection, copy = connect_to_read(path)
             store = cls(path, connection, copy=copy)
@@ -89,6 +89,8 @@ class Store:
         """Raise JournalError if this is no journal of this version."""
         path = str(self.path)
         tables = {name for (name,) in self.rows("SELECT name FROM sqlite_master WHERE type = 'table'")}
+        if not tables:  # of a campaign that was killed before it had begun
+            raise _no_journal(self.path)
         if not {"meta", "outcome"} <= tables:
             raise JournalError(f"{path} is a database, but not a journal of mutabot", path=path)
         found = self.fact(VERSION_KEY)
@@ -134,6 +136,10 @@ class Store:
                     self.connection.execute("ROLLBACK")
                 raise
             self.connection.execute("COMMIT")
+
+
+def _no_journal(path: Path) -> JournalError:
+    return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it", path=str(path))
 
 
 def dump(value: Any) -> str:
