@@ -10,6 +10,8 @@ from mutabot.errors import MutabotError
 from mutabot.model import By, Outcome, Verdict
 from tests.campaign.project import run, write_project
 
+pytestmark = pytest.mark.usefixtures("plugins")
+
 MISSION = """
     def go(arm):
         arm.move_by(0.25)

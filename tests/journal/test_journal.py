@@ -286,6 +286,7 @@ def test_a_missing_journal_names_the_command_that_writes_it(path: Path) -> None:
 
 
 def test_a_campaign_killed_before_it_began_has_no_journal_yet(path: Path) -> None:
+    path.parent.mkdir()
     path.write_bytes(b"")
     with pytest.raises(JournalError, match="there is no journal yet; `mutabot run` writes it"):
         Journal.open(path)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mutabot.campaign.run import run_campaign
 from mutabot.model import By, Outcome, Verdict
 from tests.campaign.engines.test_branching import facts
@@ -144,6 +146,7 @@ def by_function(found: dict[str, Outcome]) -> dict[str, dict[str, Outcome]]:
     return table
 
 
+@pytest.mark.usefixtures("plugins")
 def test_both_engines_agree_on_groups_doctests_subtests_and_limits_of_the_suite(tmp_path: Path) -> None:
     folder = write_project(tmp_path, MISSION, TESTS, vocabulary=MOVES, configuration=CONFIGURATION)
     found = run(folder, engine="auto", only=("*:reverse", "*in_tasks*:repeat"))
@@ -188,6 +191,7 @@ SLOW_BRANCHES = """
 """
 
 
+@pytest.mark.usefixtures("plugins")
 def test_a_trunk_that_waits_for_its_branches_is_not_overdue(tmp_path: Path) -> None:
     """Three branches of 0.7 s each, one at a time, in a test that may take 2 s."""
     tests = LIMITED_TESTS.replace("MARK", "@pytest.mark.timeout(2)")
@@ -251,6 +255,7 @@ TEAR_DOWNS = """
 """
 
 
+@pytest.mark.usefixtures("plugins")
 def test_an_assertion_in_a_shared_tear_down_is_a_check_and_a_watchdog_ends_in_a_time_out(
     tmp_path: Path,
 ) -> None:
