@@ -169,12 +169,12 @@ def test_a_recording_tells_kinds_and_variables_of_the_same_type(tmp_path: Path) 
     source = "LIMIT = 4\nNAME = 'a'\ndef f(x, y, z):\n    n = 1\n    return x < y, n\n"
     text = text_of(tmp_path, source)
     with imported(tmp_path, text, record=True) as (module, hook):
-        assert hook.recording is not None
-        hook.recording.start()
+        assert hook.sightings is not None
+        hook.sightings.start()
         module.f(1.0, 2.0, "z")
         module.f(1, 2.0, "z")
-        seen = {sighting.place: sighting for sighting in hook.recording.sightings()}
-        reached = hook.recording.reached()
+        seen = {sighting.place: sighting for sighting in hook.sightings.seen()}
+        reached = hook.sightings.reached()
     by_text = {place.text: seen[place.number] for place in text.places if place.number in seen}
     assert by_text["x"].kinds == ("integer", "number")
     assert by_text["x"].variables == ()
@@ -308,8 +308,8 @@ def test_variables_that_would_change_what_a_name_means_do_not_stand_in(tmp_path:
     text = text_of(tmp_path, GLOBALS, "SVR")
     with imported(tmp_path, text, record=True) as (module, hook):
         assert module.f() == ((1, 5), 1)
-        assert hook.recording is not None
-        seen = merge(hook.recording.sightings())
+        assert hook.sightings is not None
+        seen = merge(hook.sightings.seen())
     (text,), _ = refine([text], seen)
     found = {(place.span.function, place.text, one.text) for _, place, one in choices(text)}
     assert ("f", "a", "c") in found

@@ -1,4 +1,4 @@
-"""Recording: which sites a test hits, in which order, with which values."""
+"""The trace: which sites a test hits, in which order, with which values."""
 
 from __future__ import annotations
 

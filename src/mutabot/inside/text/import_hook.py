@@ -15,7 +15,7 @@ from mutabot.model.alternative import Instrumentation, ProgramText
 from . import loading
 from .foresee import Forms
 from .instrument import MismatchError, forms_of, instrumented
-from .sightings import Recording
+from .sightings import Sightings
 from .switches import Alternatives
 
 
@@ -27,8 +27,8 @@ class ImportHook:
     """The hook for one process.
 
     Attributes:
-        alternatives: the switches of the instrumented text; idle in a recording.
-        recording: what was seen, if this is a recording; else None.
+        alternatives: the switches of the instrumented text; idle where places are only looked at.
+        sightings: what is seen at each place, if places are only looked at; else None.
         imported: files that were instrumented, relative to the root.
         problems: files that were not, with the reason.
 
@@ -48,9 +48,9 @@ class ImportHook:
         self.alternatives.activate(*instrumentation.active)
         self.imported: list[str] = []
         self.problems: dict[str, str] = {}
-        self.recording: Recording | None = None
+        self.sightings: Sightings | None = None
         if instrumentation.record:
-            self.recording = Recording(size, {place.number: place.text for place in places if place.variable})
+            self.sightings = Sightings(size, {place.number: place.text for place in places if place.variable})
         self._places = {place.number: place for place in places}
         self._originals: dict[int, ast.expr] = {}
         self.alternatives.forms = self._forms
@@ -60,7 +60,7 @@ class ImportHook:
 
     def install(self) -> None:
         """Instrument the program's files from now on; files imported before are told as problems."""
-        (self.recording or self.alternatives).install()
+        (self.sightings or self.alternatives).install()
         for module in list(sys.modules.values()):
             text = self._text_of(_file_of(module))
             if text is not None:
@@ -70,7 +70,7 @@ class ImportHook:
     def remove(self) -> None:
         """Import as ever from now on; text that is instrumented goes on as the original."""
         loading.remove(self)
-        (self.recording or self.alternatives).remove()
+        (self.sightings or self.alternatives).remove()
 
     def wants(self, path: str) -> bool:
         """Whether there are alternatives for a file."""
@@ -82,7 +82,7 @@ class ImportHook:
         assert text is not None
         if hashlib.sha256(source).hexdigest() != text.digest:
             raise _ChangedError("it has changed since its mutants were made")
-        record = self.recording is not None
+        record = self.sightings is not None
         instrumented(tree, text.places, record=record, originals=self._originals)
         self.imported.append(text.file)
 

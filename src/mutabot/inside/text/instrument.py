@@ -35,7 +35,7 @@ def instrumented(
     record: bool = False,
     originals: dict[int, ast.expr] | None = None,
 ) -> ast.Module:
-    """The tree with all alternatives of its places in it, or with recording; the tree itself is changed.
+    """The tree with all alternatives of its places in it, or with witnesses; the tree itself is changed.
 
     ``originals`` takes the expressions at the places as they stand in the text, by number.
 
@@ -147,7 +147,7 @@ class _Instrumenter(ast.NodeTransformer):
 
 
 def _seen(value: ast.expr, place: TextPlace, node: ast.AST) -> ast.expr:
-    """A value that is told to the recording, once the recording knows that it is about to be computed."""
+    """A value that its witness is shown, once it is noted that it is about to be computed."""
     entered = ast.Call(_switch(0), [ast.Constant(place.number)], [])
     return _at(ast.BoolOp(ast.Or(), [entered, ast.Call(_switch(place.number), [value], [])]), node)
 

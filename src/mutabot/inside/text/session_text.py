@@ -72,8 +72,8 @@ class SessionText:
         if not self._begun:
             self._note_early()
         self._test, self._refusals, self._unknown = test, (), False
-        if self.hook.recording is not None:
-            self.hook.recording.start()
+        if self.hook.sightings is not None:
+            self.hook.sightings.start()
             return
         self.hook.alternatives.start()
         if branch is not None:
@@ -82,16 +82,15 @@ class SessionText:
 
     def end_test(self) -> None:
         """The test is over."""
-        if self.hook.recording is not None:
+        if self.hook.sightings is not None:
             self._tell_reached()
         elif self.hook.alternatives.on_place is not None:
             self.hook.alternatives.watch({})  # what is reached between tests belongs to none
 
     def finish(self) -> None:
         """All tests are over."""
-        if self.hook.recording is not None:
-            sightings = self.hook.recording.sightings()
-            self.pipe.send(TextsSeen(tuple(self.hook.imported), sightings))
+        if self.hook.sightings is not None:
+            self.pipe.send(TextsSeen(tuple(self.hook.imported), self.hook.sightings.seen()))
 
     def become(self, choices: tuple[Choice, ...]) -> None:
         """In a branch that was just forked: let these alternatives stand in the text from now on."""
@@ -130,14 +129,14 @@ class SessionText:
     def _note_early(self) -> None:
         self._begun = True
         alternatives = self.hook.alternatives
-        if self.hook.recording is not None:
+        if self.hook.sightings is not None:
             self._tell_reached()
         self._early = {place: self._count(place) for place in alternatives.active}
         self._early_example = next(iter(alternatives.examples.values()), None)
 
     def _tell_reached(self) -> None:
-        assert self.hook.recording is not None
-        self.pipe.send(PlacesReached(self._test, tuple(sorted(self.hook.recording.reached()))))
+        assert self.hook.sightings is not None
+        self.pipe.send(PlacesReached(self._test, tuple(sorted(self.hook.sightings.reached()))))
 
     def _count(self, place: int) -> tuple[int, int]:
         hits, acted = self._early.get(place, (0, 0))

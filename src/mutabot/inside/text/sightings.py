@@ -1,6 +1,6 @@
 """What a baseline sees at each place of the program: kinds of values, and variables of the same type.
 
-In a recording the text of a place ``E`` with number ``p`` becomes ``__mutabot__[0](p) or __mutabot__[p](E)``:
+There the text of a place ``E`` with number ``p`` becomes ``__mutabot__[0](p) or __mutabot__[p](E)``:
 the first notes that the place is reached, whatever comes of ``E``. A place is looked at a few times per test;
 from then on the function there hands the value through, as cheap as a call can be.
 """
@@ -28,7 +28,7 @@ def hand_through(value: Any) -> Any:
     return value
 
 
-class Recording:
+class Sightings:
     """All places of the program, and what was seen there.
 
     Attributes:
@@ -61,7 +61,7 @@ class Recording:
         """Places that were reached since the start of the test."""
         return frozenset(self.entered)
 
-    def sightings(self) -> tuple[Sighting, ...]:
+    def seen(self) -> tuple[Sighting, ...]:
         """What was seen so far, over all tests, by place."""
         return tuple(witness.sighting() for witness in self._witnesses if witness.hits)
 
@@ -87,7 +87,7 @@ class _Witness:
         "place",
     )
 
-    def __init__(self, owner: Recording, place: int, variable: str | None) -> None:
+    def __init__(self, owner: Sightings, place: int, variable: str | None) -> None:
         self._owner, self.place, self._variable = owner, place, variable
         self.hits = self.looks = self.looks_around = 0
         self._types: set[type] = set()
