@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 from mutabot.border.lines import Line, Problem, Remark
@@ -20,23 +19,23 @@ from mutabot.model import Call, Operation, Vocabulary
 from mutabot.model.values.quantity import Value
 
 
-@dataclass(slots=True)
 class Inspection:
     """What is wrong with a vocabulary, told once each.
 
-    Attributes:
+    Args:
         vocabulary: what is looked at.
         is_asked: whether all of it is to be looked at; else only what comes up is told.
         send: where it is told.
     """
 
-    vocabulary: Vocabulary
-    is_asked: bool
-    send: Callable[[Line], None]
-    _told: set[tuple[str, str]] = field(default_factory=set)
-    _askers: dict[str, type | None] = field(default_factory=dict)
-    _unfit: dict[tuple[str, str], Callable[[], None]] = field(default_factory=dict)
-    _fit: dict[str, set[str]] = field(default_factory=dict)
+    def __init__(self, vocabulary: Vocabulary, is_asked: bool, send: Callable[[Line], None]) -> None:
+        self._vocabulary = vocabulary
+        self.is_asked = is_asked
+        self._send = send
+        self._told: set[tuple[str, str]] = set()
+        self._askers: dict[str, type | None] = {}
+        self._unfit: dict[tuple[str, str], Callable[[], None]] = {}
+        self._fit: dict[str, set[str]] = {}
 
     def note(self, call: Call, read: Mapping[str, Value]) -> None:
         """A call was made, and these values were read from its result."""
@@ -68,14 +67,14 @@ class Inspection:
             return
         self._told.add((source, finding.key))
         if finding.is_remark:
-            self.send(Remark(source, finding.key, finding.text))
+            self._send(Remark(source, finding.key, finding.text))
         else:
-            self.send(Problem(source, finding.key, finding.text, finding.name, finding.known))
+            self._send(Problem(source, finding.key, finding.text, finding.name, finding.known))
 
     def look_ahead(self, interception: Interception) -> None:
         """The tests are about to begin: say what can be said about the targets that are there already."""
         if self.is_asked:
-            for operation in self.vocabulary.operations:
+            for operation in self._vocabulary.operations:
                 self.check_target(operation, interception)
 
     def check_target(self, operation: Operation, interception: Interception) -> None:
@@ -88,7 +87,7 @@ class Inspection:
         for targets in interception.kinds:
             for target, finding in targets.seek():
                 self.tell(self._source_of(target), finding)
-        for operation in self.vocabulary.operations:
+        for operation in self._vocabulary.operations:
             self.check_target(operation, interception)
             self._check_current(operation)
         for tell in self._unfit.values():
@@ -99,7 +98,7 @@ class Inspection:
 
     def tell_overrides(self, interception: Interception, bypasses: Bypasses) -> None:
         """Say which calls went past an operation because another method overrides it."""
-        for operation in self.vocabulary.operations:
+        for operation in self._vocabulary.operations:
             if sentences := bypasses.sentences(operation.target):
                 self.tell(operation.source, Finding("call", sentences, is_remark=True))
             uncovered = interception.of(operation.kind).uncovered(operation.target)
@@ -118,7 +117,7 @@ class Inspection:
 
     def _check_idle(self) -> None:
         """Functions that make the answer of a command that is left out."""
-        for operation in self.vocabulary.operations:
+        for operation in self._vocabulary.operations:
             for idle in (operation.idle, *(pattern.idle for pattern in operation.patterns)):
                 call = idle.get("call") if isinstance(idle, dict) else None
                 found = self._look_up(operation.source, "idle", call) if call is not None else None
@@ -129,9 +128,9 @@ class Inspection:
     def _check_exceptions(self) -> None:
         """A misspelt refusal would turn refusals into kills; so each name must be an exception."""
         for key in ("refusals", "checks", "failures"):
-            for name in getattr(self.vocabulary, key):
+            for name in getattr(self._vocabulary, key):
                 self._check_exception("vocabulary", key, name)
-        for operation in self.vocabulary.operations:
+        for operation in self._vocabulary.operations:
             for name in operation.refusals:
                 self._check_exception(operation.source, "refusals", name)
 
@@ -141,7 +140,7 @@ class Inspection:
             self.tell(source, Finding(f"{key} {name}", f"{name} is no exception class"))
 
     def _check_probes(self) -> None:
-        for probe in self.vocabulary.probes:
+        for probe in self._vocabulary.probes:
             # what its objects have is not known to a class
             owner = self._look_up(probe.source, "call", probe.owner or probe.target)
             if owner is not None and probe.owner and not isinstance(owner, type):
@@ -160,13 +159,13 @@ class Inspection:
         return None
 
     def _source_of(self, target: str) -> str:
-        operation = self.vocabulary.operation(target)
+        operation = self._vocabulary.operation(target)
         if operation is not None:
             return operation.source
-        clock = self.vocabulary.clock
+        clock = self._vocabulary.clock
         if clock is not None and clock.tick == target:
             return clock.source
-        return next((probe.source for probe in self.vocabulary.probes if probe.target == target), "")
+        return next((probe.source for probe in self._vocabulary.probes if probe.target == target), "")
 
 
 def why_not_asked(reading: str, asker: type | None) -> str | None:

@@ -163,7 +163,7 @@ class Session:
                 refusals = self._refusals(operation)
                 on_act = partial(self._acted, single.id)
                 made = Activation(single, operation, refusals, on_act, self._in_mutated_call)
-                self.activations.append(made)
+                self.passing.activate(made)
 
     def grow(self, trunk: Trunk) -> None:
         """Run the original from now on, and fork a branch for every mutant of the trunk's."""

@@ -99,14 +99,13 @@ class Door:
         invocation: Invocation = call.payload
         fits = invocation.arguments is not None or self.operation.signature is not None
         self.commands += self.operation.command and fits  # what does not fit never reaches the robot
+        if call is original:
+            return invocation.wrapped(*invocation.args, **invocation.kwargs)
         is_text = call.pattern is not None and call.pattern.notation is not None
         wrapped = self._opposite(invocation) if call.reversed and not is_text else invocation.wrapped
-        before = original.values
-        changed = (
-            {name: value for name, value in call.values.items() if not same(value, before.get(name))}
-            if call is not original
-            else {}
-        )
+        changed = {
+            name: value for name, value in call.values.items() if not same(value, original.values.get(name))
+        }
         if invocation.arguments is None or (not changed and not call.reversed):
             return wrapped(*invocation.args, **invocation.kwargs)
         args, kwargs = self._writer.changed(call, changed, invocation.arguments, invocation.message)

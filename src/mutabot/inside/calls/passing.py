@@ -12,7 +12,6 @@ import inspect
 import sys
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
-from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any
 
@@ -35,31 +34,47 @@ _under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default
 is_under_way = _under_way.get
 
 
-@dataclass(slots=True)
 class Passing:
     """What stands on the way of a session's calls.
 
-    Attributes:
+    Args:
         locate: finds the site of a frame; None for calls that are neither the program's nor the oracle's.
         recorder: traces the calls.
         instances: notes which objects are used.
         along: reads probes along the way.
         on_error: told of each unmutated call that raised, with what it raised.
+
+    Attributes:
         on_end: told of each call that is over, with what it read; None if nobody asks.
         meter: what the running test has used; None between tests: then nothing is noted.
         trunk: set while this process runs the original and forks a branch per mutant.
         activations: the mutants of calls that are at work: none for the original.
     """
 
-    locate: Callable[[FrameType | None], tuple[Span, Role] | None]
-    recorder: Recorder
-    instances: Instances
-    along: Along
-    on_error: Callable[[BaseException, Call], None]
-    on_end: Callable[[Call, Mapping[str, Value]], None] | None = None
-    meter: Meter | None = None
-    trunk: Trunk | None = None
-    activations: list[Activation] = field(default_factory=list)
+    def __init__(
+        self,
+        locate: Callable[[FrameType | None], tuple[Span, Role] | None],
+        recorder: Recorder,
+        instances: Instances,
+        along: Along,
+        on_error: Callable[[BaseException, Call], None],
+        on_end: Callable[[Call, Mapping[str, Value]], None] | None = None,
+    ) -> None:
+        self._locate = locate
+        self._recorder = recorder
+        self._instances = instances
+        self._along = along
+        self._on_error = on_error
+        self.on_end = on_end
+        self.meter: Meter | None = None
+        self.trunk: Trunk | None = None
+        self.activations: list[Activation] = []
+        self._operator = ""
+
+    def activate(self, activation: Activation) -> None:
+        """Let a mutant be at work from now on."""
+        self.activations.append(activation)
+        self._operator = " and ".join(one.mutant.operator for one in self.activations)
 
     def handler(self, door: Door) -> Handler:
         """What stands around an operation."""
@@ -70,19 +85,19 @@ class Passing:
             __tracebackhide__ = True
             if self.meter is None:
                 return wrapped(*args, **kwargs)
-            if instance is not None and not self.instances.is_idle:
-                self.instances.used(instance)
+            if instance is not None and not self._instances.is_idle:
+                self._instances.used(instance)
             if _under_way.get():
                 return wrapped(*args, **kwargs)
             self.meter.count()
-            site = self.locate(sys._getframe(1))
+            site = self._locate(sys._getframe(1))
             if site is None:
                 return wrapped(*args, **kwargs)
             is_async = inspect.iscoroutinefunction(wrapped)
             on_its_way = self._pass(door, site, is_async, wrapped, instance, args, kwargs)
             if is_async:
                 return on_its_way
-            return run(on_its_way, operator=self._operator if self.activations else "")
+            return run(on_its_way, operator=self._operator)
 
         return handle
 
@@ -128,11 +143,6 @@ class Passing:
                 return activation
         return None
 
-    @property
-    def _operator(self) -> str:
-        """Whose middleware can be on the way."""
-        return " and ".join(activation.mutant.operator for activation in self.activations)
-
     async def _perform(self, door: Door, call: Call, is_async: bool) -> Reply:
         """Let the robot do what the program says."""
         __tracebackhide__ = True
@@ -141,7 +151,7 @@ class Passing:
             if is_async:
                 result = await result
         except BaseException as error:
-            self.on_error(error, call)
+            self._on_error(error, call)
             if isinstance(error, StopIteration):
                 raise Carried(error) from None
             raise
@@ -152,10 +162,10 @@ class Passing:
         span, role = site
         pattern = call.pattern.text if call.pattern is not None else None
         read = reply.values if reply is not None else {}
-        is_wanted = self.recorder.answers is not None and reply is not None
+        is_wanted = self._recorder.answers is not None and reply is not None
         returned = Returned(reply.payload, here(call)) if reply is not None and is_wanted else None
-        self.recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned)
+        self._recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned)
         if call.operation.command:
-            self.along.after(len(self.recorder.trace))
+            self._along.after(len(self._recorder.trace))
         if self.on_end is not None:
             self.on_end(call, read)
