@@ -1,4 +1,8 @@
-"""Plain data to JSON-like data and back, by the type hints of the dataclasses."""
+"""Plain data to JSON-like data and back, by the type hints of the dataclasses.
+
+By hand, since every process beside a robot program would pay for more: beyond the standard library it takes
+0.1 ms to import, msgspec 10 ms and cattrs 22 ms, and both ask for the fields that are left out when None.
+"""
 
 from __future__ import annotations
 
