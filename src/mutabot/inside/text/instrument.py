@@ -15,7 +15,7 @@ from typing import TypeVar
 
 from mutabot.model.alternative import RUNTIME, Alternative, Extent, TextPlace, kept_name
 
-from .foresee import Forms
+from .foresee import Forms, form_of
 
 _Key = tuple[str, Extent]
 _Node = TypeVar("_Node", bound=ast.AST)
@@ -49,10 +49,9 @@ def instrumented(
 
 
 def forms_of(place: TextPlace, original: ast.expr) -> Forms:
-    """The original and the alternatives as trees that nothing observes."""
-    return Forms(
-        original, tuple(_expression_of(one, place, original, observed=False) for one in place.alternatives)
-    )
+    """The original and the alternatives, for a look ahead; the tree of the original is changed."""
+    others = [_expression_of(one, place, original, observed=False) for one in place.alternatives]
+    return Forms(form_of(original), tuple(map(form_of, others)))
 
 
 def is_place(node: ast.AST) -> bool:

@@ -18,7 +18,7 @@ from typing import Any, NoReturn
 from mutabot.model.alternative import FATAL, IDENTITY, RUNTIME, Choice
 from mutabot.operators.control import FatalFault
 
-from .foresee import Forms, differing, locals_of, value_of
+from .foresee import Forms, locals_of, value_of
 
 
 @cache
@@ -208,7 +208,7 @@ class Alternatives:
         foreseeable = frozenset(index for index in switch.watched if index >= 0)
         if forms is None or self.hits[place] > _LOOKS or threading.active_count() > 1:
             return switch.watched  # another thread may change what an evaluation depends on
-        return switch.watched - foreseeable | differing(forms, foreseeable, frame)
+        return switch.watched - foreseeable | forms.differing(foreseeable, frame)
 
     def _control(self, place: int, index: int) -> None:
         """The controls, which every place knows: nothing happens, or it raises."""
