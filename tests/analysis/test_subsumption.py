@@ -7,7 +7,7 @@ from itertools import combinations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.analysis.subsumption import Redundancy, dominators, killers_of, subsumes
+from mutabot.analysis.subsumption import Redundancy, dominators, killers_of
 from mutabot.model import By, Kill, Outcome, Verdict
 
 KILLERS = st.frozensets(st.tuples(st.sampled_from("abcd"), st.integers(0, 2)), max_size=6)
@@ -22,6 +22,11 @@ def killed(
         mutant, round, Verdict.KILLED, By.CHECK, test=tests[0], message=message, tests=3, complete=complete,
         kills=kills,
     )  # fmt: skip
+
+
+def subsumes(one: frozenset[tuple[str, int]], other: frozenset[tuple[str, int]]) -> bool:
+    """The definition: something kills the one mutant, and whatever does kills the other too."""
+    return bool(one) and one <= other
 
 
 def redundancy(*outcomes: Outcome) -> Redundancy:

@@ -68,11 +68,6 @@ def killers_of(outcomes: Iterable[Outcome]) -> frozenset[Killer]:
     return frozenset((test, one.round) for one in outcomes for test in noticing_tests(one))
 
 
-def subsumes(one: frozenset[Killer], other: frozenset[Killer]) -> bool:
-    """Whether a mutant with the one set of killers subsumes a mutant with the other."""
-    return bool(one) and one <= other
-
-
 def dominators(killers: Mapping[M, frozenset[Killer]]) -> tuple[tuple[M, ...], ...]:
     """The classes of mutants that no other class subsumes, in the order in which they first occur."""
     classes: dict[frozenset[Killer], list[M]] = {}

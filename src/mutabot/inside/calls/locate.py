@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from types import CodeType, FrameType
 
 from mutabot.model import Role, Span
@@ -92,8 +91,3 @@ class Locator:
             end_column or 0,
             function,
         )
-
-
-def caller(depth: int = 1) -> FrameType:
-    """The frame ``depth`` levels above the function that calls this."""
-    return sys._getframe(depth + 1)

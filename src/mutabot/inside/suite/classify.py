@@ -118,7 +118,7 @@ def _failure(error: BaseException, vocabulary: Vocabulary) -> str | None:
     for link in everything(error):
         if isinstance(link, MemoryError):
             return "the memory limit was reached"
-        if isinstance(link, MutabotError) and not type(link).__module__.startswith("mutabot.cells"):
+        if isinstance(link, MutabotError):
             return f"{type(link).__name__}: {link}"
         if is_named(link, vocabulary.failures):
             return f"{type(link).__name__}: {link}"

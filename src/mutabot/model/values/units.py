@@ -28,14 +28,6 @@ UNITS: dict[str, tuple[Dimension, float]] = {
     "percent": (Dimension.RATIO, 0.01),
 }
 
-#: the SI unit of each dimension
-SI: dict[Dimension, str] = {
-    Dimension.LENGTH: "m",
-    Dimension.ANGLE: "rad",
-    Dimension.TIME: "s",
-    Dimension.RATIO: "fraction",
-}
-
 
 def dimension_of(unit: str) -> Dimension:
     """The dimension a unit measures. Raises KeyError for an unknown unit."""
