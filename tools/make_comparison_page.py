@@ -19,7 +19,7 @@ from typing import Any
 
 from comparison_claims import CLAIMS, CONVENTIONAL, Claim, Data, Stance, finding, further, percent, share_text
 from mutabot.analysis.ends import End
-from mutabot.report.picture import Bar, draw, svg
+from mutabot.report.picture import FamilyBar, picture_of, svg
 
 DOCS = Path(__file__).parents[1] / "docs"
 #: the order of the page; other names follow by alphabet
@@ -104,14 +104,14 @@ def page(comparisons: Mapping[str, Data]) -> str:
 def picture(data: Data, name: str) -> str:
     """The ends of each family as bars."""
     bars = [
-        Bar(
+        FamilyBar(
             family["family"],
             f"{family['role']} · {family['mutants']} mutants",
             {End(end): share["count"] for end, share in family["ends"].items()},
         )
         for family in data["families"]
     ]
-    return svg(draw(bars, f"What became of the mutants: {name}"))
+    return svg(picture_of(bars, f"What became of the mutants: {name}"))
 
 
 def _summary(comparisons: Mapping[str, Data]) -> Iterator[str]:

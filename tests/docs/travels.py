@@ -13,6 +13,7 @@ from types import FrameType
 from typing import Any
 
 TESTS = Path(__file__).parents[1]
+_OVER = "over\n"
 
 
 def telling(pipe: Path) -> str:
@@ -20,19 +21,21 @@ def telling(pipe: Path) -> str:
     return dedent(f"""
         import sys
         sys.path.insert(0, {str(TESTS)!r})
-        from docs.travels import hook_into
+        from docs.travels import tell_calls
         sys.path.pop(0)
-        sys.setprofile(hook_into({str(pipe)!r}))
+        tell_calls({str(pipe)!r})
     """)
 
 
-def hook_into(pipe: Path | str) -> Callable[[FrameType, str, Any], None]:
-    """A profiler that writes the name of each of our functions that is called into the pipe.
+def tell_calls(pipe: str) -> None:
+    """From now on, write the name of each of our functions that is called into the pipe.
 
-    A fork goes on telling. A pipe, as no file that is open for writing lets mutabot fork.
+    A fork goes on telling. It is a pipe, since mutabot does not fork while a file is open for writing.
     """
-    descriptor = os.open(pipe, os.O_WRONLY)
+    sys.setprofile(_hook_into(os.open(pipe, os.O_WRONLY)))
 
+
+def _hook_into(descriptor: int) -> Callable[[FrameType, str, Any], None]:
     def hook(frame: FrameType, event: str, argument: Any) -> None:
         module = frame.f_globals.get("__name__", "")
         if event == "call" and module.startswith("mutabot."):
@@ -45,26 +48,22 @@ def hook_into(pipe: Path | str) -> Callable[[FrameType, str, Any], None]:
 def calls_told(pipe: Path) -> Iterator[list[str]]:
     """All calls of ours in this process and in those that tell them, complete when this is over."""
     os.mkfifo(pipe)
-    reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-    hook = hook_into(pipe)
-    os.set_blocking(reading, True)
+    reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)  # else it would wait for somebody who writes
     told: list[str] = []
 
     def read() -> None:
-        with open(reading, encoding="utf-8") as lines:
-            for line in lines:
-                if line == "over\n":
-                    return
-                told.append(line.rstrip("\n"))
+        with os.fdopen(reading, encoding="utf-8") as lines:
+            told.extend(line.rstrip("\n") for line in iter(lines.readline, _OVER))
 
+    writing = os.open(pipe, os.O_WRONLY)
+    os.set_blocking(reading, True)
     reader = threading.Thread(target=read)
     reader.start()
-    sys.setprofile(hook)
+    sys.setprofile(_hook_into(writing))
     try:
         yield told
     finally:
         sys.setprofile(None)
-        pipe_end = os.open(pipe, os.O_WRONLY)
-        os.write(pipe_end, b"over\n")
-        os.close(pipe_end)
+        os.write(writing, _OVER.encode())
+        os.close(writing)
         reader.join()

@@ -19,7 +19,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.errors import UsageError
 from mutabot.report.as_json import dumps
 from mutabot.report.comparison_json import comparison_data
-from mutabot.report.picture import _COLOURS, Bar, Rectangle, bars_of, draw, svg
+from mutabot.report.picture import _COLOURS, FamilyBar, Rectangle, bars_of, picture_of, svg
 from mutabot.report.picture_file import check_picture, write_picture
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.side_by_side import duration, print_comparison, share_cell
@@ -138,7 +138,7 @@ def test_every_end_is_documented_in_its_order() -> None:
 
 
 def test_bars_are_as_long_as_each_other_and_their_parts_as_the_shares(comparison: FamilyComparison) -> None:
-    picture = draw(bars_of(comparison.families), "title")
+    picture = picture_of(bars_of(comparison.families), "title")
     bars: dict[float, list[Rectangle]] = {}
     for box in picture.boxes[1:]:
         if box.height == 34:
@@ -157,13 +157,13 @@ def test_every_end_has_a_colour_of_its_own() -> None:
 
 
 def test_a_family_of_which_nothing_was_run_is_a_bar_without_parts() -> None:
-    picture = draw([Bar("text", "program", dict.fromkeys(End, 0))], "title")
+    picture = picture_of([FamilyBar("text", "program", dict.fromkeys(End, 0))], "title")
     assert len(picture.boxes) == 1
     assert any(words.text == "nothing was run" for words in picture.words)
 
 
 def test_svg_is_well_formed_whatever_names_hold() -> None:
-    text = svg(draw([Bar("<&>\"'", "r & d", {End.CHECK: 1})], "a < b"))
+    text = svg(picture_of([FamilyBar("<&>\"'", "r & d", {End.CHECK: 1})], "a < b"))
     root = ET.fromstring(text)
     words = [node.text for node in root.iter("{http://www.w3.org/2000/svg}text")]
     assert "a < b" in words
@@ -171,7 +171,7 @@ def test_svg_is_well_formed_whatever_names_hold() -> None:
 
 
 def test_nothing_lies_outside_the_picture(comparison: FamilyComparison) -> None:
-    picture = draw(bars_of(comparison.families), "title")
+    picture = picture_of(bars_of(comparison.families), "title")
     for box in picture.boxes:
         assert 0 <= box.x <= box.x + box.width <= picture.width
         assert 0 <= box.y <= box.y + box.height <= picture.height

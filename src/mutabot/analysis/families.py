@@ -29,7 +29,7 @@ WEAKNESSES: Mapping[str, frozenset[End]] = {
     "no_difference": _NO_DIFFERENCE,
     "any": _BROKEN | _IMPOSSIBLE | _NO_DIFFERENCE,
 }
-Key = tuple[str, str]
+FamilyRole = tuple[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +172,7 @@ def compare_families(results: Results, without_oracle: Results | None = None) ->
     scores = {(group.family, group.role): group for group in results.groups}
     others = {(one.family, one.role): one.scores for one in without_oracle.groups} if without_oracle else {}
 
-    def family(key: Key) -> Family:
+    def family(key: FamilyRole) -> Family:
         members = [one for one in results.mutants if _key(one) == key]
         group = scores.get(key)
         return _family(
@@ -198,24 +198,24 @@ def compare_families(results: Results, without_oracle: Results | None = None) ->
     )
 
 
-def _keys(results: Results) -> list[Key]:
+def _keys(results: Results) -> list[FamilyRole]:
     """Families in the order in which they were asked for, those without mutants too; the program first."""
     found = {_key(one) for one in results.mutants}
     asked = results.meta.get("families") or ()
     names = dict.fromkeys([*asked, *(one.mutant.family for one in results.mutants)])
-    keys: list[Key] = []
+    keys: list[FamilyRole] = []
     for name in names:
         roles = [role for role in Role if (name, role.value) in found]
         keys += [(name, role.value) for role in roles or [Role.PROGRAM]]
     return keys
 
 
-def _key(result: MutantResult) -> Key:
+def _key(result: MutantResult) -> FamilyRole:
     return result.mutant.family, result.mutant.site.role.value
 
 
 def _family(
-    key: Key,
+    key: FamilyRole,
     members: Sequence[MutantResult],
     properties: Mapping[str, Properties],
     *,
@@ -223,7 +223,7 @@ def _family(
     scores: RoundScores,
     population: int | None,
     without_oracle: RoundScores | None,
-    homes: Sequence[set[Key]],
+    homes: Sequence[set[FamilyRole]],
 ) -> Family:
     outcomes = [outcome for one in members for outcome in one.outcomes]
     ends = [[end_of(one) if one is not None else None for one in member.rounds] for member in members]

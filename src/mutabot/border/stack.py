@@ -42,10 +42,10 @@ def ask(pid: int, file: str, root: str) -> str | None:
         seen = size
     if seen == before:
         return None
-    return in_words(Path(file).read_bytes()[before:].decode("utf-8", "replace"), root)
+    return calls_in_words(Path(file).read_bytes()[before:].decode("utf-8", "replace"), root)
 
 
-def in_words(text: str, root: str) -> str | None:
+def calls_in_words(text: str, root: str) -> str | None:
     """The innermost calls of the user's in what ``faulthandler`` wrote, innermost first."""
     current = text.rpartition("Current thread")[2]
     frames = [match for line in current.splitlines() if (match := _FRAME.fullmatch(line)) is not None]

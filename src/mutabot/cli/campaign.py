@@ -8,7 +8,7 @@ from __future__ import annotations
 import typer
 
 from . import options
-from .output import echo, leave, print_json, progress_shown, show_results
+from .output import echo, exit_as, print_json, progress_shown, show_results
 from .request import request_of
 
 
@@ -104,4 +104,4 @@ def run(
         max_unstable=request.configuration.unstable_limit,
         max_errors=request.configuration.error_limit,
     )
-    leave(decision)
+    exit_as(decision)

@@ -14,7 +14,7 @@ from mutabot.families import FAMILIES
 from mutabot.journal.files import COMPARISON, find_journal
 
 from . import options
-from .output import leave, print_json, progress_shown
+from .output import exit_as, print_json, progress_shown
 from .request import request_of
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def compare(
         with progress_shown() as progress:
             found = comparison.run(request, progress, no_oracle=no_oracle)
     _show(found, picture, json=json)
-    leave(decide(found.results))
+    exit_as(decide(found.results))
 
 
 def _show(comparison: FamilyComparison, picture: Path | None, *, json: bool) -> None:

@@ -75,7 +75,7 @@ def show_results(
     return found
 
 
-def leave(decision: Decision) -> None:
+def exit_as(decision: Decision) -> None:
     """End the command as the limits decide, and say why. Raises typer.Exit."""
     tell(decision.lines)
     raise typer.Exit(decision.exit_code)

@@ -66,7 +66,7 @@ class Words:
 
 
 @dataclass(frozen=True, slots=True)
-class Bar:
+class FamilyBar:
     """What one bar shows: its name, a line below it, and the number of outcomes of each end."""
 
     name: str
@@ -84,13 +84,13 @@ class Picture:
     words: Sequence[Words]
 
 
-def bar_of(family: Family) -> Bar:
+def bar_of(family: Family) -> FamilyBar:
     """The bar of a family."""
     counts = {end: share.count for end, share in family.ends.items()}
-    return Bar(family.name, f"{family.role} · {plural(family.mutants, 'mutant')}", counts)
+    return FamilyBar(family.name, f"{family.role} · {plural(family.mutants, 'mutant')}", counts)
 
 
-def draw(bars: Sequence[Bar], title: str) -> Picture:
+def picture_of(bars: Sequence[FamilyBar], title: str) -> Picture:
     """Bars below each other, each as long as all its outcomes, and a legend of the ends that occur."""
     below = _HEAD + len(bars) * (_BAR + _GAP)
     occurring = [end for end in End if any(bar.counts.get(end) for bar in bars)]
@@ -133,7 +133,7 @@ def _legend(ends: Sequence[End], y: float) -> Iterator[Rectangle | Words]:
         yield Words(x + 20, y + row * _LEGEND_ROW + 12, end.value)
 
 
-def _bar(bar: Bar, y: float) -> Iterator[Rectangle | Words]:
+def _bar(bar: FamilyBar, y: float) -> Iterator[Rectangle | Words]:
     yield Words(_MARGIN, y + 15, bar.name, bold=True)
     yield Words(_MARGIN, y + 31, bar.note, 11, fill=_FAINT)
     total = sum(bar.counts.values())
@@ -169,6 +169,6 @@ def _svg_of_words(words: Words) -> str:
     return f'<text x="{words.x:.1f}" y="{words.y:.1f}" {look}>{escape(words.text)}</text>'
 
 
-def bars_of(families: Iterable[Family]) -> list[Bar]:
+def bars_of(families: Iterable[Family]) -> list[FamilyBar]:
     """One bar per family and role."""
     return [bar_of(family) for family in families]

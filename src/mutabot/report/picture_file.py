@@ -7,7 +7,7 @@ from pathlib import Path
 from mutabot.analysis.families import FamilyComparison
 from mutabot.errors import UsageError
 
-from .picture import bars_of, draw, svg
+from .picture import bars_of, picture_of, svg
 
 _TITLE = "What became of the mutants"
 
@@ -25,7 +25,7 @@ def check_picture(path: Path) -> None:
 
 def write_picture(comparison: FamilyComparison, path: Path) -> None:
     """Draw the ends of all families. Raises UsageError if the file cannot be written."""
-    picture = draw(bars_of(comparison.families), _TITLE)
+    picture = picture_of(bars_of(comparison.families), _TITLE)
     try:
         path.write_text(svg(picture), encoding="utf-8")
     except OSError as error:

@@ -29,7 +29,7 @@ from .console import (
     short_place,
 )
 from .errors import error_lines
-from .marks import counted, legend, mark_of
+from .marks import legend, mark_of, marks_in
 from .repeats import repeat_lines
 
 #: verdicts outside the score that a user should look at, in this order
@@ -142,7 +142,7 @@ def _round_numbers(rounds: int) -> str:
 
 def _row(outcomes: Sequence[Outcome | None], many: bool) -> Text:
     if many:
-        parts = [Text(f"{mark.letter}{count}", style=mark.style) for mark, count in counted(outcomes)]
+        parts = [Text(f"{mark.letter}{count}", style=mark.style) for mark, count in marks_in(outcomes)]
     else:
         parts = [mark_of(outcome).text for outcome in outcomes]
     return Text(" ").join(parts)

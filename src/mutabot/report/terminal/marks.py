@@ -55,7 +55,7 @@ def mark_of(outcome: Outcome | None) -> Mark:
     return _OTHERS[outcome.verdict]
 
 
-def counted(outcomes: Iterable[Outcome | None]) -> list[tuple[Mark, int]]:
+def marks_in(outcomes: Iterable[Outcome | None]) -> list[tuple[Mark, int]]:
     """The marks that occur and how often, in the order of the legend."""
     marks = [mark_of(outcome) for outcome in outcomes]
     return [(mark, marks.count(mark)) for mark in _ORDER if mark in marks]
@@ -64,5 +64,5 @@ def counted(outcomes: Iterable[Outcome | None]) -> list[tuple[Mark, int]]:
 def legend(outcomes: Iterable[Outcome | None]) -> Text:
     """What the letters that occur mean."""
     # Spaces that do not break keep a letter and its words on one line.
-    words = [(mark, mark.words.replace(" ", "\N{NO-BREAK SPACE}")) for mark, _ in counted(outcomes)]
+    words = [(mark, mark.words.replace(" ", "\N{NO-BREAK SPACE}")) for mark, _ in marks_in(outcomes)]
     return Text("   ").join(Text.assemble(mark.text, f"\N{NO-BREAK SPACE}{text}") for mark, text in words)
