@@ -1,9 +1,8 @@
 """The engines side by side on the examples: what sharing prefixes is worth.
 
-Four ways to run the same mutants, in one go on the same machine:
+Three ways to run the same mutants, in one go on the same machine:
 
   branch   trunk and branches: the prefix is shared up to the site
-  fork     a warm fork per (mutant, test) when the test begins: only imports are shared
   replay   a fresh process per mutant and round, with the tests that reach the site
   fresh    a fresh pytest per mutant and round with the whole suite until a test fails, as general tools do it
 
@@ -13,7 +12,7 @@ imports all of it for a summary at the end. `fresh` does not, for a general tool
 The physics bound of a row is the least time in which its steps can be simulated here: steps, divided by the
 rate at which the bare engine repeats a run of the example's program on one core while all cores do so,
 divided by cores. Efficiency is that bound divided by the wall time. The peak of memory is that of the largest
-process. `branch` and `fork` are the median of three runs.
+process. `branch` is the median of three runs.
 
 Usage: python benchmarks/engines.py [--examples paper …] [--engines branch …] [--limit N] [--output FILE]
                                     [--page FILE]
@@ -65,8 +64,7 @@ HEADINGS = (
     "efficiency",
 )  # fmt: skip
 MARK = "<!-- Written by `make bench` (benchmarks/engines.py) from here on. -->"
-ENGINES = ("branch", "fork", "replay", "fresh")
-QUICK = ("branch", "fork")
+ENGINES = ("branch", "replay", "fresh")
 #: physics steps per simulated second of mutabot.cells
 STEPS_PER_SECOND = 500
 
@@ -166,7 +164,7 @@ def ratios(rows: list[Row]) -> Iterator[str]:
 
 def typical(example: str, engine: str, limit: int | None, rate: float | None) -> Row:
     """One row; of what takes seconds the median of three, since a busy moment would spoil it."""
-    times = 3 if engine in QUICK else 1
+    times = 3 if engine == "branch" else 1
     rows = [apart(measure, example, engine, limit, rate) for _ in range(times)]
     return sorted(rows, key=lambda row: row.wall)[times // 2]
 
@@ -187,7 +185,7 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
         if engine == "fresh":
             request = as_plain_pytest(request)
         with Workers(request.root, request.arguments, request.jobs) as workers:
-            shared = engine in QUICK
+            shared = engine == "branch"
             baseline, results = take_baseline(
                 request, workers, Silent(), repetitions=1 if shared else 2, may_share=shared
             )
@@ -206,10 +204,10 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
 
 
 def run_pairs(engine: str, campaign: Campaign, trials: list[Trial]) -> Iterator[Outcome]:
-    """All outcomes; what a fork could not do is replayed, as in a campaign."""
-    if engine in ("branch", "fork"):
+    """All outcomes; what a trunk could not do is replayed, as in a campaign."""
+    if engine == "branch":
         left = Remainder()
-        yield from Trunks(campaign, left).run(trials, at_start=engine == "fork")
+        yield from Trunks(campaign, left).run(trials)
         yield from replay(campaign, left.trials)
         return
     if engine == "fresh":

@@ -42,8 +42,6 @@ class Branching:
         tokens: descriptors of the token pool: reading end, writing end; filled in by whoever runs the job.
         walls: wall-clock seconds that a branch may take, by test.
         wall: the same for tests that are missing there.
-        at_start: whether to fork when a test begins instead of at the site: nothing but the imports is
-            shared then. Only of use to measure what sharing is worth.
         choices: for mutants of the program text, by id: the alternatives that they are.
         every_test: whether to branch a mutant also in tests after one that decided about it.
     """
@@ -53,7 +51,6 @@ class Branching:
     tokens: tuple[int, int] = (-1, -1)
     walls: Mapping[str, float] = field(default_factory=dict)
     wall: float = 600.0
-    at_start: bool = False
     choices: Mapping[str, tuple[Choice, ...]] = field(default_factory=dict)
     every_test: bool = False
 

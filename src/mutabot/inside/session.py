@@ -206,10 +206,7 @@ class Session:
         if self.text is not None:
             branch = trunk.fork_at_place if trunk is not None else None
             self.text.start_test(test, branch, trunk.places() if trunk is not None else {})
-        if trunk is not None:
-            trunk.fork_at_start()
-        if self.branch is None:  # else it has just become its mutant
-            self._start_activations()
+        self._start_activations()
 
     def _look_again(self) -> None:
         """What the program has made since the last test."""

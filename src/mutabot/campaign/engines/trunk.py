@@ -57,17 +57,12 @@ class Trunks:
         self._trunks: dict[int, _Trunk] = {}
 
     def run(
-        self,
-        trials: Iterable[Trial],
-        *,
-        only: Mapping[str, tuple[str, ...]] | None = None,
-        at_start: bool = False,
+        self, trials: Iterable[Trial], *, only: Mapping[str, tuple[str, ...]] | None = None
     ) -> Iterator[Outcome]:
         """Outcomes of mutants in rounds, as they come.
 
         ``only`` names the tests that judge certain mutants, by id; all others are judged by every test that
-        reaches them. ``at_start`` forks when a test begins instead of at the site, to measure what sharing is
-        worth.
+        reaches them.
         """
         baseline = self._campaign.baseline
         for mutant, round in trials:
@@ -81,7 +76,7 @@ class Trunks:
         text = baseline.program.instrumentation(
             {one.id: one for trunk in self._trunks.values() for one in trunk.mutants}.values()
         )
-        tasks = (trunk.task(text, at_start=at_start) for trunk in self._trunks.values())
+        tasks = (trunk.task(text) for trunk in self._trunks.values())
         for event in self._campaign.executor.events(tasks):
             if isinstance(event, Result):
                 yield from self._trunks[event.task.job.round].finish(event)
@@ -168,7 +163,7 @@ class _Trunk:
         """The tests it runs, in their order."""
         return self._baseline.in_order(self._round, self._needed)
 
-    def task(self, text: Instrumentation | None, *, at_start: bool = False) -> Task:
+    def task(self, text: Instrumentation | None) -> Task:
         """The task that runs the trunk."""
         request, baseline, round = self._campaign.request, self._baseline, self._round
         in_order = self.order
@@ -181,7 +176,6 @@ class _Trunk:
             tests={mutant: branches.tests for mutant, branches in self._open.items()},
             walls=walls,
             wall=longest,
-            at_start=at_start,
             choices={mutant: found for mutant, found in choices.items() if found},
             every_test=request.every_test,
         )

@@ -196,12 +196,6 @@ class Trunk:
             return
         self._fork_each(due)
 
-    def fork_at_start(self) -> None:
-        """Fork for every live mutant of the test that begins, if that is asked for."""
-        if self.branching.at_start:
-            with alarm_held():
-                self._fork_each([mutant for mutant in self.branching.mutants if self._is_due(mutant)])
-
     def finish(self) -> None:
         """All tests are over: wait for the branches that still run, holding no token meanwhile."""
         self._tokens.give_back()
