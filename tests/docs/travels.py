@@ -12,6 +12,9 @@ from textwrap import dedent
 from types import FrameType
 from typing import Any
 
+#: a process, and the name of a function that it called
+Called = tuple[int, str]
+
 TESTS = Path(__file__).parents[1]
 _OVER = "over\n"
 
@@ -39,21 +42,24 @@ def _hook_into(descriptor: int) -> Callable[[FrameType, str, Any], None]:
     def hook(frame: FrameType, event: str, argument: Any) -> None:
         module = frame.f_globals.get("__name__", "")
         if event == "call" and module.startswith("mutabot."):
-            os.write(descriptor, f"{module.removeprefix('mutabot.')}.{frame.f_code.co_qualname}\n".encode())
+            name = f"{module.removeprefix('mutabot.')}.{frame.f_code.co_qualname}"
+            os.write(descriptor, f"{os.getpid()} {name}\n".encode())
 
     return hook
 
 
 @contextmanager
-def calls_told(pipe: Path) -> Iterator[list[str]]:
+def calls_told(pipe: Path) -> Iterator[list[Called]]:
     """All calls of ours in this process and in those that tell them, complete when this is over."""
     os.mkfifo(pipe)
     reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)  # else it would wait for somebody who writes
-    told: list[str] = []
+    told: list[Called] = []
 
     def read() -> None:
         with os.fdopen(reading, encoding="utf-8") as lines:
-            told.extend(line.rstrip("\n") for line in iter(lines.readline, _OVER))
+            for line in iter(lines.readline, _OVER):
+                process, name = line.split()
+                told.append((int(process), name))
 
     writing = os.open(pipe, os.O_WRONLY)
     os.set_blocking(reading, True)
