@@ -207,7 +207,7 @@ def run_pairs(engine: str, campaign: Campaign, trials: list[Trial]) -> Iterator[
     """All outcomes; what a trunk could not do is replayed, as in a campaign."""
     if engine == "branch":
         left = Remainder()
-        yield from Trunks(campaign, left).run(trials)
+        yield from Trunks(campaign, left, engine).run(trials)
         yield from replay(campaign, left.trials)
         return
     if engine == "fresh":

@@ -44,14 +44,15 @@ class Trunks:
     Args:
         campaign: the campaign.
         left: is filled with what is left to another engine.
+        engine: the name of the engine that asks.
 
     Attributes:
         suspects: (round, test) that ended otherwise in a trunk than in the baseline.
         orders: per round, the tests of the trunk in its order.
     """
 
-    def __init__(self, campaign: Campaign, left: Remainder) -> None:
-        self._campaign, self._left = campaign, left
+    def __init__(self, campaign: Campaign, left: Remainder, engine: str) -> None:
+        self._campaign, self._left, self._engine = campaign, left, engine
         self.suspects: list[tuple[int, str]] = []
         self.orders: dict[int, tuple[str, ...]] = {}
         self._trunks: dict[int, _Trunk] = {}
@@ -90,7 +91,7 @@ class Trunks:
             self._left.early.append((mutant, round))
             return
         if round not in self._trunks:
-            self._trunks[round] = _Trunk(self._campaign, round, self._left, self.suspects)
+            self._trunks[round] = _Trunk(self._campaign, round, self._left, self.suspects, self._engine)
         forbidding = baseline.why_not_branch(round, tests)
         if forbidding is not None:
             self._left.leave(mutant, round, *forbidding)
@@ -132,9 +133,15 @@ class _Trunk:
     """The trunk of one round and its branches."""
 
     def __init__(
-        self, campaign: Campaign, round: int, left: Remainder, suspects: list[tuple[int, str]]
+        self,
+        campaign: Campaign,
+        round: int,
+        left: Remainder,
+        suspects: list[tuple[int, str]],
+        engine: str,
     ) -> None:
         self._campaign, self._round, self._left, self._suspects = campaign, round, left, suspects
+        self._engine = engine
         self._baseline, self._sources = campaign.baseline, campaign.sources
         self._open: dict[str, _Branches] = {}
         self._needed: set[str] = set()
@@ -279,7 +286,7 @@ class _Trunk:
     def _settle(self, mutant: str) -> Iterator[Outcome]:
         """Yield the mutant's outcome if all that it depends on is known."""
         branches = self._open[mutant]
-        run = Run(branches.mutant, self._round, branches.tests, engine="branch", shared=branches.shared)
+        run = Run(branches.mutant, self._round, branches.tests, engine=self._engine, shared=branches.shared)
         goes_on = self._campaign.request.every_test
         for test in branches.tests:
             if test in self._failed:

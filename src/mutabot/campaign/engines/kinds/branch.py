@@ -51,7 +51,7 @@ class Branch:
         """One trunk per round, with controls and mutants as its branches."""
         controls = _Controls.of(campaign, (mutant for mutant, _ in trials))
         campaign.progress.stage("mutants", len(trials))
-        trunks = Trunks(campaign, left)
+        trunks = Trunks(campaign, left, self.name)
         for outcome in trunks.run([*controls.trials, *trials], only=controls.tests):
             control = controls.by_id.get(outcome.mutant)
             if control is None:
@@ -79,7 +79,7 @@ class Branch:
             elif baseline.is_early(mutant):
                 left.early.append((mutant, round))
         progress.stage("controls", len(controls.by_id))
-        for outcome in Trunks(campaign, left).run(controls.trials, only=controls.tests):
+        for outcome in Trunks(campaign, left, self.name).run(controls.trials, only=controls.tests):
             control = controls.by_id[outcome.mutant]
             end = end_of(campaign, control, outcome)
             progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
