@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mutabot.model.class_name import class_name
+
 #: classes that are told by their names, since their modules may not be loaded, with what they hold
 _WRAPPED, _SEVERAL = "doctest:UnexpectedException", "_pytest.doctest:MultipleDoctestFailures"
 
@@ -60,7 +62,7 @@ def _is_due(error: BaseException | None, culprits: frozenset[int], above: frozen
 def _held(error: BaseException) -> tuple[BaseException, ...]:
     if isinstance(error, BaseExceptionGroup):
         return error.exceptions
-    names = {f"{kind.__module__}:{kind.__qualname__}" for kind in type(error).__mro__}
+    names = {class_name(kind) for kind in type(error).__mro__}
     if _WRAPPED in names:
         return (error.exc_info[1],)  # type: ignore[attr-defined]  # see above
     return tuple(error.failures) if _SEVERAL in names else ()  # type: ignore[attr-defined]

@@ -15,6 +15,7 @@ from types import FrameType
 from typing import Any
 
 from mutabot.inside.targets.target import Handler
+from mutabot.model.class_name import class_name
 
 #: methods that are named in one sentence
 _NAMED = 5
@@ -80,7 +81,7 @@ class Bypasses:
     def _note(self, target: str, kind: type, before: int) -> None:
         kinds = self.missed if self.reached(target) == before else self.around
         counts = kinds.setdefault(target, {})
-        name = f"{kind.__module__}:{kind.__qualname__}.{target.rpartition('.')[2]}"
+        name = f"{class_name(kind)}.{target.rpartition('.')[2]}"
         counts[name] = counts.get(name, 0) + 1
 
     def sentences(self, target: str) -> str:

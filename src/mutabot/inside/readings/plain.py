@@ -10,6 +10,8 @@ from dataclasses import fields, is_dataclass
 from enum import Enum
 from typing import Any
 
+from mutabot.model.class_name import class_name
+
 #: values within one value that are told; of more only whether they are all the same
 LEAVES = 200
 #: values within one value beyond which it is not looked at
@@ -33,7 +35,7 @@ def plain(value: Any) -> Any:
     reader = _Reader()
     found = reader.read(value, 0)
     if reader.leaves > MOST:
-        return _opaque(value)
+        return opaque(value)
     if reader.leaves > LEAVES:
         return {"digest": _digest(json.dumps(found, sort_keys=True).encode())}
     return found
@@ -41,7 +43,7 @@ def plain(value: Any) -> Any:
 
 def text_of_error(error: BaseException) -> str:
     """An exception in words, without what differs between equal runs."""
-    kind = f"{type(error).__module__}:{type(error).__qualname__}"
+    kind = class_name(type(error))
     return f"{kind.removeprefix('builtins:')}: {_ACCIDENTS.sub('…', str(error))[:_CHARACTERS]}"
 
 
@@ -61,7 +63,7 @@ class _Reader:
             return _text(value)
         if isinstance(value, _AS_TEXT) or type(value).__module__ in _TOLD:
             return repr(value)
-        return _opaque(value) if depth > _DEPTH or self.leaves > MOST else self._container(value, depth + 1)
+        return opaque(value) if depth > _DEPTH or self.leaves > MOST else self._container(value, depth + 1)
 
     def _container(self, value: Any, depth: int) -> Any:
         if hasattr(value, "tolist") and hasattr(value, "dtype"):
@@ -76,11 +78,11 @@ class _Reader:
             value = sorted(value, key=repr)
         if isinstance(value, list | tuple):
             return [self.read(item, depth) for item in value]
-        return _opaque(value)
+        return opaque(value)
 
     def _array(self, value: Any, depth: int) -> Any:
         if value.dtype.hasobject:
-            return _opaque(value)
+            return opaque(value)
         if getattr(value, "size", 1) <= LEAVES:
             return self.read(value.tolist(), depth)
         return {"array": list(value.shape), "digest": _digest(value.tobytes())}
@@ -96,8 +98,9 @@ def _text(value: str | bytes | bytearray) -> Any:
     return {"digest": _digest(value.encode("utf-8", "replace") if isinstance(value, str) else bytes(value))}
 
 
-def _opaque(value: Any) -> dict[str, str]:
-    return {"opaque": f"{type(value).__module__}:{type(value).__qualname__}"}
+def opaque(value: Any) -> dict[str, str]:
+    """What stands for a value that is no plain data."""
+    return {"opaque": class_name(type(value))}
 
 
 def _digest(data: bytes) -> str:

@@ -13,6 +13,7 @@ from typing import Any
 from mutabot.errors import nearest_name
 from mutabot.inside.targets.names import resolve
 from mutabot.model import Probe
+from mutabot.model.class_name import class_name
 
 from .instances import Instances
 
@@ -167,7 +168,7 @@ def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
     elif isinstance(value, int | float | str | bool | None):
         yield name, value
     elif "__repr__" not in {name for base in type(value).__mro__[:-1] for name in vars(base)}:
-        kind = f"{type(value).__module__}:{type(value).__qualname__}"
+        kind = class_name(type(value))
         raise UnreadableError(
             f"it reads an object of {kind}, which is no plain data such as numbers, texts, lists, dataclasses"
         )

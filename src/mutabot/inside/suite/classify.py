@@ -17,6 +17,7 @@ from mutabot.inside.exception_groups import everything, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
 from mutabot.inside.targets.names import is_named
 from mutabot.model import By, Role, Vocabulary
+from mutabot.model.class_name import class_name
 
 from .doctests import mismatch, place_of_mismatch
 
@@ -84,7 +85,7 @@ def classify(
     return Ending(
         by=By.EXCEPTION if no_checks else By.CHECK,
         phase=phase,
-        exception=f"{kind.__module__}:{kind.__qualname__}",
+        exception=class_name(kind),
         message=_text(shown, len(found)),
         place=_place(shown, locator),
         timeout=_lines(shown)[0] if overdue is not None else None,

@@ -17,6 +17,7 @@ from typing import Any
 import wrapt
 
 from mutabot.model import Operation
+from mutabot.model.class_name import class_name
 
 from .names import NotFoundError, resolve
 from .overrides import overriding, watch_subclasses
@@ -131,7 +132,7 @@ class Callables(Targets):
             wrapper = _wrapper(kind, name, original, overrides(kind))
             setattr(kind, name, wrapper)
         except (NotCallableError, AttributeError, TypeError) as error:
-            why = f"{kind.__module__}:{kind.__qualname__}.{name} cannot be intercepted: {error}"
+            why = f"{class_name(kind)}.{name} cannot be intercepted: {error}"
             if why not in self._uncovered.setdefault(target, []):
                 self._uncovered[target].append(why)
             return
@@ -145,7 +146,7 @@ class Callables(Targets):
         for place in kind.__mro__:
             if place is owner:
                 break
-            other = installed.get(id(place), f"{place.__module__}:{place.__qualname__}.{name}")
+            other = installed.get(id(place), f"{class_name(place)}.{name}")
             if other in self._covering or (place is kind and other in self._targets):
                 return False
         return True
@@ -195,9 +196,7 @@ def _wrapper(owner: Any, name: str, original: Any, handler: Handler) -> Any:
         cached.__set_name__(owner, name)
         return cached
     if isinstance(original, type):
-        raise NotCallableError(
-            f"{original.__module__}:{original.__qualname__} is a class; name one of its methods"
-        )
+        raise NotCallableError(f"{class_name(original)} is a class; name one of its methods")
     if not callable(original) and not isinstance(original, classmethod | staticmethod):
         raise NotCallableError(f"{name!r} is {type(original).__name__}, which cannot be called")
     return wrapt.FunctionWrapper(original, handler)

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from types import ModuleType
 from typing import Any
 
+from mutabot.model.class_name import class_name
+
 
 class NotFoundError(LookupError):
     """A target names something that its module does not have.
@@ -49,7 +51,7 @@ def _attribute(owner: Any, name: str, module: ModuleType) -> Any:
 def is_named(error: BaseException, names: Iterable[str]) -> bool:
     """Whether one of the names ``module:Name`` means the exception's class, re-exported names included."""
     kinds = type(error).__mro__
-    return any(f"{kind.__module__}:{kind.__qualname__}" in names for kind in kinds) or any(
+    return any(class_name(kind) in names for kind in kinds) or any(
         named_class(name) in kinds for name in names
     )
 

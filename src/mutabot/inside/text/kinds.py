@@ -7,6 +7,8 @@ import numbers
 from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
+from mutabot.model.class_name import class_name
+
 _PLAIN: dict[type, str] = {
     bool: "truth",
     int: "integer",
@@ -40,7 +42,7 @@ def kind_of(value: Any) -> str:
         return "integer"
     if issubclass(kind, numbers.Number):
         return "number"
-    return f"{kind.__module__}:{kind.__qualname__}"
+    return class_name(kind)
 
 
 def is_variable(value: Any) -> bool:

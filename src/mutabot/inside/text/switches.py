@@ -15,6 +15,7 @@ from functools import cache
 from types import CodeType, FrameType
 from typing import Any, NoReturn
 
+from mutabot.inside.readings.plain import opaque
 from mutabot.model.alternative import FATAL, IDENTITY, RUNTIME, Choice
 from mutabot.operators.control import FatalFault
 
@@ -253,7 +254,7 @@ def _plain(value: Any) -> Any:
         return value
     if isinstance(value, tuple | list) and len(value) <= _SHOWN:
         return tuple(_plain(item) for item in value)
-    return {"opaque": f"{type(value).__module__}:{type(value).__qualname__}"}
+    return opaque(value)
 
 
 def _is_same(before: Any, after: Any) -> bool:

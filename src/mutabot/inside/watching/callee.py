@@ -15,6 +15,7 @@ from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from mutabot.inside.targets.names import NotFoundError, resolve
+from mutabot.model.class_name import class_name
 
 from .described import of_type
 
@@ -66,7 +67,7 @@ def method_of(value: Any, name: str) -> Callee | None:
     owner = next((one for one in classes if name in vars(one)), None)
     if owner is None:
         return None
-    return _nameable(f"{owner.__module__}:{owner.__qualname__}.{name}", vars(owner)[name], owner)
+    return _nameable(f"{class_name(owner)}.{name}", vars(owner)[name], owner)
 
 
 def function_of(found: Any, spelt: str = "") -> Callee | None:
@@ -163,12 +164,7 @@ def _raised_by(function: Any) -> Iterator[str]:
         if isinstance(node, ast.Raise) and node.exc is not None:
             raised = _named(node.exc.func if isinstance(node.exc, ast.Call) else node.exc, names)
             if isinstance(raised, type) and issubclass(raised, BaseException):
-                yield exception_name(raised)
-
-
-def exception_name(kind: type[BaseException]) -> str:
-    """``module:Name`` of an exception."""
-    return f"{kind.__module__}:{kind.__qualname__}"
+                yield class_name(raised)
 
 
 def _named(node: ast.expr, names: dict[str, Any]) -> Any:
@@ -185,7 +181,7 @@ def _readings(owner: type) -> Iterator[dict[str, Any]]:
         function: Callable[..., Any] | None = _function(raw)
         if name.startswith("_") or not isinstance(function, FunctionType):
             continue
-        callee = Callee(f"{owner.__module__}:{owner.__qualname__}.{name}", raw, owner, "")
+        callee = Callee(f"{class_name(owner)}.{name}", raw, owner, "")
         signature = callee.signature
         if signature is None or signature.parameters:
             continue

@@ -20,8 +20,9 @@ from typing import Any
 import pytest
 
 from mutabot.border.watch import WATCH_VARIABLE
+from mutabot.model.class_name import class_name
 
-from .callee import Callee, exception_name, facts, function_of, method_of
+from .callee import Callee, facts, function_of, method_of
 from .described import Leaves
 from .told_apart import ToldApart
 from .watched_text import METHOD, NAME, READ, watch_imports
@@ -153,7 +154,7 @@ class Watch:
             try:
                 result = function(*args, **kwargs)
             except Exception as error:
-                seen.raised[exception_name(type(error))] = None
+                seen.raised[class_name(type(error))] = None
                 raise
             if inspect.iscoroutine(result):
                 seen.returns_coroutine = not seen.is_coroutine
@@ -167,7 +168,7 @@ class Watch:
         try:
             result = await waiting
         except Exception as error:
-            seen.raised[exception_name(type(error))] = None
+            seen.raised[class_name(type(error))] = None
             raise
         self._answer(seen, result, which)
         return result

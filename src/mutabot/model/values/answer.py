@@ -18,6 +18,8 @@ from enum import Enum
 from types import SimpleNamespace
 from typing import Any
 
+from mutabot.model.class_name import class_name
+
 #: characters that an answer may take as data; it goes to every process that runs its mutant
 LIMIT = 50_000
 #: containers in containers; more is a structure that holds itself
@@ -142,7 +144,7 @@ class _Keeper:
         constant = _constant(value)
         if constant is not None:
             return {"name": constant}
-        if any(_target(base) in self._handles for base in kind.__mro__) or not _is_all_state(value):
+        if any(class_name(base) in self._handles for base in kind.__mro__) or not _is_all_state(value):
             raise NotKeptError(name)
         slots = {slot: getattr(value, slot) for slot in _slots(kind) if hasattr(value, slot)}
         attributes = getattr(value, "__dict__", {})
@@ -204,20 +206,16 @@ def _constant(value: Any) -> str | None:
     """The name of a constant of its module or class, which programs compare with ``is``; else None."""
     kind = type(value)
     module = sys.modules.get(kind.__module__)
-    for owner, prefix in ((module, f"{kind.__module__}:"), (kind, f"{_target(kind)}.")):
+    for owner, prefix in ((module, f"{kind.__module__}:"), (kind, f"{class_name(kind)}.")):
         for name, one in list(vars(owner).items()) if owner is not None else ():
             if one is value:
                 return f"{prefix}{name}"
     return None
 
 
-def _target(kind: type[Any]) -> str:
-    return f"{kind.__module__}:{kind.__qualname__}"
-
-
 def _name_of(kind: type[Any]) -> str:
     """The class as ``module:Name``. Raises NotKeptError if it cannot be found by it."""
-    name = _target(kind)
+    name = class_name(kind)
     try:
         found = _named(name)
     except LookupError:
