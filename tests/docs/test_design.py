@@ -67,7 +67,7 @@ CONFIGURED = """
     private_files = false
 """
 REPORT, PLAN = "inside.suite.branch.BranchOfTest._report", "journal.journal.Journal.set_plan"
-#: travel -> the engine of the campaign that goes it, and what only the processes that go it call, in their order
+#: travel -> the engine of its campaign, and what is called only by the processes that go it, in their order
 TRAVELS = {
     "A call through a mutant": ("replay", ["inside.calls.activation.Activation.perform"]),
     "A branch": ("branch", [REPORT, "inside.fork.trunk.Trunk._take_token"]),
