@@ -49,6 +49,12 @@ def test_every_name_on_the_page_is_one_in_the_code(name: str) -> None:
     assert named(name) is not None
 
 
+def test_no_word_is_explained_twice() -> None:
+    words = re.findall(r"\| .*?\*\*(.+?)\*\*", TEXT)
+    assert len(words) > 50
+    assert len(words) == len(set(words))
+
+
 MISSION = "def run(arm):\n    arm.move_by(0.25)\n"
 TESTS = """
     import mission
