@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
+from pkgutil import resolve_name
 
 import pytest
 
@@ -143,3 +145,20 @@ def test_a_change_of_the_baseline_is_seen(text: str) -> None:
         assert _is_of_baseline(
             statement.target if isinstance(statement, ast.AugAssign) else statement.targets[0]
         )
+
+
+def test_the_source_speaks_of_rooms_and_modules_that_there_are() -> None:
+    room = "|".join(sorted({file.relative_to(SOURCE).parts[0].removesuffix(".py") for file in FILES}))
+    told = {
+        (name, file)
+        for file in FILES
+        for name in re.findall(
+            rf"``(?:mutabot\.)?((?:{room})\.[A-Za-z_.]+)(?<!sqlite)``", file.read_text("utf-8")
+        )
+    }
+    assert told
+    for name, file in told:
+        try:
+            resolve_name(f"mutabot.{name}")
+        except (ImportError, AttributeError):
+            pytest.fail(f"{file.relative_to(SOURCE)} speaks of {name}, which is not there")

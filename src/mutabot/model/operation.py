@@ -82,7 +82,7 @@ class Operation:
         idle: what it returns while the robot does nothing, as data (see ``answer``); None if the vocabulary
             does not say.
         source: where the vocabulary says so (``robot.toml:12 · robot:Arm.move_by``).
-        signature: what its arguments are, for a callable that does not tell; see ``model.signature``.
+        signature: what its arguments are, for a callable that does not tell; see ``model.values.signature``.
         overrides: whether the methods of subclasses that override it belong to it.
         kind: what kind of target it has, which says how it is found at run time: the name of a file in
             ``inside.targets``; None for a Python callable.

@@ -11,7 +11,7 @@ from .targets import target_fault
 
 
 def read_idle(check: Check, raw: Any, place: KeyPath) -> Any:
-    """``idle = …`` as data that ``model.answer.restore`` understands; mistakes are noted.
+    """``idle = …`` as data that ``model.values.answer.restore`` understands; mistakes are noted.
 
     A TOML value is the answer itself; ``{ call = "module:name" }`` names a function that makes it.
     """

@@ -22,7 +22,7 @@ class NoAnswerError(MutabotError):
 
 @dataclass(slots=True)
 class RecordedAnswers:
-    """The notes of what calls of one place returned, as ``inside.answers`` writes them.
+    """The notes of what calls of one place returned, as ``inside.calls.answers`` writes them.
 
     Attributes:
         first: note of the first call that returned, by test (``Idle.key``).

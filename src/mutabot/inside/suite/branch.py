@@ -22,7 +22,7 @@ from . import outcomes
 
 
 class BranchOfTest:
-    """What the trunk's process does where it turns out to be a branch; see ``fork.trunk.Branch``.
+    """What the trunk's process does where it turns out to be a branch; see ``inside.fork.trunk.Branch``.
 
     Args:
         session: the job at hand.
