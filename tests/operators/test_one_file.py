@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-import json
-import os
-import shutil
-import subprocess
-import sys
 from pathlib import Path
-from textwrap import dedent
 from typing import Any
 
 import pytest
 
-import mutabot
 from tests.campaign.project import write_project
-
-TOOLS = Path(__file__).parents[2] / "tools"
+from tests.package_copy import copied, mutants, python
 
 #: comes in two sizes; acts on written values
 OFFSET = """
@@ -83,36 +75,18 @@ TESTS = """
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a copy of the package, into which two files were dropped."""
-    folder = tmp_path_factory.mktemp("site")
-    package = folder / "mutabot"
-    shutil.copytree(Path(mutabot.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
-    for name, code in (("operators/robot/bit_off", OFFSET), ("classical/operators/zero", ZERO)):
-        (package / f"{name}.py").write_text(dedent(code), encoding="utf-8")
-    return folder
+    dropped = {"operators/robot/bit_off.py": OFFSET, "classical/operators/zero.py": ZERO}
+    return copied(tmp_path_factory.mktemp("site"), dropped)
 
 
-def python(site: Path, *arguments: str) -> str:
-    path = os.pathsep.join((str(site), str(TOOLS)))
-    done = subprocess.run(
-        [sys.executable, *arguments],
-        env={**os.environ, "PYTHONPATH": path},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return done.stdout
-
-
-def mutants(site: Path, folder: Path, *arguments: str) -> dict[str, Any]:
-    text = python(
-        site, "-m", "mutabot", "-C", str(folder), *arguments, "--family", "robot,classical", "--json"
-    )
-    return {one["id"].removeprefix("mission.py:run:"): one for one in json.loads(text)["mutants"]}
+def of_both_families(site: Path, folder: Path, *arguments: str) -> dict[str, Any]:
+    found = mutants(site, folder, *arguments, "--family", "robot,classical")
+    return {name.removeprefix("mission.py:run:"): one for name, one in found.items()}
 
 
 def test_both_come_last_in_the_plan_and_the_others_keep_their_order(site: Path, tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS)
-    found = mutants(site, tmp_path, "list")
+    found = of_both_families(site, tmp_path, "list")
     names = [one["operator"] for one in found.values()]
     assert [*dict.fromkeys(names)] == ["reverse", "skip", "repeat", "bit-off", "BSR", "UOI", "CZR"]
     assert {one["family"] for one in found.values() if one["operator"] == "bit-off"} == {"robot"}
@@ -123,7 +97,7 @@ def test_both_come_last_in_the_plan_and_the_others_keep_their_order(site: Path, 
 def test_both_get_verdicts_from_both_engines(engine: str, site: Path, tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS)
     only = ("--only", "bit-off", "--only", "CZR", "--engine", engine)
-    found = mutants(site, tmp_path, "run", *only)
+    found = of_both_families(site, tmp_path, "run", *only)
     verdicts = {name: one["rounds"][0]["verdict"] for name, one in found.items()}
     assert verdicts == {
         "arm.move_by#1:dx:bit-off=0.001": "survived",

@@ -14,12 +14,15 @@ from typing import cast
 import libcst as cst
 from libcst.metadata import MetadataWrapper, ParentNodeProvider, PositionProvider
 
+from mutabot.languages.python import FRONT_END as PYTHON
+from mutabot.languages.python import extent_of
+from mutabot.languages.registry import front_end_of, front_ends
 from mutabot.model.alternative import Alternative, Extent, ProgramText, TextPlace
 from mutabot.model.site import Span
 
 from . import registry
 from .extents import Extents
-from .index import Found, Index, extent_of
+from .index import Found, Index
 from .operator import ClassicalOperator, Draft
 from .rendering import shortened, shown, template
 from .surroundings import is_variable, surroundings
@@ -29,11 +32,15 @@ LONGEST = 1000
 
 
 def program_files(root: Path, program: Iterable[str]) -> list[str]:
-    """Python files of the configured files and folders, relative to ``root``, each once."""
+    """The program's files among the configured files and folders, relative to ``root``, each once."""
+    suffixes = {suffix for one in front_ends() for suffix in one.suffixes}
     files: dict[str, None] = {}
     for name in program:
         path = root / name
-        for file in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
+        found = (
+            {file for suffix in suffixes for file in path.rglob(f"*{suffix}")} if path.is_dir() else [path]
+        )
+        for file in sorted(found):
             files.setdefault(file.relative_to(root).as_posix())
     return list(files)
 
@@ -51,6 +58,8 @@ def find_texts(
     texts: list[ProgramText] = []
     number = first - 1
     for file in files:
+        if front_end_of(file) is not PYTHON:
+            raise SyntaxError("it is no Python, the only language that has operators on its text")
         source = (root / file).read_bytes()
         index = Index.of(ast.parse(source, file))
         places = list(find_places(source, file, rules, index, first=number + 1))

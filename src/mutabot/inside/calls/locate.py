@@ -5,15 +5,10 @@ from __future__ import annotations
 import os
 from types import CodeType, FrameType
 
+from mutabot.languages.front_end import Position
+from mutabot.languages.python import FRONT_END as PYTHON
+from mutabot.languages.registry import front_ends
 from mutabot.model import Role, Span
-
-#: code objects that are part of the function around them
-_COMPREHENSIONS = (
-    ".<locals>.<listcomp>",
-    ".<locals>.<setcomp>",
-    ".<locals>.<dictcomp>",
-    ".<locals>.<genexpr>",
-)
 
 
 class Locator:
@@ -32,14 +27,21 @@ class Locator:
         self._places = sorted(places, key=lambda place: -len(place[0]))
         self._roles: dict[str, Role | None] = {}
         self._spans: dict[tuple[CodeType, int], Span] = {}
+        # every other frame is Python's: asking its front end for each would cost each call
+        self._interpreted = [one for one in front_ends() if one is not PYTHON]
         self._real: dict[str, str] = {}
 
     def locate(self, frame: FrameType | None) -> tuple[Span, Role] | None:
         """Span and role of the call that is running in ``frame`` or the nearest frame around it."""
+        interpreted = self._interpreted
         while frame is not None:
+            if interpreted:
+                found = self._in_interpreter(frame)
+                if found is not None:
+                    return found
             role = self.role(frame.f_code.co_filename)
             if role is not None:
-                return self._span(frame.f_code, frame.f_lasti), role
+                return self._span(frame), role
             frame = frame.f_back
         return None
 
@@ -71,23 +73,21 @@ class Locator:
     def _absolute(self, path: str) -> str:
         return os.path.realpath(os.path.join(self._root, path))
 
-    def _span(self, code: CodeType, instruction: int) -> Span:
-        key = (code, instruction)
+    def _in_interpreter(self, frame: FrameType) -> tuple[Span, Role] | None:
+        """The same for a frame in which an interpreter carries out a file of the program or the oracle."""
+        for front_end in self._interpreted:
+            filename = front_end.file_of(frame)
+            role = self.role(filename) if filename is not None else None
+            if filename is not None and role is not None:
+                return self._span_at(filename, front_end.position_of(frame)), role
+        return None
+
+    def _span(self, frame: FrameType) -> Span:
+        key = (frame.f_code, frame.f_lasti)
         span = self._spans.get(key)
         if span is None:
-            span = self._spans[key] = self._new_span(code, instruction)
+            span = self._spans[key] = self._span_at(frame.f_code.co_filename, PYTHON.position_of(frame))
         return span
 
-    def _new_span(self, code: CodeType, instruction: int) -> Span:
-        line, end_line, column, end_column = list(code.co_positions())[instruction // 2]
-        function = code.co_qualname
-        for suffix in _COMPREHENSIONS:
-            function = function.removesuffix(suffix)
-        return Span(
-            self.relative(code.co_filename),
-            line or code.co_firstlineno,
-            column or 0,
-            end_line or line or code.co_firstlineno,
-            end_column or 0,
-            function,
-        )
+    def _span_at(self, filename: str, position: Position) -> Span:
+        return Span(self.relative(filename), *position.extent, position.function)

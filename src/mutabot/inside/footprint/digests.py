@@ -40,7 +40,8 @@ _IGNORED = (
 _MACHINERY = (
     "_pytest", "pytest", "pluggy", "logging", "typing", "abc", "_abc", "_thread", "threading", "_weakref",
     "weakref", "importlib", "_frozen_importlib", "ctypes", "_ctypes", "unittest.mock", "warnings", "re",
-    "__future__", "mutabot.inside", "mutabot.model", "mutabot.operators", "_asyncio", "_contextvars",
+    "__future__", "mutabot.inside", "mutabot.languages", "mutabot.model", "mutabot.operators", "_asyncio",
+    "_contextvars",
 )  # fmt: skip
 #: what Python, and ``unittest`` as it runs, keep in a class
 _OF_CLASS = {

@@ -13,6 +13,7 @@ import copy
 from collections.abc import Iterable
 from typing import TypeVar
 
+from mutabot.languages.python import extent_of
 from mutabot.model.alternative import RUNTIME, Alternative, Extent, TextPlace, kept_name
 
 from .foresee import Forms, form_of
@@ -59,11 +60,6 @@ def is_place(node: ast.AST) -> bool:
     if isinstance(node, ast.expr):
         return isinstance(getattr(node, "ctx", None), ast.Load | None)
     return isinstance(node, ast.stmt)
-
-
-def extent_of(node: ast.expr | ast.stmt) -> Extent:
-    """Where a node stands."""
-    return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
 
 
 class _Instrumenter(ast.NodeTransformer):

@@ -1,0 +1,1 @@
+"""Languages of robot programs: one file each, ``front_end.py`` is the contract."""

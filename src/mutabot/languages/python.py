@@ -1,0 +1,149 @@
+"""Python: where calls stand, from the running instruction and from the source."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import CodeType, FrameType
+
+from mutabot.model.alternative import Extent
+
+from .front_end import Name, Position
+
+_TEXT_LIMIT = 60
+#: code objects that are part of the function around them
+_COMPREHENSIONS = (
+    ".<locals>.<listcomp>",
+    ".<locals>.<setcomp>",
+    ".<locals>.<dictcomp>",
+    ".<locals>.<genexpr>",
+)
+
+
+class Python:
+    """The front end for Python."""
+
+    suffixes = (".py",)
+
+    def names(self, source: str) -> Mapping[Extent, Name]:
+        """Names of all expressions: a call by the text of its callee, all others by their own."""
+        names: dict[Extent, Name] = {}
+        _number(ast.parse(source), source.encode().splitlines(keepends=True), names)
+        return names
+
+    def file_of(self, frame: FrameType) -> str | None:
+        """The file that the frame's code stands in: every frame is one of Python."""
+        return frame.f_code.co_filename
+
+    def position_of(self, frame: FrameType) -> Position:
+        """The place of the instruction that is running."""
+        return _position(frame.f_code, frame.f_lasti)
+
+
+FRONT_END = Python()
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """The function that a node belongs to.
+
+    Attributes:
+        name: qualified name, as in ``code.co_qualname``; ``<module>`` at the top level.
+        at_import: whether its code runs while the module is imported.
+        is_class: whether it is the body of a class.
+    """
+
+    name: str = "<module>"
+    at_import: bool = True
+    is_class: bool = False
+
+    def function(self, name: str) -> Scope:
+        """A function defined here."""
+        return Scope(self._inner(name), at_import=False)
+
+    def klass(self, name: str) -> Scope:
+        """A class defined here; its body runs where it stands."""
+        return Scope(self._inner(name), self.at_import, is_class=True)
+
+    def _inner(self, name: str) -> str:
+        if self.name == "<module>":
+            return name
+        return f"{self.name}.{name}" if self.is_class else f"{self.name}.<locals>.{name}"
+
+
+def extent_of(node: ast.expr | ast.stmt) -> Extent:
+    """Where a node stands."""
+    return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)
+
+
+def _position(code: CodeType, instruction: int) -> Position:
+    line, end_line, column, end_column = list(code.co_positions())[instruction // 2]
+    function = code.co_qualname
+    for suffix in _COMPREHENSIONS:
+        function = function.removesuffix(suffix)
+    first = line or code.co_firstlineno
+    return Position((first, column or 0, end_line or first, end_column or 0), function)
+
+
+def _number(tree: ast.Module, lines: list[bytes], names: dict[Extent, Name]) -> None:
+    for scope in _scopes(tree):
+        # a call and its callee look alike but are different things to hit
+        counts: dict[tuple[type, str], int] = {}
+        for node in sorted(_expressions(scope), key=extent_of):
+            text = _text(node, lines)
+            count = counts[type(node), text] = counts.get((type(node), text), 0) + 1
+            names[extent_of(node)] = Name(text, count)
+
+
+def _scopes(tree: ast.Module) -> list[ast.AST]:
+    kinds = (ast.Module, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    return [node for node in ast.walk(tree) if isinstance(node, kinds)]
+
+
+def _expressions(scope: ast.AST) -> list[ast.expr]:
+    """Expressions of a function, class or module, bar those of functions and classes inside it.
+
+    Decorators and default arguments run in the scope around the function they belong to.
+    """
+    found: list[ast.expr] = []
+    waiting: list[ast.AST] = list(_own(scope))
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            waiting.extend(_outer(node))
+            continue
+        if isinstance(node, ast.expr):
+            found.append(node)
+        waiting.extend(ast.iter_child_nodes(node))
+    return found
+
+
+def _own(scope: ast.AST) -> list[ast.AST]:
+    outer = {id(node) for node in _outer(scope)}
+    return [node for node in ast.iter_child_nodes(scope) if id(node) not in outer]
+
+
+def _outer(node: ast.AST) -> list[ast.AST]:
+    if isinstance(node, ast.ClassDef):
+        return [*node.decorator_list, *node.bases, *(keyword.value for keyword in node.keywords)]
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        defaults = [
+            default for default in (*node.args.defaults, *node.args.kw_defaults) if default is not None
+        ]
+        return [*node.decorator_list, *defaults]
+    return []
+
+
+def _text(node: ast.expr, lines: list[bytes]) -> str:
+    callee = node.func if isinstance(node, ast.Call) else node
+    text = " ".join(_segment(callee, lines).split())
+    return text if len(text) <= _TEXT_LIMIT else text[: _TEXT_LIMIT - 1] + "…"
+
+
+def _segment(node: ast.expr, lines: list[bytes]) -> str:
+    first, start, last, end = extent_of(node)
+    if first == last:
+        return lines[first - 1][start:end].decode()
+    middle = b"".join(lines[first : last - 1])
+    return (lines[first - 1][start:] + middle + lines[last - 1][:end]).decode()

@@ -1,0 +1,25 @@
+"""Which languages there are, and which one a file is written in."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+
+from .front_end import FrontEnd
+from .python import FRONT_END as PYTHON
+
+_CONTRACT = ("__init__", "front_end", "registry", "python")
+
+
+@cache
+def front_ends() -> tuple[FrontEnd, ...]:
+    """All of them; Python is the last, since the frames of an interpreter are Python's as well."""
+    files = sorted(file.stem for file in Path(__file__).parent.glob("*.py"))
+    others = (import_module(f"{__package__}.{name}") for name in files if name not in _CONTRACT)
+    return (*(module.FRONT_END for module in others), PYTHON)
+
+
+def front_end_of(file: str) -> FrontEnd:
+    """That of a file's language, by how the file ends; files of no known language are taken for Python."""
+    return next((one for one in front_ends() if file.endswith(one.suffixes)), PYTHON)
