@@ -10,11 +10,39 @@ import ast
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from mutabot.languages.python import Scope, extent_of
+from mutabot.languages.python import extent_of
 from mutabot.model.alternative import Extent
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 Start = tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """The function that a node belongs to.
+
+    Attributes:
+        name: qualified name, as in ``code.co_qualname``; ``<module>`` at the top level.
+        at_import: whether its code runs while the module is imported.
+        is_class: whether it is the body of a class.
+    """
+
+    name: str = "<module>"
+    at_import: bool = True
+    is_class: bool = False
+
+    def function(self, name: str) -> Scope:
+        """A function defined here."""
+        return Scope(self._inner(name), at_import=False)
+
+    def klass(self, name: str) -> Scope:
+        """A class defined here; its body runs where it stands."""
+        return Scope(self._inner(name), self.at_import, is_class=True)
+
+    def _inner(self, name: str) -> str:
+        if self.name == "<module>":
+            return name
+        return f"{self.name}.{name}" if self.is_class else f"{self.name}.<locals>.{name}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mutabot.errors import OperatorError, unknown_name_text
 from mutabot.families import OF_TEXT
-from mutabot.operators.discovery import classes_in, modules_in
+from mutabot.operators.registry import classes_in, modules_in
 from mutabot.operators.rule import in_order
 
 from .operator import ClassicalOperator

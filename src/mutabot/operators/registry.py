@@ -7,12 +7,12 @@ from contextlib import suppress
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 from mutabot.errors import OperatorError, unknown_name_text
 
 from .control import CONTROLS
-from .discovery import classes_in, modules_in, packages_in
 from .operator import Operator
 from .rule import in_order
 
@@ -130,3 +130,23 @@ def _loaded(entry: EntryPoint) -> Operator:
             operator=entry.name,
         )
     return _checked(made, where)
+
+
+def modules_in(folder: Path) -> list[str]:
+    """Names of the modules in a folder, bar those that begin with ``_``; none of them is loaded."""
+    return sorted(file.stem for file in folder.glob("*.py") if not file.name.startswith("_"))
+
+
+def packages_in(folder: Path) -> list[str]:
+    """Names of the packages in a folder; none of them is loaded."""
+    return sorted(file.parent.name for file in folder.glob("*/__init__.py"))
+
+
+def classes_in(module: ModuleType, base: type[Any]) -> list[type[Any]]:
+    """The concrete subclasses of ``base`` that a module itself defines, in the order of its text."""
+    return [
+        kind
+        for kind in vars(module).values()
+        if isinstance(kind, type) and issubclass(kind, base)
+        if kind.__module__ == module.__name__ and not getattr(kind, "__abstractmethods__", None)
+    ]

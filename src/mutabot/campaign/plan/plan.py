@@ -18,8 +18,8 @@ from mutabot.journal.records import Drawing
 from mutabot.model import Call, LeftOut, Mutant, Operation, Reply, Vocabulary
 from mutabot.model.values.quantity import is_reading_of
 from mutabot.operators import Operator, Subject, load_all
+from mutabot.operators.operator import with_operation
 from mutabot.operators.passage import Passage, rehearse
-from mutabot.operators.subjects import with_operation
 
 #: recorded calls per place that are tried out; calls of one place are much alike
 TRIED = 200

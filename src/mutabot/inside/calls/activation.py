@@ -17,8 +17,8 @@ from mutabot.model import Call, Middleware, Mutant, Operation, Reply, Span
 from mutabot.model.values.answer import restore
 from mutabot.operators import Operator, Subject, operator
 from mutabot.operators.control import FatalFault
+from mutabot.operators.operator import subject_of
 from mutabot.operators.passage import Carried, Passage, passed
-from mutabot.operators.subjects import subject_of
 
 from .door import Door, here
 
