@@ -99,6 +99,7 @@ def in_words(outcome: Outcome) -> str:
     return f"{outcome.verdict}{by}{', indistinguishable' if outcome.indistinguishable else ''}"
 
 
+@pytest.mark.usefixtures("plugins")
 def test_the_examples_own_suite_passes(project: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-B", "-m", "pytest", "-q", "-p", "no:cacheprovider"],

@@ -76,6 +76,7 @@ def plain_pytest(folder: Path, **variables: str) -> subprocess.CompletedProcess[
     )
 
 
+@pytest.mark.usefixtures("plugins")
 @ENGINES
 def test_a_test_that_fails_in_one_round_is_set_aside_there_and_plain_pytest_fails_alike(
     tmp_path: Path, engine: str
@@ -182,6 +183,7 @@ def test_a_round_that_makes_no_sense_is_an_error_of_usage(
         PlainRound.from_environment()
 
 
+@pytest.mark.usefixtures("plugins")
 def test_pytest_tells_an_error_of_usage_without_a_traceback(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS)
     done = plain_pytest(tmp_path, MUTABOT_ROUND="three")

@@ -100,6 +100,7 @@ def plain_pytest(folder: Path, **environment: str) -> subprocess.CompletedProces
     )
 
 
+@pytest.mark.usefixtures("plugins")
 def test_without_a_campaign_the_environment_gives_one_seed_for_all(tmp_path: Path) -> None:
     folder = write_project(tmp_path / "project", MISSION, SHARED)
     done = plain_pytest(folder, SEEDS=str(tmp_path / "seeds"), MUTABOT_SEED="5")
