@@ -178,7 +178,7 @@ PROJECT = (
 
 def test_a_campaign_on_a_sample_writes_down_what_it_was_drawn_from(tmp_path: Path) -> None:
     folder = write_project(tmp_path, *PROJECT)
-    path = run_campaign(request_for(folder, engine="replay", sample=Sample.parse("4")), Quiet())
+    path = run_campaign(request_for(folder, sample=Sample.parse("4")), Quiet())
     with Journal.open(path) as journal:
         drawing = from_data(Drawing, journal.meta()[DRAWING])
         assert len(journal.mutants()) == len(journal.outcomes()) == 4
@@ -189,17 +189,17 @@ def test_a_campaign_on_a_sample_writes_down_what_it_was_drawn_from(tmp_path: Pat
 
 def test_the_whole_campaign_after_a_sample_runs_only_the_rest(tmp_path: Path) -> None:
     folder = write_project(tmp_path, *PROJECT)
-    run_campaign(request_for(folder, engine="replay", sample=Sample.parse("4")), Quiet())
+    run_campaign(request_for(folder, sample=Sample.parse("4")), Quiet())
     progress = Quiet()
-    run_campaign(request_for(folder, engine="replay"), progress)
+    run_campaign(request_for(folder), progress)
     assert any(line.startswith("reused 4 of ") for line in progress.lines)
 
 
 def test_a_campaign_of_another_name_leaves_the_journal_as_it_is(tmp_path: Path) -> None:
     folder = write_project(tmp_path, *PROJECT)
-    path = run_campaign(request_for(folder, engine="replay"), Quiet())
+    path = run_campaign(request_for(folder), Quiet())
     before = path.read_bytes()
-    other = request_for(folder, engine="replay", only=("skip",), journal="compare.sqlite")
+    other = request_for(folder, only=("skip",), journal="compare.sqlite")
     for _ in range(2):
         assert run_campaign(other, Quiet()).name == "compare.sqlite"
     assert path.read_bytes() == before
