@@ -78,8 +78,8 @@ def more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     all_engines.cache_clear()
     yield folder
     all_engines.cache_clear()
-    for name in [name for name in sys.modules if name.endswith((".idle", ".telling"))]:
-        del sys.modules[name]
+    for name in (f"{kinds.__name__}.idle", f"{executors.__name__}.telling"):
+        sys.modules.pop(name, None)
 
 
 def test_the_command_line_knows_each_engine_by_its_file() -> None:
