@@ -87,6 +87,7 @@ def test_stored_attributes_are_known(owner: Any) -> None:
 def test_names_of_modules_and_classes_are_known() -> None:
     assert foresee("math.pi", math=math) is math.pi
     assert foresee("math.hypot(3, 4)", math=math) == 5.0
+    assert foresee("math.dist((0, x), (4, 0)) <= 5", math=math, x=3) is True
     assert foresee("owner.common", owner=Plain(1.0)) == 7
     assert foresee("table['a'][1]", table={"a": [1, 2]}) == 2
 
@@ -194,6 +195,12 @@ def test_a_function_of_the_program_is_not_called_whatever_its_name() -> None:
 def test_what_would_take_long_or_warn_or_raise_is_not_foreseen(text: str) -> None:
     with pytest.raises((UnforeseenError, IndexError)):
         foresee(text, big=1 << 300, word="text")
+
+
+@pytest.mark.parametrize("text", ["(1, 2)", "max((0, 1), (0, 2))", "(1, 2) == (1, 2)", "abs([1, 2])"])
+def test_tuples_are_arguments_alone(text: str) -> None:
+    with pytest.raises(UnforeseenError):
+        foresee(text)
 
 
 def test_a_variable_without_a_value_yet_is_no_global_of_that_name() -> None:

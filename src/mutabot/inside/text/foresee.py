@@ -29,7 +29,7 @@ _KNOWN = (*_CALCULATING, ast.Name, ast.Constant, ast.BoolOp, ast.IfExp, ast.Comp
 _LEFT_OUT = (ast.Pow, ast.LShift, ast.Invert, ast.Is, ast.IsNot)
 _CALLABLE = (
     abs, bool, float, int, max, min, round, math.acos, math.asin, math.atan, math.atan2, math.ceil,
-    math.copysign, math.cos, math.degrees, math.exp, math.fabs, math.floor, math.fmod, math.hypot,
+    math.copysign, math.cos, math.degrees, math.dist, math.exp, math.fabs, math.floor, math.fmod, math.hypot,
     math.isclose, math.log, math.pow, math.radians, math.sin, math.sqrt, math.tan, math.trunc,
 )  # fmt: skip
 #: functions that hand out the local names
@@ -82,7 +82,10 @@ class Form:
         functions = {name: _read(leaf, frame) for name, leaf in self._functions.items()}
         if not all(any(function is known for known in _CALLABLE) for function in functions.values()):
             raise UnforeseenError
-        return eval(self._code, {"__builtins__": {}, RUNTIME: [_HELPERS]}, values | functions)
+        found = eval(self._code, {"__builtins__": {}, RUNTIME: [_HELPERS]}, values | functions)
+        if type(found) is tuple:  # as ``max((a, b), (c, d))`` gives
+            raise UnforeseenError
+        return found
 
     def _check(self, values: Iterable[Any]) -> None:
         for value in values:
@@ -124,8 +127,15 @@ class _Leaves(ast.NodeTransformer):
             told = [argument for argument in node.args if _is_text(argument)]
         else:
             node.func = self._stand_in(node.func, self.functions)
-        node.args = [argument if argument in told else self.visit(argument) for argument in node.args]
+        node.args = [argument if argument in told else self._argument(argument) for argument in node.args]
         return node
+
+    def _argument(self, node: ast.expr) -> ast.expr:
+        """An argument; a tuple of values, such as a point, is one as well, but not the value of anything."""
+        if isinstance(node, ast.Tuple):
+            node.elts = [self.visit(item) for item in node.elts]
+            return node
+        return self.visit(node)  # type: ignore[no-any-return]
 
     def _stand_in(self, node: ast.expr, among: dict[str, ast.expr]) -> ast.expr:
         name = f"leaf_{len(self.found) + len(self.functions)}"
