@@ -190,7 +190,7 @@ def _inside(job: dict[str, Any]) -> None:
         "seconds": seconds,
         "problems": dict(hook.problems) if hook is not None else {},
         "imported": hook.imported if hook is not None else [],
-        "reached": len(hook.sightings.sightings()) if hook is not None and hook.sightings is not None else 0,
+        "reached": len(hook.sightings.seen()) if hook is not None and hook.sightings is not None else 0,
     }
     answer.write_text(json.dumps(data), encoding="utf-8")
 
