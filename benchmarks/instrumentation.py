@@ -120,9 +120,9 @@ def _hooked(folder: Path, text: ProgramText, *, record: bool = False) -> Callabl
         run: Callable[[int], Any] = _loaded(folder / text.file).run
     finally:
         hook.remove()
-    (hook.recording or hook.alternatives).install()
-    if hook.recording is not None:
-        hook.recording.start()
+    (hook.sightings or hook.alternatives).install()
+    if hook.sightings is not None:
+        hook.sightings.start()
     return run
 
 
