@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import os
 import sys
 import tempfile
 import time
@@ -201,6 +202,7 @@ def main() -> int:
     parser.add_argument("--chance", type=float, action="append", help="percent of runs that fail at random")
     parser.add_argument("--moves", type=int, default=4, help="size of the program")
     options = parser.parse_args()
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # they only take time here
     print("| chance | --confirm | campaigns | stopped | false kills, first | left, most in one "
           "| unstable | false survivors | interval held | s each |")  # fmt: skip
     print("|---|---|---:|---:|---:|---:|---:|---:|---:|---:|")
