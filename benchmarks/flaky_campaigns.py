@@ -188,8 +188,9 @@ def series(chance: float, count: int, moves: int, *, confirm: bool) -> Tally:
         for seed in range(count):
             try:
                 add(tally, campaign(folder, seed, confirm=confirm), truth)
-            except MutabotError:
+            except MutabotError as error:
                 tally.stopped += 1
+                print(f"\rstopped: {error}", file=sys.stderr)
             with contextlib.suppress(OSError):
                 print(f"\r{seed + 1}/{count} ", end="", file=sys.stderr, flush=True)
         tally.seconds = time.monotonic() - started

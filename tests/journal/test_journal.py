@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from analysis import samples
-from mutabot.border.lines import TestEnd
+from mutabot.border.test_end import TestEnd
 from mutabot.errors import JournalError
 from mutabot.journal.database import connect, guarded
 from mutabot.journal.journal import Journal

@@ -10,7 +10,7 @@ from mutabot.model.alternative import Sighting
 from mutabot.model.site import Span
 
 from .codec import from_data, to_data
-from .test_end import TestEnd as TestEnd  # noqa: PLC0414 - one of the lines
+from .test_end import TestEnd
 
 
 @dataclass(frozen=True, slots=True)

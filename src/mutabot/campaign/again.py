@@ -30,7 +30,7 @@ def replay_one(
     Raises SelectionError if the program no longer has the mutant, and what a baseline raises.
     """
     rounds = sorted(set(rounds))
-    request = replace(request, rounds=rounds[-1] + 1, engine="replay")
+    request = replace(request, rounds=rounds[-1] + 1)
     first = {(one.mutant, one.round): one for one in journal.outcomes()}
     with open_executor(request, progress) as opened:
         baseline, _ = take_baseline(request, opened, progress, repetitions=1)
@@ -38,9 +38,9 @@ def replay_one(
         looker = Looker(Campaign(request, baseline, opened, progress))
         for _ in run_controls(looker.campaign, [mutant]):
             pass
-        pairs = [(mutant, round) for round in rounds]
-        progress.stage("replay", len(pairs))
-        looker.run(pairs)
+        trials = [(mutant, round) for round in rounds]
+        progress.stage("replay", len(trials))
+        looker.run(trials)
     return [
         Replayed(round, first.get((mutant.id, round)), looker.found[mutant.id, round]) for round in rounds
     ]

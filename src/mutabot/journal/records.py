@@ -8,6 +8,11 @@ from mutabot.border.test_end import TestEnd
 from mutabot.model import Outcome
 from mutabot.model.outcome import same_end
 
+#: keys of the journal's meta
+DRAWING = "drawing"
+VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
+REPEATS = "repeats"
+
 
 @dataclass(frozen=True, slots=True)
 class BaselineTest:
@@ -54,10 +59,6 @@ class ControlEnd:
     detail: str
 
 
-#: key of the journal's meta
-DRAWING = "drawing"
-
-
 @dataclass(frozen=True, slots=True)
 class Stratum:
     """The mutants of one family in one role, of which some were drawn.
@@ -93,10 +94,6 @@ class Drawing:
     def stratum(self, family: str, role: str) -> Stratum | None:
         """That of a family in a role."""
         return next((one for one in self.strata if (one.family, one.role) == (family, role)), None)
-
-
-#: keys of the journal's meta
-VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,10 +176,6 @@ class Replayed:
     def agrees(self) -> bool | None:
         """Whether both ended alike; None if there is nothing to compare with."""
         return None if self.first is None else same_end(self.first, self.second)
-
-
-#: key of the journal's meta
-REPEATS = "repeats"
 
 
 @dataclass(frozen=True, slots=True)

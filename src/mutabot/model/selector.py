@@ -7,8 +7,6 @@ import re
 from .mutant import Mutant
 
 _NUMBERS = re.compile(r"\d+(-\d+)?(,\d+(-\d+)?)*")
-
-
 _LINE = re.compile(r"(.+):(\d+(?:-\d+)?)")
 
 

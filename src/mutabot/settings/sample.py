@@ -10,8 +10,6 @@ from decimal import ROUND_HALF_UP, Decimal
 from mutabot.errors import UsageError
 
 _SHARE = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)\s*%")
-
-
 _COUNT = re.compile(r"[0-9]{1,9}")
 
 

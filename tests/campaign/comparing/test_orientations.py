@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import TestEnd
+from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline, Hit
 from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.baseline.unfit import refuse_unfit

@@ -50,8 +50,6 @@ IDLE = """
 EXECUTOR = """
     from mutabot.campaign.workers.workers import Workers
 
-    NAME = "telling"
-
     class Telling(Workers):
         def __init__(self, request, tell):
             super().__init__(request.root, request.arguments, request.jobs)

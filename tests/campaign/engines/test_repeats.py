@@ -9,7 +9,7 @@ import pytest
 
 from mutabot.analysis.chance import false_kills
 from mutabot.analysis.results import Results, read_results
-from mutabot.border.lines import TestEnd
+from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.baseline.sharing import Sharing

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.border.job import Budget
-from mutabot.border.lines import Remark, TestEnd
+from mutabot.border.lines import Remark
+from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.observation import Observation, as_steady
 from mutabot.model import Mutant, Vocabulary
 

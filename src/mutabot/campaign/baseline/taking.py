@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mutabot.border.lines import Line, Remark, TestEnd
+from mutabot.border.lines import Line, Remark
+from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.moments import moments_in, note_moments, strides_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.workers.executor import Executor

@@ -6,7 +6,7 @@ import signal
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mutabot.border.lines import TestEnd
+from mutabot.border.test_end import TestEnd
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.observation import Observation, compare, farthest
 from mutabot.model import By, Kill, Mutant, Outcome, Verdict

@@ -18,10 +18,10 @@ from mutabot.border.lines import (
     Line,
     MutatedCall,
     SiteSeen,
-    TestEnd,
     Unbranched,
     Undiverged,
 )
+from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.observed import observation, place_of
 from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.campaign import Campaign

@@ -7,8 +7,6 @@ from collections.abc import Callable
 from mutabot.campaign.request import Request
 from mutabot.campaign.workers.workers import Workers
 
-NAME = "local"
-
 
 def executor(request: Request, tell: Callable[[str], None]) -> Workers:
     """As many processes as the request has ``jobs``. Raises JournalError where it cannot write."""

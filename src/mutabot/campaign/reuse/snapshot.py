@@ -15,11 +15,7 @@ from .counted import WRITTEN
 
 #: folders without anything that a test imports or reads; hidden ones are left out as well
 _FOLDERS = {"__pycache__", "node_modules", "site-packages"}
-
-
 _SUFFIXES = (".pyc", ".pyo", ".swp", "~", ".egg-info", ".dist-info")
-
-
 #: files for people and for other tools
 _FOR_PEOPLE = re.compile(
     r"(README|CHANGELOG|CHANGES|CONTRIBUTING|LICEN[SC]E|AUTHORS)(\.(md|rst|txt|adoc))?", re.IGNORECASE
@@ -27,8 +23,6 @@ _FOR_PEOPLE = re.compile(
 
 
 _FOR_TOOLS = {".gitignore", ".gitattributes", ".editorconfig", ".coverage", ".DS_Store"}
-
-
 _HASH = "#"
 
 

@@ -1,6 +1,6 @@
 """The contract of whatever runs tasks: worker processes on this machine, or on others.
 
-An executor is one file in ``campaign/executors/`` that names it and opens it. It only runs what it is given:
+An executor is one file in ``campaign/executors/`` that opens it. It only runs what it is given:
 which tasks there are, and what their results mean, is the engines' business.
 """
 

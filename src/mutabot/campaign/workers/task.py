@@ -17,12 +17,12 @@ from mutabot.border.lines import (
     Problem,
     SessionEnd,
     SiteSeen,
-    TestEnd,
     TestStart,
     TextsSeen,
     TokensHeld,
     Watched,
 )
+from mutabot.border.test_end import TestEnd
 
 from .said import last_line
 

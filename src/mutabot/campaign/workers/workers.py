@@ -16,11 +16,8 @@ from pathlib import Path
 from types import TracebackType
 
 from mutabot.border import stack
-from mutabot.border.lines import (
-    Line,
-    TestEnd,
-    TestStart,
-)
+from mutabot.border.lines import Line, TestStart
+from mutabot.border.test_end import TestEnd
 from mutabot.errors import JournalError
 
 from .forkserver import Copy, ForkServer

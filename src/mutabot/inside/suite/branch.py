@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import BranchEnd, TestEnd, Unbranched
+from mutabot.border.lines import BranchEnd, Unbranched
+from mutabot.border.test_end import TestEnd
 from mutabot.inside.footprint.deeds import Deed
 from mutabot.inside.footprint.footprints import Footprints
 from mutabot.inside.fork.lifeline import die_with_parent

@@ -15,7 +15,8 @@ import pytest
 from mutabot.border import stack
 from mutabot.border.codec import from_data
 from mutabot.border.job import Branching, Job
-from mutabot.border.lines import SessionEnd, TestEnd
+from mutabot.border.lines import SessionEnd
+from mutabot.border.test_end import TestEnd
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.footprint.footprints import Footprints

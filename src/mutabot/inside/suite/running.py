@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from mutabot.border.footprint import Footprint
-from mutabot.border.lines import TestEnd, TestStart
+from mutabot.border.lines import TestStart
+from mutabot.border.test_end import TestEnd
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.evidence import Evidence

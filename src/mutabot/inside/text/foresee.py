@@ -135,7 +135,8 @@ class _Leaves(ast.NodeTransformer):
         if isinstance(node, ast.Tuple):
             node.elts = [self.visit(item) for item in node.elts]
             return node
-        return self.visit(node)  # type: ignore[no-any-return]
+        visited: ast.expr = self.visit(node)
+        return visited
 
     def _stand_in(self, node: ast.expr, among: dict[str, ast.expr]) -> ast.expr:
         name = f"leaf_{len(self.found) + len(self.functions)}"
