@@ -7,13 +7,14 @@ name the one they belong to. A plug-in may name one that is not listed here: it 
 from __future__ import annotations
 
 ROBOT = "robot"
+MIDDLEWARE = "middleware"
 CLASSICAL = "classical"
 TEXT = "text"
 #: mutabot's own mutants, which nobody asks for
 CONTROL = "control"
 
 #: families of mutants of calls, and of the program text; in the order of their numbers
-OF_CALLS = (ROBOT,)
+OF_CALLS = (ROBOT, MIDDLEWARE)
 OF_TEXT = (CLASSICAL, TEXT)
 #: all that can be asked for without a plug-in
 FAMILIES = (*OF_CALLS, *OF_TEXT)

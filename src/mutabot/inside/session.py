@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
-from types import FrameType
+from types import CodeType, FrameType
 
 from mutabot.border.job import Budget, Job
 from mutabot.border.lines import Acted, CalledAtImport, Line, MutatedCall, SiteSeen
@@ -42,7 +42,7 @@ class Session:
     Attributes:
         job: what to do.
         pipe: where reports go.
-        locate: finds the site of a frame.
+        locate, locate_definition: find the site of a frame, and of a function that is called back.
         recorder: traces; always kept, since survivors are compared with the original.
         interception: what stands around the vocabulary's targets.
         passing: the way of the program's calls.
@@ -56,6 +56,7 @@ class Session:
     job: Job
     pipe: Pipe | Held
     locate: Callable[[FrameType | None], tuple[Span, Role] | None]
+    locate_definition: Callable[[CodeType], tuple[Span, Role] | None] = lambda code: None
     recorder: Recorder = field(init=False)
     interception: Interception = field(init=False)
     passing: Passing = field(init=False)
@@ -77,7 +78,13 @@ class Session:
         self.inspection = Inspection(self.job.vocabulary, self.job.inspect, self._send)
         self.interception = Interception(self.inspection.target_is_wrong)
         self.passing = Passing(
-            self.locate, self.recorder, self.instances, self.along, self._raised, self._on_end
+            self.locate,
+            self.recorder,
+            self.instances,
+            self.along,
+            self._raised,
+            self._on_end,
+            self.locate_definition,
         )
         self._bypasses = Bypasses(self.locate, self._calls_of, is_under_way)
 

@@ -28,7 +28,13 @@ class Python:
     def names(self, source: str) -> Mapping[Extent, Name]:
         """Names of all expressions: a call by the text of its callee, all others by their own."""
         names: dict[Extent, Name] = {}
-        _number(ast.parse(source), source.encode().splitlines(keepends=True), names)
+        tree = ast.parse(source)
+        _number(tree, source.encode().splitlines(keepends=True), names)
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                names.setdefault(_definition(node), Name(f"def {node.name}", 1))
+            elif isinstance(node, ast.Lambda):
+                names.setdefault((node.lineno, 0, node.lineno, 0), Name("lambda", 1))
         return names
 
     def file_of(self, frame: FrameType) -> str | None:
@@ -38,6 +44,11 @@ class Python:
     def position_of(self, frame: FrameType) -> Position:
         """The place of the instruction that is running."""
         return _position(frame.f_code, frame.f_lasti)
+
+    def definition_of(self, code: CodeType) -> Position:
+        """The place of a function's definition: its first line, which is that of its first decorator."""
+        first = code.co_firstlineno
+        return Position((first, 0, first, 0), code.co_qualname)
 
 
 FRONT_END = Python()
@@ -55,6 +66,12 @@ def _position(code: CodeType, instruction: int) -> Position:
         function = function.removesuffix(suffix)
     first = line or code.co_firstlineno
     return Position((first, column or 0, end_line or first, end_column or 0), function)
+
+
+def _definition(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Extent:
+    """What ``definition_of`` says of the function's code: the interpreter counts from the first decorator."""
+    first = min([node.lineno, *(one.lineno for one in node.decorator_list)])
+    return (first, 0, first, 0)
 
 
 def _number(tree: ast.Module, lines: list[bytes], names: dict[Extent, Name]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from mutabot.model.named import Named, Refused
 from mutabot.model.values.notation import Notation
 from mutabot.model.values.path import Path
 from mutabot.model.values.quantity import Quantity
@@ -86,6 +87,8 @@ class Operation:
         overrides: whether the methods of subclasses that override it belong to it.
         kind: what kind of target it has, which says how it is found at run time: the name of a file in
             ``inside.targets``; None for a Python callable.
+        named: what it is on a middleware; None for a Python callable.
+        refused: how the robot says by data that it refuses the command.
     """
 
     target: str
@@ -102,16 +105,18 @@ class Operation:
     overrides: bool = False
     idle: Any = None
     kind: str | None = None
+    named: Named | None = None
+    refused: tuple[Refused, ...] = ()
 
     @property
     def module(self) -> str:
         """The module part of the target."""
-        return self.target.partition(":")[0]
+        return "" if self.named is not None else self.target.partition(":")[0]
 
     @property
     def qualname(self) -> str:
         """The part of the target that is looked up in the module."""
-        return self.target.partition(":")[2]
+        return self.target if self.named is not None else self.target.partition(":")[2]
 
     @property
     def name(self) -> str:

@@ -45,6 +45,13 @@ class Locator:
             frame = frame.f_back
         return None
 
+    def locate_definition(self, code: CodeType) -> tuple[Span, Role] | None:
+        """Span and role of a function's definition; None for one of neither the program nor the oracle."""
+        role = self.role(code.co_filename)
+        if role is None:
+            return None
+        return self._span_at(code.co_filename, PYTHON.definition_of(code)), role
+
     def role(self, filename: str) -> Role | None:
         """Whose file it is; None for files of neither."""
         try:

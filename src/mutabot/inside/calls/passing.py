@@ -12,14 +12,14 @@ import inspect
 import sys
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
-from types import FrameType
+from types import CodeType, FrameType
 from typing import Any
 
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import Meter
 from mutabot.inside.readings.along import Along
 from mutabot.inside.readings.instances import Instances
-from mutabot.inside.targets.target import Handler
+from mutabot.inside.targets.target import Handler, Where
 from mutabot.model import Call, Reply, Role, Span
 from mutabot.model.values.quantity import Value
 from mutabot.operators.passage import Carried, run
@@ -43,6 +43,7 @@ class Passing:
         instances: notes which objects are used.
         along: reads probes along the way.
         on_error: told of each unmutated call that raised, with what it raised.
+        locate_definition: finds the site of a function that is called back; None likewise.
 
     Attributes:
         on_end: told of each call that is over, with what it read; None if nobody asks.
@@ -59,8 +60,10 @@ class Passing:
         along: Along,
         on_error: Callable[[BaseException, Call], None],
         on_end: Callable[[Call, Mapping[str, Value]], None] | None = None,
+        locate_definition: Callable[[CodeType], tuple[Span, Role] | None] = lambda code: None,
     ) -> None:
         self._locate = locate
+        self._locate_definition = locate_definition
         self._recorder = recorder
         self._instances = instances
         self._along = along
@@ -80,7 +83,11 @@ class Passing:
         """What stands around an operation."""
 
         def handle(
-            wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
+            wrapped: Callable[..., Any],
+            instance: Any,
+            args: tuple[Any, ...],
+            kwargs: dict[str, Any],
+            where: Where | None = None,
         ) -> Any:
             __tracebackhide__ = True
             if self.meter is None:
@@ -90,7 +97,7 @@ class Passing:
             if _under_way.get():
                 return wrapped(*args, **kwargs)
             self.meter.count()
-            site = self._locate(sys._getframe(1))
+            site = self._site(sys._getframe(1), where)
             if site is None:
                 return wrapped(*args, **kwargs)
             is_async = inspect.iscoroutinefunction(wrapped)
@@ -100,6 +107,11 @@ class Passing:
             return run(on_its_way, operator=self._operator)
 
         return handle
+
+    def _site(self, frame: FrameType, where: Where | None) -> tuple[Span, Role] | None:
+        if where is not None and where.code is not None:
+            return self._locate_definition(where.code)
+        return self._locate(frame)
 
     async def _pass(self, door: Door, site: tuple[Span, Role], is_async: bool, *made: Any) -> Any:
         """The phases of one call.

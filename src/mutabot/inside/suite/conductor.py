@@ -57,7 +57,8 @@ class Conductor:
     def __init__(self, job: Job, pipe: Pipe, server: CopyServer | None = None) -> None:
         self.locator = Locator(job.root, job.program, job.oracle)
         self._held = Held()
-        self.session = Session(job, pipe if server is None else self._held, self.locator.locate)
+        where = (self.locator.locate, self.locator.locate_definition)
+        self.session = Session(job, pipe if server is None else self._held, *where)
         self.footprints = Footprints(job, self.locator)
         self.running = Running(self.session, self.locator, self.footprints)
         self._server = server

@@ -15,12 +15,30 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from types import CodeType
 from typing import Any
 
 from mutabot.model import Operation
 
-#: ``handler(wrapped, instance, args, kwargs)``; what it returns is what the program receives
-Handler = Callable[[Callable[..., Any], Any, tuple[Any, ...], dict[str, Any]], Any]
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """Where a use of a target is, if the frames above it do not tell.
+
+    Attributes:
+        code: the function of the program's that is called back: its definition is the site. None if the site
+            is the nearest call of the program's, as everywhere else.
+        node: resolved name of the node.
+    """
+
+    code: CodeType | None = None
+    node: str | None = None
+
+
+#: ``handler(wrapped, instance, args, kwargs, where=None)``, as wrapt calls it, with a ``Where`` behind it if the
+#: frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a coroutine
+#: function
+Handler = Callable[..., Any]
 
 
 @dataclass(frozen=True, slots=True)

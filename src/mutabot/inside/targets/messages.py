@@ -1,0 +1,110 @@
+"""Targets that have a name on a middleware: topics, services, actions, parameters.
+
+Which name something has is known only when it is used, after remapping and namespaces. So the hooks of a
+middleware (``inside.ros``, one file each) ask here at each use, and let the handler they get stand around it.
+They are put in place as soon as the program imports the middleware.
+"""
+
+from __future__ import annotations
+
+import pkgutil
+import sys
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from types import ModuleType
+
+import wrapt
+
+from mutabot.model import Operation
+from mutabot.model.named import Form, Named
+
+from .target import Finding, Handler, Targets, Tell
+
+#: the rooms in which middlewares are: each file says in ``MODULE`` which module it is about, and has ``hook``
+_MIDDLEWARES = "mutabot.inside.ros"
+
+
+class Messages(Targets):
+    """The handlers of all operations that have a name.
+
+    Attributes:
+        names: the names under which something was done in this process, with their forms.
+    """
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell = tell
+        self._handlers: list[tuple[Named, Handler]] = []
+        self._found: dict[tuple[Form, str, str | None], Handler | None] = {}
+        self._undo: list[Callable[[], None]] = []
+        self._removed = False
+        self.names: set[tuple[Form, str]] = set()
+        _when_imported(self._hook)
+
+    def wrap(self, target: str, handler: Handler, overrides: object = None) -> None:
+        """Let a handler stand around what is done under a name; nothing is ever put in its place."""
+        self._handlers.append((Named.of(target), handler))
+        self._found.clear()
+
+    def find(self, form: Form, name: str, node: str | None) -> Handler | None:
+        """The handler for what is done in a node under a resolved name; None if the vocabulary names none.
+
+        The first operation that fits, in the order of the vocabulary.
+        """
+        key = (form, name, node)
+        try:
+            return self._found[key]
+        except KeyError:
+            self.names.add((form, name))
+            fitting = (handler for named, handler in self._handlers if named.fits(form, name, node))
+            found = self._found[key] = None if self._removed else next(fitting, None)
+            return found
+
+    def tell(self, target: str, finding: Finding) -> None:
+        """Say what is wrong with a target that was found."""
+        self._tell(target, finding)
+
+    def remove(self) -> None:
+        """Take all hooks away."""
+        self._removed = True
+        self._found.clear()
+        self._handlers.clear()
+        while self._undo:
+            self._undo.pop()()
+
+    def seek(self) -> Iterator[tuple[str, Finding]]:
+        """Names come and go with the nodes: there is nothing to import."""
+        return iter(())
+
+    def check(self, operation: Operation) -> Iterator[Finding]:
+        """What of an operation does not fit the installed definition of its type."""
+        for middleware in _loaded():
+            yield from middleware.check(operation)
+
+    def _hook(self, middleware: ModuleType) -> None:
+        if not self._removed:
+            self._undo.append(middleware.hook(self))
+
+
+def _loaded() -> Iterator[ModuleType]:
+    for middleware in _middlewares():
+        if middleware.MODULE in sys.modules:
+            yield middleware
+
+
+def _middlewares() -> Iterator[ModuleType]:
+    for found in pkgutil.iter_modules(import_module(_MIDDLEWARES).__path__):
+        if not found.name.startswith("_"):
+            yield import_module(f"{_MIDDLEWARES}.{found.name}")
+
+
+def _when_imported(hook: Callable[[ModuleType], None]) -> None:
+    for middleware in _middlewares():
+
+        def imported(_: ModuleType, middleware: ModuleType = middleware) -> None:
+            hook(middleware)
+
+        wrapt.register_post_import_hook(imported, middleware.MODULE)
+
+
+#: what this file is, to ``interception``
+KIND = Messages

@@ -1,0 +1,109 @@
+"""What operations are that have a name on a middleware: a topic to publish on, a service to call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from fnmatch import fnmatchcase
+
+
+class Form(StrEnum):
+    """What is done under a name, and between which sides.
+
+    Those that *write* have an argument that holds all of it, called ``message``, ``request`` or ``goal``; what
+    those that *read* bring is the result. Forms that set something up (a publisher, a timer) have arguments of
+    their own; see ``SETTING_UP``.
+    """
+
+    #: write ``message``
+    PUBLISH = "publish"
+    #: read a message, in a callback or by waiting for it
+    RECEIVE = "receive"
+    #: write ``request``, read the response
+    CALL = "call"
+    #: write ``goal``
+    GOAL = "goal"
+    #: read feedback, in a callback
+    FEEDBACK = "feedback"
+    #: read the result of an action
+    RESULT = "result"
+    #: write nothing: ask for an action to be cancelled
+    CANCEL = "cancel"
+    #: read the value of a parameter
+    PARAMETER = "parameter"
+    #: a timer's callback is called; named after its callback
+    TICK = "tick"
+    #: wait for the next turn of a rate; named after the node
+    SLEEP = "sleep"
+    #: read a transform, named ``base → tool``
+    TRANSFORM = "transform"
+    #: set up a publisher, a subscription, a client of a service or action, a timer, a rate
+    ADVERTISE = "advertise"
+    SUBSCRIBE = "subscribe"
+    CLIENT = "client"
+    TIMER = "timer"
+    RATE = "rate"
+
+
+#: forms whose argument holds all that is written, and its name
+WRITTEN = {Form.PUBLISH: "message", Form.CALL: "request", Form.GOAL: "goal"}
+#: forms that set something up, and the arguments that all middlewares give them: ``name`` is the name as the
+#: program gives it, ``depth`` the length of the queue, ``period`` is in seconds; qualities are those of ROS 2
+SETTING_UP = {
+    Form.ADVERTISE: ("name", "depth", "reliability", "durability", "deadline", "latch"),
+    Form.SUBSCRIBE: ("name", "depth", "reliability", "durability", "deadline"),
+    Form.CLIENT: ("name",),
+    Form.TIMER: ("period",),
+    Form.RATE: ("period",),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """An operation that is known by its name on a middleware.
+
+    Attributes:
+        form: what is done.
+        name: the resolved name, after remapping and with all namespaces, such as ``/arm/goal``; ``*`` stands
+            for any text.
+        node: resolved name of the nodes that it is meant of, with ``*`` likewise; None for all.
+        type: type of the message, service or action as ``package/Name``; None if the vocabulary does not say.
+    """
+
+    form: Form
+    name: str
+    node: str | None = None
+    type: str | None = None
+
+    @property
+    def target(self) -> str:
+        """The target of its operation: ``publish /arm/goal``."""
+        return f"{self.form} {self.name}" + (f" of {self.node}" if self.node is not None else "")
+
+    @classmethod
+    def of(cls, target: str) -> Named:
+        """What a target says, as ``target`` gives it; the type is not in it."""
+        rest, _, node = target.partition(" of ")
+        form, _, name = rest.partition(" ")
+        return cls(Form(form), name, node or None)
+
+    def fits(self, form: Form, name: str, node: str | None) -> bool:
+        """Whether something that is done in a node under a resolved name is meant."""
+        if form is not self.form or not fnmatchcase(name, self.name):
+            return False
+        return self.node is None or (node is not None and fnmatchcase(node, self.node))
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """How the answer to a command, or a message that follows it, says that the robot refuses it.
+
+    Attributes:
+        path: into the result, or into the message of the topic; ``""`` is the whole.
+        values: each of these is a refusal.
+        topic: resolved name of the topic on which it is said; None if the result itself says it.
+    """
+
+    path: str
+    values: tuple[object, ...]
+    topic: str | None = None
