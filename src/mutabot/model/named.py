@@ -10,9 +10,9 @@ from fnmatch import fnmatchcase
 class Form(StrEnum):
     """What is done under a name, and between which sides.
 
-    Those that *write* have an argument that holds all of it, called ``message``, ``request`` or ``goal``; what
-    those that *read* bring is the result. Forms that set something up (a publisher, a timer) have arguments of
-    their own; see ``SETTING_UP``.
+    Those that *write* have an argument that holds all of it, called ``message``, ``request`` or ``goal``;
+    what those that *read* bring is the result. Forms that set something up (a publisher, a timer) have
+    arguments of their own; see ``SETTING_UP``.
     """
 
     #: write ``message``

@@ -138,7 +138,7 @@ class Operator(Rule):
 
 def with_operation(variant: str, target: str) -> str:
     """The variant that tells two operations of one site apart which have quantities of the same name."""
-    return "+".join(part for part in (variant, target.partition(":")[2]) if part)
+    return "+".join(part for part in (variant, target.partition(":")[2] or target) if part)
 
 
 def subject_of(

@@ -111,9 +111,14 @@ def _child(node: Any, part: str | int) -> Any:
         return None
 
 
+#: keys whose text names an element
+_LABELS = ("call", "text", "topic", "service", "action", "parameter", "timer", "rate", "tf")
+
+
 def _label(node: Any) -> str | None:
     """What names an element of a list of tables."""
     if not isinstance(node, dict):
         return None
-    label = node.get("call", node.get("text"))
+    labels = (node[key] for key in _LABELS if key in node)
+    label = next(labels, None)
     return label if isinstance(label, str) and label else None

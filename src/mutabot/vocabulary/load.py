@@ -13,7 +13,7 @@ from mutabot.settings.mistakes import Check, raise_errors
 from mutabot.settings.toml_lines import KeyPath
 
 from .crosscheck import Read, check_operations
-from .operations import check_targets, read_clock, read_operation, read_probe
+from .operations import check_targets, read_clock, read_operations, read_probe
 from .schema import VocabularyTable
 
 _SHIPPED = Path(__file__).parent / "shipped"
@@ -70,9 +70,9 @@ class _Merged:
         if not document.data:
             check.error((), "is empty; a vocabulary names operations: [[operation]]")
         for index, raw in enumerate(table.operation):
-            operation = read_operation(check, raw, ("operation", index))
-            if operation is not None and self._counts(operation.target, is_shipped):
-                self._add_operation(check, operation, index)
+            for operation in read_operations(check, raw, ("operation", index)):
+                if self._counts(operation.target, is_shipped):
+                    self._add_operation(check, operation, index)
         for name in ("refusals", "checks", "failures"):
             check_targets(check, getattr(table, name), (name,))
             getattr(self, name).extend(getattr(table, name))
@@ -95,9 +95,10 @@ class _Merged:
         if known is None:
             self.read[operation.target] = (operation, check, place)
         elif _sourceless(known[0]) != _sourceless(operation):
-            check.error(
-                (*place, "call"), f"is described twice, differently: also in {_file_of(known[0].source)}"
-            )
+            is_call = operation.named is None
+            where, what = ((*place, "call"), "") if is_call else (place, f"{operation.target} ")
+            also = _file_of(known[0].source)
+            check.error(where, f"{what}is described twice, differently: also in {also}")
 
     def _add_clock(self, check: Check, clock: Clock | None) -> None:
         if clock is None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 from itertools import product
 from typing import Any
 
-from mutabot.model import Case, Mode, Path, Quantity
+from mutabot.model import Case, Mode, Path, Pattern, Quantity
 from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
 
@@ -92,6 +92,32 @@ def cases_of(
                 )
     combined = product(*([Case(argument, value) for value in found] for argument, found in values.items()))
     return [(cases, tuple(_decided(quantity, cases) for quantity in quantities)) for cases in combined]
+
+
+def in_cases(
+    check: Check,
+    arguments: tuple[Quantity, ...],
+    result: tuple[Quantity, ...],
+    opposite: str | None,
+    source: str,
+    place: KeyPath,
+) -> tuple[tuple[Quantity, ...], tuple[Pattern, ...]]:
+    """The arguments of an operation, or its commands if an argument decides about their modes."""
+    found = cases_of(check, arguments, (*place, "arguments"))
+    if not found[0][0]:
+        return found[0][1], ()
+    patterns = [
+        Pattern(
+            text=name_of(cases),
+            arguments=quantities,
+            result=result,
+            opposite=opposite,
+            source=f"{source} · {name_of(cases)}",
+            when=cases,
+        )
+        for cases, quantities in found
+    ]
+    return (), tuple(patterns)
 
 
 def name_of(cases: Sequence[Case]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from mutabot.errors import nearest_name
 from mutabot.model import Clock, Operation, Path, Pattern, Probe, Quantity
 from mutabot.model.values.signature import parse_signature
 from mutabot.model.values.units import UNITS, Dimension, dimension_of
@@ -11,11 +12,22 @@ from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
 
 from .idle import read_idle
-from .modes import Undecided, cases_of, name_of
+from .modes import Undecided, in_cases
+from .named.entries import is_named, read_named
+from .named.names import NAMING
 from .patterns import read_patterns
 from .quantities import read_arguments, read_result
 from .schema import ClockTable, OperationTable, ProbeTable
 from .targets import target_fault
+
+
+def read_operations(check: Check, raw: Any, place: KeyPath) -> list[Operation]:
+    """One ``[[operation]]``: an operation, or all that is done under a name. Mistakes are noted."""
+    if is_named(raw):
+        return read_named(check, raw, place)
+    _check_one_name(check, raw, place)
+    operation = read_operation(check, raw, place)
+    return [operation] if operation is not None else []
 
 
 def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
@@ -31,7 +43,7 @@ def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
     patterns = read_patterns(check, table.patterns, (*place, "patterns"), source, arguments)
     message = _read_message(check, table, (arguments, *(one.arguments for one in patterns)), place)
     if table.message is None and not table.patterns:
-        arguments, patterns = _in_cases(check, table, arguments, result, source, place)
+        arguments, patterns = in_cases(check, arguments, result, table.opposite, source, place)
     if table.overrides and "." not in table.call.partition(":")[2]:
         check.error((*place, "overrides"), f"{table.call} is no method of a class, so nothing overrides it")
     operation = Operation(
@@ -54,6 +66,20 @@ def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
     if not (table.arguments or table.result or table.message or operation.command):
         check.error(place, "says nothing: no arguments, no result, no patterns, and command = false")
     return operation
+
+
+def _check_one_name(check: Check, raw: Any, place: KeyPath) -> None:
+    """Note a callable that is to have a name on a middleware as well, and a misspelt key for such a name."""
+    if not isinstance(raw, dict):
+        return
+    for key in NAMING:
+        if key in raw:
+            check.error((*place, key), f"an operation is known by one thing: either call or {key}")
+    if "call" not in raw:
+        for key in raw:
+            near = None if key in OperationTable.model_fields else nearest_name(key, ("call", *NAMING))
+            if near in NAMING:
+                check.unknown((*place, key), "key", key, NAMING)
 
 
 def read_clock(check: Check, raw: dict[str, Any], place: KeyPath) -> Clock | None:
@@ -102,32 +128,6 @@ def source_of(check: Check, place: KeyPath, name: str) -> str:
     """``robot.toml:12 · robot:Arm.move_by``"""
     line = check.document.line(place)
     return f"{check.document.file}{f':{line}' if line is not None else ''} · {name}"
-
-
-def _in_cases(
-    check: Check,
-    table: OperationTable,
-    arguments: tuple[Quantity, ...],
-    result: tuple[Quantity, ...],
-    source: str,
-    place: KeyPath,
-) -> tuple[tuple[Quantity, ...], tuple[Pattern, ...]]:
-    """The arguments of an operation, or its commands if an argument decides about their modes."""
-    found = cases_of(check, arguments, (*place, "arguments"))
-    if not found[0][0]:
-        return found[0][1], ()
-    patterns = [
-        Pattern(
-            text=name_of(cases),
-            arguments=quantities,
-            result=result,
-            opposite=table.opposite,
-            source=f"{source} · {name_of(cases)}",
-            when=cases,
-        )
-        for cases, quantities in found
-    ]
-    return (), tuple(patterns)
 
 
 def _read_message(

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from mutabot.model import Path, Quantity
+from mutabot.model.values.path import Step
 from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
 
 from .axes import slice_of, split_axes, spread
 from .modes import ModeChoice, Undecided, read_mode_choice
-from .rules import default_unit, default_values, faults
+from .rules import SIDES, default_unit, default_values, faults
 from .schema import QuantityTable
 
 
@@ -29,13 +31,37 @@ def read_result(check: Check, raw: dict[str, Any] | None, place: KeyPath) -> tup
     return _read_paths(check, raw, place, written=False)
 
 
+def read_fields(
+    check: Check, raw: dict[str, Any] | None, place: KeyPath, root: str | None, sides: tuple[str, str]
+) -> tuple[Quantity, ...]:
+    """The quantities of a message's fields, whose keys are bare paths such as ``pose.position.x``.
+
+    ``root`` is the argument that holds a message that is written; None for one that is read. ``sides`` are
+    where quantities stand that are written, and those that are read.
+    """
+    found = _read_paths(check, raw or {}, place, written=root is not None, sides=sides)
+    return tuple(replace(quantity, path=in_message(quantity.path, root)) for quantity in found)
+
+
+def in_message(path: Path, root: str | None) -> Path:
+    """The path to a field that is named by its bare path."""
+    return Path(root, (Step(attribute=path.root), *path.steps))
+
+
 def is_quantity(raw: dict[str, Any]) -> bool:
     """Whether a table is a quantity, rather than a table of paths."""
     return isinstance(raw.get("kind"), str) or not all(isinstance(item, dict) for item in raw.values())
 
 
 def read_quantity(
-    check: Check, raw: Any, place: KeyPath, path: Path, *, written: bool, name: str | None = None
+    check: Check,
+    raw: Any,
+    place: KeyPath,
+    path: Path,
+    *,
+    written: bool,
+    name: str | None = None,
+    sides: tuple[str, str] = SIDES,
 ) -> Iterator[Quantity]:
     """The quantity of a table, or one per axis where a slice has several; mistakes are noted."""
     raw, choice = read_mode_choice(check, raw, place)
@@ -45,7 +71,7 @@ def read_quantity(
     axes = split_axes(table.axis) if table.axis is not None else None
     several = axes is not None and len(axes) > 1
     vector = slice_of(path) is not None and not several
-    found = list(faults(table, written=written, vector=vector))
+    found = list(faults(table, written=written, vector=vector, sides=sides))
     for fault in found:
         where = (*place, fault.key)
         if fault.known is None:
@@ -64,16 +90,18 @@ def read_quantity(
         check.error((*place, "axis"), str(error))
 
 
-def _read_paths(check: Check, raw: dict[str, Any], place: KeyPath, *, written: bool) -> tuple[Quantity, ...]:
+def _read_paths(
+    check: Check, raw: dict[str, Any], place: KeyPath, *, written: bool, sides: tuple[str, str] = SIDES
+) -> tuple[Quantity, ...]:
     quantities: list[Quantity] = []
     for text, item, where in _leaves(raw, "", place):
         if not isinstance(item, dict):
             check.error(where, f"expected a table such as {{ kind = … }}, got {shown(item)}")
             continue
-        path = _path(check, text, where, written)
+        path = _path(check, text, where, written) if sides is SIDES else _field(check, text, where)
         if path is None:
             continue
-        for quantity in read_quantity(check, item, where, path, written=written):
+        for quantity in read_quantity(check, item, where, path, written=written, sides=sides):
             if any(quantity.name == other.name for other in quantities):
                 check.error(where, f"{quantity.name} is described twice")
             quantities.append(quantity)
@@ -108,8 +136,22 @@ def _path(check: Check, text: str, place: KeyPath, written: bool) -> Path | None
             "changed. Name an argument of the call; what lies in the object is set by some other call",
         )
         return None
+    return _with_slice_at_end(check, path, place)
+
+
+def _field(check: Check, text: str, place: KeyPath) -> Path | None:
+    """The bare path to a field of a message, whose root is the message's own field."""
+    try:
+        path = Path.parse(text.removeprefix("."), rooted=True)
+    except ValueError as error:
+        check.error(place, str(error).replace("an argument's name", "the name of a field"))
+        return None
+    return _with_slice_at_end(check, path, place)
+
+
+def _with_slice_at_end(check: Check, path: Path, place: KeyPath) -> Path | None:
     if any(step.bounds is not None for step in path.steps[:-1]):
-        check.error(place, f"path {text!r}: a slice can only be the last step")
+        check.error(place, f"path {str(path)!r}: a slice can only be the last step")
         return None
     return path
 

@@ -19,6 +19,8 @@ from .schema import QuantityTable
 _MOVED = (Kind.TRANSLATION, Kind.ROTATION)
 _AXES_IN_SHORT = ("x", "y", "z", "j1 … j12")
 _WITH_AXIS = MEASURED - {Kind.DURATION} - WHOLE
+#: where the quantities of a callable stand: those that are written, and those that are read
+SIDES = ("arguments", "result")
 #: how a kind that stands on the wrong side would be written there
 _AS_ARGUMENT = {
     Kind.POSITION: '; a commanded position is kind = "translation" with mode = "to"',
@@ -44,12 +46,15 @@ class Fault:
     known: tuple[str, ...] | None = None
 
 
-def faults(table: QuantityTable, *, written: bool, vector: bool = False) -> Iterator[Fault]:
+def faults(
+    table: QuantityTable, *, written: bool, vector: bool = False, sides: tuple[str, str] = SIDES
+) -> Iterator[Fault]:
     """The rules a quantity breaks.
 
-    ``written`` tells whether it is an argument; ``vector``, whether it is a slice that stays one quantity.
+    ``written`` tells whether it is an argument; ``vector``, whether it is a slice that stays one quantity;
+    ``sides``, where quantities stand that are written, and those that are read.
     """
-    side = list(_side(table, written))
+    side = list(_side(table, written, sides))
     if side:
         yield from side
         return
@@ -80,18 +85,18 @@ def default_values(table: QuantityTable) -> tuple[Any, ...] | None:
     return tuple(table.values)
 
 
-def _side(table: QuantityTable, written: bool) -> Iterator[Fault]:
-    kind = table.kind
+def _side(table: QuantityTable, written: bool, sides: tuple[str, str]) -> Iterator[Fault]:
+    kind, (of_written, of_read) = table.kind, sides
     if written and kind not in WRITTEN:
         yield Fault(
             "kind",
-            f"a {kind} is read from the robot, so it belongs to result, not to arguments"
+            f"a {kind} is read from the robot, so it belongs to {of_read}, not to {of_written}"
             f"{_AS_ARGUMENT.get(kind, '')}",
         )
     if not written and kind not in READ:
         yield Fault(
             "kind",
-            f"{_a(kind)} is sent to the robot, so it belongs to arguments, not to result"
+            f"{_a(kind)} is sent to the robot, so it belongs to {of_written}, not to {of_read}"
             f"{_AS_RESULT.get(kind, '')}",
         )
 

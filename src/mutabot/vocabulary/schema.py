@@ -69,6 +69,35 @@ class OperationTable(Table):
     patterns: list[Any] = Field(default_factory=list)
 
 
+class NamedTable(Table):
+    """One ``[[operation]]`` that has a name on a middleware; which keys go together is checked later."""
+
+    topic: str | None = None
+    direction: str | None = None
+    service: str | None = None
+    action: str | None = None
+    parameter: str | None = None
+    timer: str | None = None
+    rate: str | None = None
+    tf: str | None = None
+    type: str | None = None
+    node: str | None = None
+    fields: dict[str, Any] | None = None
+    request: dict[str, Any] | None = None
+    response: dict[str, Any] | None = None
+    goal: dict[str, Any] | None = None
+    feedback: dict[str, Any] | None = None
+    result: dict[str, Any] | None = None
+    value: dict[str, Any] | None = None
+    command: bool | None = None
+    current: str | None = None
+    opposite: str | None = None
+    idle: Any = None
+    refusals: list[str] = Field(default_factory=list)
+    message: str | None = None
+    patterns: list[Any] = Field(default_factory=list)
+
+
 class ClockTable(Table):
     """``clock = { tick = "module:qualname", time = "self.time", unit = "s" }``, or with a fixed ``step``"""
 

@@ -1,7 +1,8 @@
 """Names of callables and exceptions: ``module:qualified.name``.
 
-An operation that is no Python callable would have a key of its own in place of ``call``, a form of its
-own here, and the kind that finds it at run time in ``Operation.kind`` (see ``inside.targets.target``).
+An operation that is no Python callable has a key of its own in place of ``call``, as those with a name on a
+middleware have (``vocabulary.named``), and the kind that finds it at run time in ``Operation.kind`` (see
+``inside.targets.target``).
 """
 
 from __future__ import annotations

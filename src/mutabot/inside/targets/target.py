@@ -35,9 +35,9 @@ class Where:
     node: str | None = None
 
 
-#: ``handler(wrapped, instance, args, kwargs, where=None)``, as wrapt calls it, with a ``Where`` behind it if the
-#: frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a coroutine
-#: function
+#: ``handler(wrapped, instance, args, kwargs, where=None)``, as wrapt calls it, with a ``Where`` behind it if
+#: the frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a
+#: coroutine function
 Handler = Callable[..., Any]
 
 

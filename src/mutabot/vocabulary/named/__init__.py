@@ -1,0 +1,1 @@
+"""Operations that have a name on a middleware, as vocabularies write them."""

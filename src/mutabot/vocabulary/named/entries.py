@@ -1,0 +1,236 @@
+"""Entries that name an operation on a middleware, turned into operations.
+
+One entry stands for all that is done under its name: ``topic`` with ``direction = "publish"`` for publishing
+and for setting up the publisher, an action for its goal, feedback, result and cancelling.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from mutabot.model import Operation, Path, Pattern, Quantity
+from mutabot.model.named import WRITTEN, Form, Named
+from mutabot.settings.mistakes import Check
+from mutabot.settings.toml_lines import KeyPath
+from mutabot.vocabulary.idle import read_idle
+from mutabot.vocabulary.modes import Undecided, in_cases
+from mutabot.vocabulary.patterns import read_patterns
+from mutabot.vocabulary.quantities import in_message, read_fields, read_quantity
+from mutabot.vocabulary.schema import NamedTable
+from mutabot.vocabulary.targets import target_fault
+
+from .names import DIRECTIONS, NAMING, forms_of, name_of, node_of, type_of
+
+#: the kind of target that all of them have
+_KIND = "messages"
+#: the tables in which quantities stand, by what is done: what it writes, and what it reads
+_QUANTITIES: Mapping[Form, tuple[str | None, str | None]] = {
+    Form.PUBLISH: ("fields", None),
+    Form.RECEIVE: (None, "fields"),
+    Form.CALL: ("request", "response"),
+    Form.GOAL: ("goal", None),
+    Form.FEEDBACK: (None, "feedback"),
+    Form.RESULT: (None, "result"),
+    Form.PARAMETER: (None, "value"),
+    Form.TRANSFORM: (None, "fields"),
+}
+_PUBLISHED = ("what is published", "what is received")
+_GOAL = ("goal", "feedback or result")
+_NOTHING = ("what is sent", "what is read")
+#: how mistakes call what is written, and what is read
+_SIDES: Mapping[Form, tuple[str, str]] = {
+    Form.PUBLISH: _PUBLISHED,
+    Form.RECEIVE: _PUBLISHED,
+    Form.CALL: ("request", "response"),
+    Form.GOAL: _GOAL,
+    Form.FEEDBACK: _GOAL,
+    Form.RESULT: _GOAL,
+    Form.PARAMETER: _NOTHING,
+    Form.TRANSFORM: _NOTHING,
+}
+#: forms that make the robot do something, unless the vocabulary says otherwise
+_COMMANDS = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL, Form.CANCEL})
+#: keys of those forms alone that write a message
+_OF_COMMANDS = ("command", "opposite", "idle", "message", "patterns", "current", "refusals")
+#: keys for quantities
+_TABLES = tuple(dict.fromkeys(key for pair in _QUANTITIES.values() for key in pair if key is not None))
+
+
+def is_named(raw: Any) -> bool:
+    """Whether an entry names an operation on a middleware, rather than a callable."""
+    return isinstance(raw, dict) and "call" not in raw and any(key in raw for key in NAMING)
+
+
+def read_named(check: Check, raw: Any, place: KeyPath) -> list[Operation]:
+    """The operations of an entry; none if not even its name can be told. Mistakes are noted."""
+    table = check.table(NamedTable, raw, place, salvage=True)
+    key = _naming_key(check, table, place) if table is not None else None
+    if table is None or key is None:
+        return []
+    named = _named(check, table, key, place)
+    if named is None:
+        return []
+    forms = forms_of(key, table.direction)
+    _check_keys(check, table, key, forms[0], place)
+    for index, target in enumerate(table.refusals):
+        fault = target_fault(target)
+        if fault is not None:
+            check.error((*place, "refusals", index), fault)
+    return [_operation(check, table, replace(named, form=form), form is forms[0], place) for form in forms]
+
+
+def _naming_key(check: Check, table: NamedTable, place: KeyPath) -> str | None:
+    """Which key names the operation; None if there are several, which is noted."""
+    keys = [key for key in NAMING if getattr(table, key) is not None]
+    if len(keys) > 1:
+        check.error((*place, keys[1]), f"an operation has one name: either {' or '.join(keys)}")
+    return keys[0] if len(keys) == 1 else None
+
+
+def _named(check: Check, table: NamedTable, key: str, place: KeyPath) -> Named | None:
+    """The name, with the first of the forms; None if it has mistakes, which are noted."""
+    before = len(check.errors)
+    if key == "topic":
+        _check_direction(check, table.direction, place)
+    read: dict[str, str | None] = {}
+    for part, read_part in ((key, name_of), ("node", _node), ("type", _type)):
+        text = getattr(table, part)
+        try:
+            read[part] = read_part(part, text) if text is not None else None
+        except ValueError as error:
+            check.error((*place, part), str(error))
+    name = read.get(key)
+    if name is None or len(check.errors) > before:
+        return None
+    return Named(forms_of(key, table.direction)[0], name, read["node"], read["type"])
+
+
+def _node(key: str, text: str) -> str:
+    return node_of(text)
+
+
+def _type(key: str, text: str) -> str:
+    return type_of(text)
+
+
+def _check_direction(check: Check, direction: str | None, place: KeyPath) -> None:
+    if direction is None:
+        check.error(place, 'a topic needs direction = "publish" or "receive"')
+    elif direction not in DIRECTIONS:
+        check.unknown((*place, "direction"), "direction", direction, DIRECTIONS)
+
+
+def _check_keys(check: Check, table: NamedTable, key: str, form: Form, place: KeyPath) -> None:
+    """Keys that say nothing of an operation with such a name."""
+    fitting = {one for each in forms_of(key, table.direction) for one in _QUANTITIES.get(each, ()) if one}
+    what = _what(key, table.direction)
+    for other in _TABLES:
+        if getattr(table, other) is not None and other not in fitting:
+            instead = f"; its quantities stand in {' and '.join(sorted(fitting))}" if fitting else ""
+            check.error((*place, other), f"{what} has no {other}{instead}")
+    if key != "topic" and table.direction is not None:
+        check.error((*place, "direction"), f"{what} has no direction, only a topic has")
+    if form not in WRITTEN:
+        for other in _OF_COMMANDS:
+            if getattr(table, other) not in (None, []) and not (other == "command" and not table.command):
+                check.error((*place, other), f"{what} sends nothing, so it has no {other}")
+
+
+def _operation(check: Check, table: NamedTable, named: Named, is_main: bool, place: KeyPath) -> Operation:
+    """One of the operations of an entry."""
+    root = WRITTEN.get(named.form)
+    written, read = _QUANTITIES.get(named.form, (None, None))
+    raw = getattr(table, written) if written else None
+    arguments = read_fields(check, raw, (*place, written or ""), root, _SIDES[named.form]) if raw else ()
+    result = _read(check, table, named.form, read, place) if read else ()
+    source = _source(check, place, named)
+    operation = Operation(
+        target=named.target,
+        arguments=arguments,
+        result=result,
+        command=_is_command(table, named.form, arguments, result),
+        source=source,
+        kind=_KIND,
+        named=named,
+    )
+    if not is_main or root is None:
+        return operation
+    patterns = read_patterns(check, table.patterns, (*place, "patterns"), source, arguments)
+    if table.message is None and not table.patterns:
+        arguments, patterns = in_cases(check, arguments, result, table.opposite, source, place)
+    return replace(
+        operation,
+        arguments=tuple(one for one in arguments if not isinstance(one, Undecided)),
+        current=table.current,
+        opposite=table.opposite,
+        refusals=tuple(table.refusals),
+        idle=read_idle(check, table.idle, (*place, "idle")),
+        message=_message(check, table, root, place),
+        patterns=tuple(_in_message(pattern, root) for pattern in patterns),
+    )
+
+
+def _read(check: Check, table: NamedTable, form: Form, key: str, place: KeyPath) -> tuple[Quantity, ...]:
+    """What is read: a value as a whole, or fields of a message."""
+    raw = getattr(table, key)
+    if form is Form.PARAMETER and raw is not None:
+        where = (*place, key)
+        return tuple(read_quantity(check, raw, where, Path(), written=False, name=key, sides=_SIDES[form]))
+    return read_fields(check, raw, (*place, key), None, _SIDES[form])
+
+
+def _message(check: Check, table: NamedTable, root: str, place: KeyPath) -> str | None:
+    """The path to the field with a text command; None if there is none, or a mistake, which is noted."""
+    if table.message is None:
+        if table.patterns:
+            check.error((*place, "patterns"), 'needs message = "…": the field that holds the command')
+        return None
+    try:
+        return _in_root(table.message, root)
+    except ValueError:
+        check.error((*place, "message"), f"{table.message!r} is not the name of a field")
+        return None
+
+
+def _in_message(pattern: Pattern, root: str) -> Pattern:
+    """A command whose arguments beside the text, and whose cases, name fields by their bare paths."""
+
+    def placed(quantity: Quantity) -> Quantity:
+        if quantity.name in pattern.fields or str(quantity.path) != quantity.name:
+            return quantity  # a field of the text, or one that all commands have
+        return replace(quantity, path=in_message(quantity.path, root))
+
+    return replace(
+        pattern,
+        arguments=tuple(map(placed, pattern.arguments)),
+        when=tuple(replace(case, argument=_in_root(case.argument, root)) for case in pattern.when),
+    )
+
+
+def _in_root(text: str, root: str) -> str:
+    return str(in_message(Path.parse(text, rooted=True), root))
+
+
+def _is_command(
+    table: NamedTable, form: Form, arguments: tuple[Quantity, ...], result: tuple[Quantity, ...]
+) -> bool:
+    """Whether the robot does something, unless the vocabulary says so itself."""
+    if form not in _COMMANDS:
+        return False
+    if table.command is not None:
+        return table.command
+    return form is not Form.CALL or bool(arguments or table.patterns) or not result
+
+
+def _what(key: str, direction: str | None) -> str:
+    if key == "topic":
+        return f"a topic with direction = {direction!r}".replace("'", '"')
+    return {"action": "an action", "tf": "a transform"}.get(key, f"a {key}")
+
+
+def _source(check: Check, place: KeyPath, named: Named) -> str:
+    """``robot.toml:12 · publish /arm/goal``"""
+    line = check.document.line(place)
+    return f"{check.document.file}{f':{line}' if line is not None else ''} · {named.target}"
