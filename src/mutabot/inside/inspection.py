@@ -106,14 +106,15 @@ class Inspection:
                 self.tell(operation.source, Finding("overrides", "; ".join(uncovered), is_remark=True))
 
     def _check_current(self, operation: Operation) -> None:
-        if operation.current is None or operation.target not in self._askers:
+        if operation.target not in self._askers:
             return
-        try:
-            why = why_not_asked(operation.current, self._askers[operation.target])
-        except (NotFoundError, AttributeError, KeyError):  # it is told as an operation of its own
-            return
-        if why is not None:
-            self.tell(operation.source, Finding("current", why))
+        for current in operation.currents:
+            try:
+                why = why_not_asked(current, self._askers[operation.target])
+            except (NotFoundError, AttributeError, KeyError):  # it is told as an operation of its own
+                continue
+            if why is not None:
+                self.tell(operation.source, Finding("current", why))
 
     def _check_idle(self) -> None:
         """Functions that make the answer of a command that is left out."""

@@ -109,8 +109,9 @@ class Session:
 
     def _handler(self, operation: Operation) -> Handler:
         """What stands around an operation: a door of its own, and the way that all calls go."""
-        reading = self.job.vocabulary.operation(operation.current or "")
-        door = Door(operation, reading, partial(self.inspection.path_is_wrong, operation))
+        vocabulary = self.job.vocabulary
+        readings = {name: vocabulary.operation(name) for name in operation.currents}
+        door = Door(operation, readings, partial(self.inspection.path_is_wrong, operation))
         door.handles = handles_of(self.job.vocabulary)
         self._doors.append(door)
         return self.passing.handler(door)

@@ -66,6 +66,13 @@ class Call:
     payload: Any = None
     away: str = ""
 
+    @property
+    def is_command(self) -> bool:
+        """Whether the robot is made to do something."""
+        if self.pattern is not None and self.pattern.command is not None:
+            return self.pattern.command
+        return self.operation.command
+
     def with_value(self, quantity: Quantity, value: Value) -> Call:
         """The same call with another value for one quantity."""
         return replace(self, values={**self.values, quantity.name: value})

@@ -16,12 +16,14 @@ class Case:
     """A value of an argument, on which the meaning of a call depends.
 
     Attributes:
-        argument: path to the argument.
+        argument: path to the argument, or into ``self``.
         value: the value as text: ``true``, ``false``, ``none``, or what it prints.
+        key: the key of the vocabulary that says so: ``mode``, or ``when`` for calls that may have any value.
     """
 
     argument: str
     value: str
+    key: str = "mode"
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +40,8 @@ class Pattern:
         source: where the vocabulary says so (``robot.toml:12 · link:send · lift/{height}``).
         when: the values of arguments for which a call is this command.
         base: the notation of the text alone; None without cases, or if there is no text.
+        command, current, refused: the same as those of an operation, where an entry of the vocabulary has it
+            for these calls alone; without a word of its own, that of the operation holds.
     """
 
     text: str
@@ -48,6 +52,9 @@ class Pattern:
     idle: Any = None
     when: tuple[Case, ...] = ()
     base: str | None = None
+    command: bool | None = None
+    current: str | None = None
+    refused: tuple[Refused, ...] = ()
 
     @property
     def notation(self) -> str | None:
@@ -89,6 +96,8 @@ class Operation:
             ``inside.targets``; None for a Python callable.
         named: what it is on a middleware; None for a Python callable.
         refused: how the robot says by data that it refuses the command.
+        is_partial: whether only those calls are meant that are one of its patterns; all others are left
+            alone, as if the vocabulary did not name the callable.
     """
 
     target: str
@@ -107,6 +116,7 @@ class Operation:
     kind: str | None = None
     named: Named | None = None
     refused: tuple[Refused, ...] = ()
+    is_partial: bool = False
 
     @property
     def module(self) -> str:
@@ -133,12 +143,26 @@ class Operation:
                 if quantity.name not in fields:
                     found.setdefault(quantity.path.root or "", f"arguments.{quantity.name}")
             for case in pattern.when:
-                found.setdefault(Path.parse(case.argument, rooted=True).root or "", "mode")
+                root = Path.parse(case.argument, rooted=True).root or ""
+                if root != "self":
+                    found.setdefault(root, case.key)
         if self.message is not None:
             root = Path.parse(self.message, rooted=True).root or ""
             if root != "self":
                 found[root] = "message"
         return found
+
+    @property
+    def currents(self) -> tuple[str, ...]:
+        """All operations that tell where the robot is, for any of its calls."""
+        named = (self.current, *(pattern.current for pattern in self.patterns))
+        return tuple(dict.fromkeys(name for name in named if name is not None))
+
+    @property
+    def opposites(self) -> tuple[str, ...]:
+        """All operations that do the opposite of any of its calls; the opposite of a text is another text."""
+        of_cases = (pattern.opposite for pattern in self.patterns if pattern.notation is None)
+        return tuple(dict.fromkeys(name for name in (self.opposite, *of_cases) if name is not None))
 
     def pattern(self, text: str | None) -> Pattern | None:
         """The pattern with this notation, or None."""

@@ -54,9 +54,22 @@ class Subject:
     @property
     def is_command(self) -> bool:
         """Whether the robot does something when the call is made."""
+        if self.pattern is not None and self.pattern.command is not None:
+            return self.pattern.command
         if self.pattern is not None and self.pattern.result and not self.pattern.arguments:
             return False
         return self.operation.command
+
+    @property
+    def current(self) -> str | None:
+        """The operation that tells where the robot is now; None if the vocabulary names none."""
+        own = self.pattern.current if self.pattern is not None else None
+        return own or self.operation.current
+
+    @property
+    def opposite(self) -> str | None:
+        """The opposite command, or the operation that does the opposite; None if there is none."""
+        return self.pattern.opposite if self.pattern is not None else self.operation.opposite
 
 
 @dataclass(frozen=True, slots=True)

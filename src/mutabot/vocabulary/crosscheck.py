@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from mutabot.model import Operation, Quantity
 from mutabot.model.values.quantity import READING_OF, is_reading_of
@@ -13,18 +13,23 @@ from mutabot.settings.toml_lines import KeyPath
 Read = tuple[Operation, Check, KeyPath]
 
 
-def check_operations(read: Mapping[str, Read]) -> None:
-    """Note every ``current`` and ``opposite`` that names no fitting operation."""
-    for operation, check, place in read.values():
-        if operation.current is not None:
-            _check_current(operation, check, (*place, "current"), read)
-        if operation.opposite is not None:
-            _check_opposite(operation, check, (*place, "opposite"), read)
+def check_operations(entries: Iterable[Read], read: Mapping[str, Read]) -> None:
+    """Note every ``current`` and ``opposite`` that names no fitting operation.
+
+    Args:
+        entries: what each entry says.
+        read: what all entries together say of each target.
+    """
+    for operation, check, place in entries:
+        for name in operation.currents:
+            _check_current(operation, name, check, (*place, "current"), read)
+        for name in operation.opposites:
+            _check_opposite(operation, name, check, (*place, "opposite"), read)
 
 
-def _check_current(operation: Operation, check: Check, place: KeyPath, read: Mapping[str, Read]) -> None:
-    name = operation.current
-    assert name is not None
+def _check_current(
+    operation: Operation, name: str, check: Check, place: KeyPath, read: Mapping[str, Read]
+) -> None:
     if name not in read:
         check.unknown(place, "operation", name, read)
         return
@@ -42,9 +47,9 @@ def _check_current(operation: Operation, check: Check, place: KeyPath, read: Map
         check.error(place, f"{name} reads {found}, but here it would have to read {missing}")
 
 
-def _check_opposite(operation: Operation, check: Check, place: KeyPath, read: Mapping[str, Read]) -> None:
-    name = operation.opposite
-    assert name is not None
+def _check_opposite(
+    operation: Operation, name: str, check: Check, place: KeyPath, read: Mapping[str, Read]
+) -> None:
     if name == operation.target:
         check.error(place, "an operation cannot be its own opposite")
         return

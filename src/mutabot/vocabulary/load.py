@@ -12,6 +12,7 @@ from mutabot.settings.document import Document
 from mutabot.settings.mistakes import Check, raise_errors
 from mutabot.settings.toml_lines import KeyPath
 
+from .cases.when import together
 from .crosscheck import Read, check_operations
 from .operations import check_targets, read_clock, read_operations, read_probe
 from .schema import VocabularyTable
@@ -32,7 +33,7 @@ def load(names: Sequence[str], root: Path) -> Vocabulary:
     documents = [_find(name, root) for name in dict.fromkeys(names)]
     for document, is_shipped in sorted(documents, key=lambda found: found[1]):
         merged.add(document, is_shipped)
-    check_operations(merged.read)
+    check_operations(merged.entries, merged.read)
     raise_errors(merged.errors)
     return Vocabulary(
         operations=tuple(operation for operation, _, _ in merged.read.values()),
@@ -55,6 +56,7 @@ class _Merged:
 
     errors: list[ConfigurationError] = field(default_factory=list)
     read: dict[str, Read] = field(default_factory=dict)
+    entries: list[Read] = field(default_factory=list)
     refusals: list[str] = field(default_factory=list)
     checks: list[str] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -92,13 +94,25 @@ class _Merged:
     def _add_operation(self, check: Check, operation: Operation, index: int) -> None:
         place: KeyPath = ("operation", index)
         known = self.read.get(operation.target)
+        self.entries.append((operation, check, place))
         if known is None:
             self.read[operation.target] = (operation, check, place)
+        elif known[0].is_partial and operation.is_partial:
+            self._merge(known, operation, check, place)
+        elif known[0].is_partial or operation.is_partial:
+            also = _file_of(known[0].source)
+            check.error(place, f"{operation.target} is described with and without when: also in {also}")
         elif _sourceless(known[0]) != _sourceless(operation):
             is_call = operation.named is None
             where, what = ((*place, "call"), "") if is_call else (place, f"{operation.target} ")
             also = _file_of(known[0].source)
             check.error(where, f"{what}is described twice, differently: also in {also}")
+
+    def _merge(self, known: Read, operation: Operation, check: Check, place: KeyPath) -> None:
+        try:
+            self.read[operation.target] = (together(known[0], operation), *known[1:])
+        except ValueError as error:
+            check.error(place, f"{error}: also in {_file_of(known[0].source)}")
 
     def _add_clock(self, check: Check, clock: Clock | None) -> None:
         if clock is None:

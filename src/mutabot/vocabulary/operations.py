@@ -5,14 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from mutabot.errors import nearest_name
-from mutabot.model import Clock, Operation, Path, Pattern, Probe, Quantity
+from mutabot.model import Case, Clock, Operation, Path, Pattern, Probe, Quantity
 from mutabot.model.values.signature import parse_signature
 from mutabot.model.values.units import UNITS, Dimension, dimension_of
 from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
 
+from .cases.modes import Undecided, in_cases
+from .cases.when import in_case, read_when
 from .idle import read_idle
-from .modes import Undecided, in_cases
 from .named.entries import is_named, read_named
 from .named.names import NAMING
 from .patterns import read_patterns
@@ -62,9 +63,13 @@ def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
         idle=read_idle(check, table.idle, (*place, "idle")),
     )
     _check_from_self(check, operation, place)
-    _check_signature(check, operation, place)
     if not (table.arguments or table.result or table.message or operation.command):
         check.error(place, "says nothing: no arguments, no result, no patterns, and command = false")
+    if table.when is not None:
+        cases = read_when(check, table.when, (*place, "when"))
+        _check_self(check, table, cases, place)
+        operation = in_case(operation, cases)
+    _check_signature(check, operation, place)
     return operation
 
 
@@ -167,6 +172,12 @@ def _check_from_self(check: Check, operation: Operation, place: KeyPath) -> None
                 f"the text comes from {operation.message}, which no call gives, so {what} cannot be "
                 "sent in its place; describe the arguments of the call beside it",
             )
+
+
+def _check_self(check: Check, table: OperationTable, cases: tuple[Case, ...], place: KeyPath) -> None:
+    for case in cases:
+        if Path.parse(case.argument, rooted=True).root == "self" and "." not in table.call.partition(":")[2]:
+            check.error((*place, "when"), f"{table.call} is no method of a class, so it has no self")
 
 
 def _check_signature(check: Check, operation: Operation, place: KeyPath) -> None:

@@ -12,8 +12,8 @@ from mutabot.model.values.notation import Field, Notation
 from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
 
+from .cases.modes import cases_of, name_of
 from .idle import read_idle
-from .modes import cases_of, name_of
 from .quantities import read_arguments, read_quantity, read_result
 from .schema import PatternTable, QuantityTable
 

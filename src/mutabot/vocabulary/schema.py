@@ -67,6 +67,7 @@ class OperationTable(Table):
     signature: str | None = None
     overrides: bool = False
     patterns: list[Any] = Field(default_factory=list)
+    when: Any = None
 
 
 class NamedTable(Table):
@@ -96,6 +97,7 @@ class NamedTable(Table):
     refusals: list[str] = Field(default_factory=list)
     message: str | None = None
     patterns: list[Any] = Field(default_factory=list)
+    when: Any = None
 
 
 class ClockTable(Table):

@@ -63,7 +63,7 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             mutant = _distinct(mutant, taken)
             seen, reason = _foresee(rule, subject, hits)
             if rule.asks_where and not _is_told(subject, vocabulary):
-                reason = f"{operation.current or 'no reading'} does not tell where it is"
+                reason = f"{subject.current or 'no reading'} does not tell where it is"
             mutant = replace(
                 mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
             )
@@ -144,7 +144,7 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, 
 
 def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
     """Whether the vocabulary names a reading that tells where the subject's quantity is."""
-    reading = vocabulary.operation(subject.operation.current or "")
+    reading = vocabulary.operation(subject.current or "")
     if reading is None or subject.quantity is None:
         return False
     return any(is_reading_of(part, subject.quantity) for part in reading.result)

@@ -226,13 +226,13 @@ def _vocabulary_parts(vocabulary: Vocabulary) -> dict[str, str]:
 def _operation_parts(vocabulary: Vocabulary, target: str) -> dict[str, str]:
     """The entry of an operation, and those of the operations that its mutants need."""
     parts: dict[str, str] = {}
-    waiting: list[str | None] = [target]
+    waiting = [target]
     while waiting:
-        operation = vocabulary.operation(waiting.pop() or "")
+        operation = vocabulary.operation(waiting.pop())
         name = f"{operation.target} in the vocabulary" if operation is not None else ""
         if operation is not None and name not in parts:
             parts[name] = _HASH + _digest(_meaning(operation))
-            waiting += [operation.current, operation.opposite]
+            waiting += [*operation.currents, *operation.opposites]
     return parts
 
 

@@ -48,7 +48,7 @@ class Door:
 
     Args:
         operation: the operation.
-        reading: the operation that ``operation.current`` names, or None.
+        readings: the operations that tell where the robot is, by name.
         on_problem: told once about each path that does not fit: (key, error).
 
     Attributes:
@@ -60,11 +60,11 @@ class Door:
     def __init__(
         self,
         operation: Operation,
-        reading: Operation | None,
+        readings: Mapping[str, Operation | None],
         on_problem: Callable[[str, PathError], None] = lambda key, error: None,
     ) -> None:
         self.operation = operation
-        self._reading = reading
+        self._readings = readings
         self._on_problem = on_problem
         self._signature: inspect.Signature | None = None
         self._writer = Writer(operation, on_problem)
@@ -87,10 +87,10 @@ class Door:
         pattern, values = None, dict[str, Value]()
         if invocation.arguments is not None:
             invocation.message = self._writer.message(invocation.arguments, instance)
-            pattern, values = self._writer.read(invocation.arguments, invocation.message)
+            pattern, values = self._writer.read(invocation.arguments, instance, invocation.message)
 
         async def current(quantity: Quantity) -> float:
-            return await self._where(quantity, invocation)
+            return await self._where(quantity, invocation, pattern)
 
         return Call(self.operation, pattern, values, current=current, payload=invocation)
 
@@ -98,11 +98,11 @@ class Door:
         """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
         invocation: Invocation = call.payload
         fits = invocation.arguments is not None or self.operation.signature is not None
-        self.commands += self.operation.command and fits  # what does not fit never reaches the robot
+        self.commands += call.is_command and fits  # what does not fit never reaches the robot
         if call is original:
             return invocation.wrapped(*invocation.args, **invocation.kwargs)
         is_text = call.pattern is not None and call.pattern.notation is not None
-        wrapped = self._opposite(invocation) if call.reversed and not is_text else invocation.wrapped
+        wrapped = self._opposite(call) if call.reversed and not is_text else invocation.wrapped
         changed = {
             name: value for name, value in call.values.items() if not same(value, original.values.get(name))
         }
@@ -124,7 +124,7 @@ class Door:
                 continue
             if value is not None:
                 values[quantity.name] = value
-        if self.operation.command:
+        if call.is_command:
             self._last_replies[_text_of(call.pattern)] = snapshot(result)
         return Reply(values, result)
 
@@ -162,9 +162,10 @@ class Door:
             self._signature = signature_for(self.operation.signature, wrapped)
         return Arguments.of(self._signature, args, kwargs)  # None: the call itself will say what is wrong
 
-    def _opposite(self, invocation: Invocation) -> Callable[..., Any]:
-        assert self.operation.opposite is not None
-        opposite: Callable[..., Any] = self._other(self.operation.opposite, invocation.instance)
+    def _opposite(self, call: Call) -> Callable[..., Any]:
+        target = call.pattern.opposite if call.pattern is not None else self.operation.opposite
+        assert target is not None
+        opposite: Callable[..., Any] = self._other(target, call.payload.instance)
         return opposite
 
     def _other(self, target: str, instance: Any) -> Any:
@@ -176,8 +177,9 @@ class Door:
         owner, name, _ = resolve(sys.modules[module], qualname)
         return getattr(owner, name)
 
-    async def _where(self, quantity: Quantity, invocation: Invocation) -> float:
-        reading = self._reading
+    async def _where(self, quantity: Quantity, invocation: Invocation, pattern: Pattern | None) -> float:
+        own = pattern.current if pattern is not None else None
+        reading = self._readings.get(own or self.operation.current or "")
         if reading is None:
             raise LookupError(f"{self.operation.target} names no reading that tells where {quantity.name} is")
         value = self._other(reading.target, invocation.instance)

@@ -128,6 +128,10 @@ class Passing:
         try:
             # 1. The door reads which command it is, and the values it writes.
             call = door.call(*made)
+            if call.pattern is None and door.operation.is_partial:  # none of the calls that are meant
+                _under_way.reset(token)
+                token = _under_way.set(False)
+                return await self._leave_alone(is_async, *made)
             try:
                 # 2. A trunk forks a branch for each mutant that differs from here on, and goes on as the
                 #    original; a branch comes back from here as its mutant.
@@ -147,6 +151,22 @@ class Passing:
                 self._note(site, call, reply)
         finally:
             _under_way.reset(token)
+
+    async def _leave_alone(
+        self,
+        is_async: bool,
+        wrapped: Callable[..., Any],
+        instance: Any,
+        args: tuple[Any, ...],
+        kwargs: dict[str, Any],
+    ) -> Any:
+        """Make a call as if there were no handler around it."""
+        __tracebackhide__ = True
+        try:
+            result = wrapped(*args, **kwargs)
+            return await result if is_async else result
+        except StopIteration as error:
+            raise Carried(error) from None
 
     def _mutant_of(self, span: Span, call: Call) -> Activation | None:
         """The mutant whose site and command it is."""
@@ -177,7 +197,7 @@ class Passing:
         is_wanted = self._recorder.answers is not None and reply is not None
         returned = Returned(reply.payload, here(call)) if reply is not None and is_wanted else None
         self._recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned)
-        if call.operation.command:
+        if call.is_command:
             self._along.after(len(self._recorder.trace))
         if self.on_end is not None:
             self.on_end(call, read)

@@ -84,13 +84,19 @@ class Writer:
             self._on_problem("message", error)
             return None
 
-    def read(self, arguments: Arguments, message: Message | None) -> tuple[Pattern | None, dict[str, Value]]:
+    def read(
+        self, arguments: Arguments, instance: Any, message: Message | None
+    ) -> tuple[Pattern | None, dict[str, Value]]:
         """Which of the operation's commands a call is, if any, and the values it writes."""
         undecided = []
         for pattern, values in self._candidates(message):
-            if all(case.value in _names(arguments, case.argument) for case in pattern.when):
+            unfit = [
+                case for case in pattern.when if case.value not in _names(arguments, instance, case.argument)
+            ]
+            if not unfit:
                 return pattern, self._written(pattern, values, arguments, message)
-            undecided.append(pattern)
+            if all(case.key == "mode" for case in unfit):
+                undecided.append(pattern)
         if undecided:
             self._tell_undecided(undecided, arguments)
         return None, self._values(self._operation.arguments, arguments)
@@ -153,10 +159,10 @@ class Writer:
 
     def _tell_undecided(self, patterns: list[Pattern], arguments: Arguments) -> None:
         """No mode fits: say which argument has a value that the vocabulary does not mention."""
-        cases = [case for pattern in patterns for case in pattern.when]
+        cases = [case for pattern in patterns for case in pattern.when if case.key == "mode"]
         for argument in dict.fromkeys(case.argument for case in cases):
             known = tuple(dict.fromkeys(case.value for case in cases if case.argument == argument))
-            found = _names(arguments, argument)
+            found = _names(arguments, None, argument)
             if not set(found) & set(known):
                 text = f"{argument} is {found[-1]}, for which mode says nothing; it knows {', '.join(known)}"
                 self._tell("mode", text)
@@ -186,10 +192,10 @@ def _text(pattern: Pattern, call: Call, message: Message) -> str:
     return notation.write(values, like=message.text)
 
 
-def _names(arguments: Arguments, argument: str) -> tuple[str, ...]:
-    """What a vocabulary may call the value of an argument that decides about the mode."""
+def _names(arguments: Arguments, instance: Any, argument: str) -> tuple[str, ...]:
+    """What a vocabulary may call the value of an argument that decides what the call means."""
     path = Path.parse(argument, rooted=True)
-    start = arguments.get(path.root or "")
+    start = instance if path.root == "self" else arguments.get(path.root or "")
     try:
         value = path.get(start) if start is not None else None
     except PathError:
@@ -199,9 +205,11 @@ def _names(arguments: Arguments, argument: str) -> tuple[str, ...]:
     if isinstance(value, Enum):
         return (str(value.value), value.name)
     try:
-        text = str(value)
+        if isinstance(value, bytes):
+            return (str(value), value.decode("utf-8", "surrogateescape"))
+        whole = (str(int(value)),) if isinstance(value, float) and value.is_integer() else ()
         is_truth = type(value).__name__ in ("bool", "bool_") or value in (0, 1)
-        return (str(bool(value)).lower(), text) if is_truth else (text,)
+        return (*((str(bool(value)).lower(),) if is_truth else ()), *whole, str(value))
     except Exception:  # as above: any object of the user's
         return (f"a {type(value).__name__}",)
 

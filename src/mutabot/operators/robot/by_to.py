@@ -49,9 +49,9 @@ class ByTo(Operator):
     )
 
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
-        if operation.current is None:
-            return []
         whole = Subject(operation, pattern)
+        if whole.current is None:
+            return []
         return [
             Subject(operation, pattern, quantity) for quantity in whole.written if quantity.kind in READING_OF
         ]

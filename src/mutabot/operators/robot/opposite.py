@@ -62,7 +62,7 @@ class Opposite(Operator):
         for quantity in whole.written:
             if quantity.kind in (Kind.OPENING, Kind.OUTPUT) and _ends(quantity) is not None:
                 yield Subject(operation, pattern, quantity)
-        if (pattern.opposite if pattern is not None else operation.opposite) is not None:
+        if whole.opposite is not None:
             yield whole
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
@@ -84,9 +84,10 @@ class Opposite(Operator):
         if subject.quantity is not None:
             quantity = subject.quantity
             return f"{quantity.name} {' → '.join(quantity.texts(before, after))}"
-        if subject.pattern is not None and subject.pattern.opposite is not None:
-            return f"{Notation.compile(subject.pattern.opposite).short} instead"
-        return f"{subject.operation.opposite} instead"
+        pattern, opposite = subject.pattern, subject.opposite
+        if opposite is not None and pattern is not None and pattern.notation is not None:
+            return f"{Notation.compile(opposite).short} instead"
+        return f"{opposite} instead"
 
 
 def _ends(quantity: Quantity) -> tuple[Value, Value] | None:

@@ -10,12 +10,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from mutabot.model import Operation, Path, Pattern, Quantity
+from mutabot.model import Case, Operation, Path, Pattern, Quantity
 from mutabot.model.named import WRITTEN, Form, Named
 from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
+from mutabot.vocabulary.cases.modes import Undecided, in_cases
+from mutabot.vocabulary.cases.when import in_case, read_when
 from mutabot.vocabulary.idle import read_idle
-from mutabot.vocabulary.modes import Undecided, in_cases
 from mutabot.vocabulary.patterns import read_patterns
 from mutabot.vocabulary.quantities import in_message, read_fields, read_quantity
 from mutabot.vocabulary.schema import NamedTable
@@ -53,7 +54,7 @@ _SIDES: Mapping[Form, tuple[str, str]] = {
 #: forms that make the robot do something, unless the vocabulary says otherwise
 _COMMANDS = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL, Form.CANCEL})
 #: keys of those forms alone that write a message
-_OF_COMMANDS = ("command", "opposite", "idle", "message", "patterns", "current", "refusals")
+_OF_COMMANDS = ("command", "opposite", "idle", "message", "patterns", "current", "refusals", "when")
 #: keys for quantities
 _TABLES = tuple(dict.fromkeys(key for pair in _QUANTITIES.values() for key in pair if key is not None))
 
@@ -160,7 +161,7 @@ def _operation(check: Check, table: NamedTable, named: Named, is_main: bool, pla
     patterns = read_patterns(check, table.patterns, (*place, "patterns"), source, arguments)
     if table.message is None and not table.patterns:
         arguments, patterns = in_cases(check, arguments, result, table.opposite, source, place)
-    return replace(
+    operation = replace(
         operation,
         arguments=tuple(one for one in arguments if not isinstance(one, Undecided)),
         current=table.current,
@@ -170,6 +171,10 @@ def _operation(check: Check, table: NamedTable, named: Named, is_main: bool, pla
         message=_message(check, table, root, place),
         patterns=tuple(_in_message(pattern, root) for pattern in patterns),
     )
+    if table.when is None:
+        return operation
+    cases = read_when(check, table.when, (*place, "when"))
+    return in_case(operation, tuple(_in_root(case, root) for case in cases))
 
 
 def _read(check: Check, table: NamedTable, form: Form, key: str, place: KeyPath) -> tuple[Quantity, ...]:
@@ -188,7 +193,7 @@ def _message(check: Check, table: NamedTable, root: str, place: KeyPath) -> str 
             check.error((*place, "patterns"), 'needs message = "…": the field that holds the command')
         return None
     try:
-        return _in_root(table.message, root)
+        return _path(table.message, root)
     except ValueError:
         check.error((*place, "message"), f"{table.message!r} is not the name of a field")
         return None
@@ -205,11 +210,15 @@ def _in_message(pattern: Pattern, root: str) -> Pattern:
     return replace(
         pattern,
         arguments=tuple(map(placed, pattern.arguments)),
-        when=tuple(replace(case, argument=_in_root(case.argument, root)) for case in pattern.when),
+        when=tuple(_in_root(case, root) for case in pattern.when),
     )
 
 
-def _in_root(text: str, root: str) -> str:
+def _in_root(case: Case, root: str) -> Case:
+    return replace(case, argument=_path(case.argument, root))
+
+
+def _path(text: str, root: str) -> str:
     return str(in_message(Path.parse(text, rooted=True), root))
 
 
