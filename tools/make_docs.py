@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import configuration_page
-from mutabot.model import Quantity
+from mutabot.model import Mishap, Quantity
 from mutabot.model.values.notation import Notation
 from mutabot.operators import Example, Operator, Subject, operator
 from mutabot.operators.registry import built_in
@@ -43,6 +43,7 @@ and nothing else has to be edited. What it needs it declares on the class:
 | `asks_where = True` | `call.current` tells where the robot is; used only where the vocabulary says |
 | `asks_idle = True` | `call.idle` is what to answer while the robot does nothing; used only where known |
 | `does_nothing = True` | no call reaches the robot: one that would is an error, never a verdict |
+| `remembers = True` | one middleware for all calls of a test, and copies of what they write and read |
 | `magnitudes(quantity)` | how big the fault is to be: a mutant each, with `subject.magnitude` |
 | `family = "…"` | a family of its own: its mutants are planted where `--family` or `families` names it |
 
@@ -115,25 +116,46 @@ def _before(example: Example) -> str:
         text = f"{text} reads {_reading(subject, example.replied)}"
     if example.current:
         text = f"{text}, from {_values(subject.written, example.current)}"
+    if example.earlier:
+        before = (_values((*subject.written, *subject.read), values) for values in example.earlier)
+        text = f"{text}, after {', '.join(f'`{one}`' for one in before)}"
     return text
 
 
 def _after(example: Example) -> str:
     subject = example.subject
-    if example.received is not None:
-        return f"reads {_reading(subject, example.received)}"
+    late = f", {example.late:g} s later" if example.late else ""
+    if example.lost and not example.then:
+        return "no answer" if not subject.read else "nothing comes"
+    if example.received is not None or example.then or late:
+        received = example.replied if example.received is None else example.received
+        parts = [*([] if example.lost else [received]), *example.then]
+        texts = [f"reads {_reading(subject, part)}" if subject.read else "one" for part in parts]
+        return f"{', then '.join(texts)}{late}"
     return ", then ".join(_call(subject, values) for values in example.performed) or "nothing"
 
 
 def _call(subject: Subject, values: Mapping[str, Any]) -> str:
     operation, pattern = subject.operation, subject.pattern
     opposite = bool(values.get("reversed"))
-    values = {name: value for name, value in values.items() if name != "reversed"}
+    mishaps = [_mishap(Mishap(name), much) for name, much in values.items() if name in {*Mishap}]
+    values = {name: value for name, value in values.items() if name not in {"reversed", *Mishap}}
     if pattern is not None:
         text = Notation.compile((opposite and pattern.opposite) or pattern.text).write(values)
         return f'`{operation.name}("{text}")`'
     target = (opposite and operation.opposite) or operation.target
-    return f"`{target.partition(':')[2]}({_values(subject.written, values)})`"
+    name = target if operation.named is not None else target.partition(":")[2]
+    return ", ".join([f"`{name}({_values(subject.written, values)})`", *mishaps])
+
+
+def _mishap(mishap: Mishap, seconds: float) -> str:
+    return (
+        f"{seconds:g} s later"
+        if mishap is Mishap.LATE
+        else f"{mishap} by {seconds:g} s"
+        if seconds
+        else mishap
+    )
 
 
 def _reading(subject: Subject, values: Mapping[str, Any]) -> str:

@@ -21,6 +21,7 @@ OTHERWISE = {
     "opposite": {"proposal", "vocabulary"},
     "noise": {"vocabulary"},
     "skip": {"cli"},
+    "drop": {"proposal"},
 }
 #: what an id ends with, and what a selection may be made of
 AT_THE_END = re.compile(r"^(?:.*:)?(?P<name>[\w-]+)(?:=.*)?$", re.DOTALL)

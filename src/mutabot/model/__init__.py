@@ -15,6 +15,7 @@ from .alternative import Sighting as Sighting
 from .alternative import TextPlace as TextPlace
 from .call import Call as Call
 from .call import Middleware as Middleware
+from .call import Mishap as Mishap
 from .call import Proceed as Proceed
 from .call import Reply as Reply
 from .mutant import Mutant as Mutant

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from typing import Any
 
 from mutabot.model.values.quantity import Quantity, Value
@@ -11,23 +12,55 @@ from mutabot.model.values.quantity import Quantity, Value
 from .operation import Operation, Pattern
 
 
+class Mishap(StrEnum):
+    """What can befall a call that has a name on a middleware, beside other values.
+
+    An operator that wants one first asks ``call.cannot(mishap)``.
+    """
+
+    #: it is carried out so many seconds of the program's clock later. The program waits for it only where it
+    #: waits for an answer: what is published goes out by itself
+    LATE = "late"
+    #: what it begins is cancelled at once
+    CANCELLED = "cancelled"
+    #: the process that makes it is killed in its stead
+    KILLED = "killed"
+    #: the process that makes it is killed in its stead, and begins anew; this happens once
+    RESTARTED = "restarted"
+    #: before it is made, the program's clock jumps by so many seconds
+    JUMPED = "jumped"
+
+
 async def _unknown(quantity: Quantity) -> float:
     raise LookupError(f"no reading tells where {quantity.name} is now")
+
+
+def _nothing(mishap: Mishap) -> str:
+    return ""
 
 
 @dataclass(frozen=True, slots=True)
 class Reply:
     """What an operation answered, with the values it reads.
 
+    What comes by itself (a message to a callback, see ``model.named.COMING``) may also come later, several
+    times or not at all. An answer that the program waits for may come later or not at all.
+
     Attributes:
         values: value of each read quantity by name, in the quantity's unit.
         payload: the result object itself; operators never look inside.
         away: why the operator left it as it is; empty if it does not say so.
+        late: seconds of the program's clock by which the program gets it later.
+        lost: whether the program never gets it.
+        more: what comes after it, of what comes by itself.
     """
 
     values: Mapping[str, Value] = field(default_factory=dict)
     payload: Any = None
     away: str = ""
+    late: float = 0.0
+    lost: bool = False
+    more: tuple[Reply, ...] = ()
 
     def with_value(self, quantity: Quantity, value: Value) -> Reply:
         """The same reply with another value for one quantity."""
@@ -36,6 +69,28 @@ class Reply:
     def as_is(self, why: str) -> Reply:
         """The same reply, with the reason why the operator leaves it alone."""
         return replace(self, away=why)
+
+    def later(self, seconds: float) -> Reply:
+        """The same reply, so much later."""
+        return replace(self, late=self.late + seconds)
+
+    def never(self) -> Reply:
+        """The same reply, of which the program never hears."""
+        return replace(self, lost=True)
+
+    def followed_by(self, *others: Reply) -> Reply:
+        """The same reply, and then these."""
+        return replace(self, more=(*self.more, *others))
+
+    @property
+    def parts(self) -> tuple[Reply, ...]:
+        """All that the program gets, in this order."""
+        return (*(() if self.lost else (self,)), *(part for one in self.more for part in one.parts))
+
+    @property
+    def comes_as_usual(self) -> bool:
+        """Whether the program gets it once and at once."""
+        return not (self.late or self.lost or self.more)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +110,8 @@ class Call:
             that it asks (``asks_idle``).
         payload: what the door needs to perform the call; operators never look inside.
         away: why the operator left it as it is; empty if it does not say so.
+        mishaps: what befalls it, with seconds where it takes some.
+        cannot: why something cannot befall it here; empty if it can.
     """
 
     operation: Operation
@@ -65,6 +122,8 @@ class Call:
     idle: Reply | None = None
     payload: Any = None
     away: str = ""
+    mishaps: Mapping[Mishap, float] = field(default_factory=dict)
+    cannot: Callable[[Mishap], str] = _nothing
 
     @property
     def is_command(self) -> bool:
@@ -76,6 +135,10 @@ class Call:
     def with_value(self, quantity: Quantity, value: Value) -> Call:
         """The same call with another value for one quantity."""
         return replace(self, values={**self.values, quantity.name: value})
+
+    def with_mishap(self, mishap: Mishap, seconds: float = 0.0) -> Call:
+        """The same call, which something befalls."""
+        return replace(self, mishaps={**self.mishaps, mishap: seconds})
 
     def as_is(self, why: str) -> Call:
         """The same call, with the reason why the operator leaves it alone."""

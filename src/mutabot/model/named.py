@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 from fnmatch import fnmatchcase
 
+from mutabot.model.values.path import Path
+from mutabot.model.values.quantity import Kind, Quantity
+
 
 class Form(StrEnum):
     """What is done under a name, and between which sides.
@@ -47,6 +50,10 @@ class Form(StrEnum):
 
 #: forms whose argument holds all that is written, and its name
 WRITTEN = {Form.PUBLISH: "message", Form.CALL: "request", Form.GOAL: "goal"}
+#: forms of what comes by itself and is given to a callback, or waited for: it may come late, twice or never
+COMING = frozenset({Form.RECEIVE, Form.FEEDBACK, Form.TICK})
+#: forms for whose answer the program waits, or which it is told later
+ANSWERED = frozenset({Form.CALL, Form.GOAL, Form.RESULT, Form.TRANSFORM})
 #: forms that set something up, and the arguments that all middlewares give them: ``name`` is the name as the
 #: program gives it, ``depth`` the length of the queue, ``period`` is in seconds; qualities are those of ROS 2
 SETTING_UP = {
@@ -56,6 +63,24 @@ SETTING_UP = {
     Form.TIMER: ("period",),
     Form.RATE: ("period",),
 }
+_SETTINGS = (
+    Quantity("name", Path("name"), Kind.SETTING),
+    Quantity("depth", Path("depth"), Kind.SETTING),
+    Quantity("reliability", Path("reliability"), Kind.SETTING, values=("reliable", "best_effort")),
+    Quantity("durability", Path("durability"), Kind.SETTING, values=("volatile", "transient_local")),
+    Quantity("deadline", Path("deadline"), Kind.SETTING, unit="s"),
+    Quantity("latch", Path("latch"), Kind.SETTING, values=(False, True)),
+    Quantity("period", Path("period"), Kind.SETTING, unit="s"),
+)
+#: the default of a parameter, as the program or its declaration gives it
+DEFAULT = Quantity("default", Path("default"), Kind.SETTING)
+
+
+def settings_of(form: Form) -> tuple[Quantity, ...]:
+    """What is written where something is set up, or a parameter read: no vocabulary needs to describe it."""
+    if form is Form.PARAMETER:
+        return (DEFAULT,)
+    return tuple(one for one in _SETTINGS if one.name in SETTING_UP.get(form, ()))
 
 
 @dataclass(frozen=True, slots=True)

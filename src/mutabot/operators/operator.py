@@ -81,8 +81,14 @@ class Example:
         values: values of the original call.
         replied: values the robot would answer.
         current: where the robot is, by quantity name, for operators that ask.
-        performed: values of each call that reaches the robot, in order; ``reversed`` marks the opposite.
+        performed: values of each call that reaches the robot, in order; ``reversed`` marks the opposite, and
+            the name of a mishap what befalls it, with its seconds.
         received: values the program receives; None if it receives the robot's own.
+        earlier: values of calls of the same test that went before, and of their replies, for operators that
+            remember them.
+        lost: whether the program never receives it.
+        late: seconds by which it receives it later.
+        then: values of what it receives after it.
         raises: what the program gets instead of an answer; None if it gets one.
         away: why the operator changes nothing here; empty if it does act.
         note: one line for the documentation.
@@ -97,6 +103,10 @@ class Example:
     raises: type[BaseException] | None = None
     away: str = ""
     note: str = ""
+    earlier: tuple[Mapping[str, Value], ...] = ()
+    lost: bool = False
+    late: float = 0.0
+    then: tuple[Mapping[str, Value], ...] = ()
 
 
 class Operator(Rule):
@@ -111,6 +121,8 @@ class Operator(Rule):
             it these yet, so such an operator is refused.
         does_nothing: whether it promises that no call reaches the robot. A call that would is a fault of the
             operator, and the mutant gets no verdict.
+        remembers: whether what it does to a call depends on earlier ones of the same test. It is then given
+            copies, which the program cannot change afterwards, and one middleware for all calls of a test.
     """
 
     family: ClassVar[str] = ROBOT
@@ -119,6 +131,11 @@ class Operator(Rule):
     asks_idle: ClassVar[bool] = False
     asks_neighbours: ClassVar[bool] = False
     does_nothing: ClassVar[bool] = False
+    remembers: ClassVar[bool] = False
+
+    def is_chance(self, subject: Subject) -> bool:
+        """Whether only chance says at which calls it acts, so that nobody can tell beforehand."""
+        return False
 
     def magnitudes(self, quantity: Quantity) -> tuple[float, ...]:
         """How big its fault is to be in a quantity, in that quantity's unit: a mutant each.

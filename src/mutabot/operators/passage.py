@@ -7,12 +7,12 @@ Middleware is written as a coroutine function. Around a plain operation nothing 
 from __future__ import annotations
 
 from collections.abc import Coroutine, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
 from mutabot.errors import OperatorError
 from mutabot.model import Call, Middleware, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import Value, same_values
+from mutabot.model.values.quantity import Value, same, same_values
 
 T = TypeVar("T")
 
@@ -81,14 +81,24 @@ class Passage:
         if len(self.performed) != 1:
             return bool(self.performed) or self.received is not None
         performed = self.performed[0]
-        return performed.reversed != self.call.reversed or not same_values(performed.values, self.call.values)
+        if performed.reversed != self.call.reversed or performed.mishaps:
+            return True
+        return not (
+            same(performed.payload, self.call.payload) and same_values(performed.values, self.call.values)
+        )
 
     @property
     def changed_reading(self) -> bool:
         """Whether the program was told something else than the robot answered."""
         if self.received is None or not self.answered:
             return False
-        return not same_values(self.received.values, self.answered[-1].values)
+        answered = self.answered[-1]
+        if not self.received.comes_as_usual:
+            return True
+        return not (
+            same(self.received.payload, answered.payload)
+            and same_values(self.received.values, answered.values)
+        )
 
 
 def recording(passage: Passage, proceed: Proceed) -> Proceed:
@@ -115,10 +125,12 @@ def rehearse(
     replied: Mapping[str, Value],
     *,
     current: Mapping[str, float] | None = None,
+    payload: object = None,
     operator: str,
 ) -> Passage:
     """Send a recorded call through a mutant, with a robot that always answers ``replied``.
 
+    ``payload`` stands for what is in the reply beside the values: it is unlike any other object.
     LookupError from ``call.current`` passes through when ``current`` does not say where the robot is.
     """
 
@@ -128,10 +140,9 @@ def rehearse(
         return current[quantity.name]
 
     async def answer(call: Call) -> Reply:
-        return Reply(dict(replied))
+        return Reply(dict(replied), payload)
 
-    rehearsed = Call(call.operation, call.pattern, call.values, call.reversed, where, call.idle, call.payload)
-    passage = Passage(rehearsed)
+    passage = Passage(replace(call, current=where))
     run(_rehearsed(passage, middleware, answer), operator=operator)
     return passage
 

@@ -79,9 +79,9 @@ def operator(name: str) -> Operator:
 def _files() -> dict[str, str]:
     """Module by name of operator, as the folders beside this file tell: nothing is loaded for it."""
     return {
-        module.replace("_", "-"): f"{__package__}.{package}.{module}"
-        for package in packages_in(_HERE)
-        for module in modules_in(_HERE / package)
+        module.replace("_", "-"): ".".join((__package__, *folder.relative_to(_HERE).parts, module))
+        for folder in folders_in(_HERE)
+        for module in modules_in(folder)
     }
 
 
@@ -137,9 +137,9 @@ def modules_in(folder: Path) -> list[str]:
     return sorted(file.stem for file in folder.glob("*.py") if not file.name.startswith("_"))
 
 
-def packages_in(folder: Path) -> list[str]:
-    """Names of the packages in a folder; none of them is loaded."""
-    return sorted(file.parent.name for file in folder.glob("*/__init__.py"))
+def folders_in(folder: Path) -> list[Path]:
+    """The folders of packages below a folder; none of them is loaded."""
+    return sorted(file.parent for file in folder.glob("*/**/__init__.py"))
 
 
 def classes_in(module: ModuleType, base: type[Any]) -> list[type[Any]]:

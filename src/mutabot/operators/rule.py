@@ -2,8 +2,8 @@
 
 An operator is one class in one file, and nothing else has to be edited: the registries find it there.
 
-- One that acts on **calls** is a subclass of ``Operator`` (``operator.py``) in a folder beside this file, one
-  to a file, which has the operator's name: ``by-to`` is ``robot/by_to.py``. So workers find an operator
+- One that acts on **calls** is a subclass of ``Operator`` (``operator.py``) in a folder below this file's,
+  one to a file, which has the operator's name: ``by-to`` is ``robot/by_to.py``. So workers find an operator
   without loading the others.
 - One that acts on **program text** is a subclass of ``ClassicalOperator`` (``mutabot/classical/operator.py``)
   in ``classical/operators/``; a file may hold several.

@@ -8,7 +8,7 @@ from typing import Any
 
 from mutabot.errors import nearest_name
 from mutabot.model import Kind
-from mutabot.model.values.quantity import DIMENSIONS, MEASURED, READ, WHOLE, WRITTEN
+from mutabot.model.values.quantity import DIMENSIONS, HEADER, MEASURED, READ, WHOLE, WRITTEN
 from mutabot.model.values.rotation import QUATERNION_ORDERS, is_euler_order
 from mutabot.model.values.units import UNITS, dimension_of
 from mutabot.settings.mistakes import shown
@@ -75,7 +75,7 @@ def default_unit(table: QuantityTable) -> str | None:
         numbers = [*(table.values or ()), *(table.range or table.clip or ())]
         if numbers and all(_is_number(number) and 0 <= number <= 1 for number in numbers):
             return "fraction"
-    return table.unit
+    return "s" if table.kind is Kind.STAMP else table.unit
 
 
 def default_values(table: QuantityTable) -> tuple[Any, ...] | None:
@@ -87,13 +87,15 @@ def default_values(table: QuantityTable) -> tuple[Any, ...] | None:
 
 def _side(table: QuantityTable, written: bool, sides: tuple[str, str]) -> Iterator[Fault]:
     kind, (of_written, of_read) = table.kind, sides
-    if written and kind not in WRITTEN:
+    if kind is Kind.SETTING:
+        yield Fault("kind", "settings are known from what is set up; no vocabulary describes them")
+    elif written and kind not in WRITTEN:
         yield Fault(
             "kind",
             f"a {kind} is read from the robot, so it belongs to {of_read}, not to {of_written}"
             f"{_AS_ARGUMENT.get(kind, '')}",
         )
-    if not written and kind not in READ:
+    elif not written and kind not in READ:
         yield Fault(
             "kind",
             f"{_a(kind)} is sent to the robot, so it belongs to {of_written}, not to {of_read}"
@@ -102,7 +104,7 @@ def _side(table: QuantityTable, written: bool, sides: tuple[str, str]) -> Iterat
 
 
 def _unit(table: QuantityTable) -> Iterator[Fault]:
-    kind, unit = table.kind, default_unit(table)
+    kind, unit = table.kind, table.unit if table.kind is Kind.STAMP else default_unit(table)
     dimensions = DIMENSIONS.get(kind, frozenset())
     fitting = tuple(name for name in UNITS if dimension_of(name) in dimensions)
     if not fitting:
@@ -153,7 +155,9 @@ def _values(table: QuantityTable) -> Iterator[Fault]:
             yield Fault("values", f"{_a(kind)} needs values (all that can be sent), a range or a clip")
         return
     wrong = [value for value in values if not _fits(kind, value)]
-    if wrong:
+    if kind is Kind.STAMP:
+        yield Fault("values", "a stamp is any moment, so it has no values")
+    elif wrong:
         wanted = "numbers" if kind in MEASURED else "texts, numbers, true or false"
         yield Fault("values", f"values must be {wanted}, not {shown(wrong[0])}")
     elif len(values) < 2:
@@ -171,6 +175,8 @@ def _range(table: QuantityTable) -> Iterator[Fault]:
     least, most = table.range
     if table.kind in (Kind.LABEL, Kind.FLAG):
         yield Fault("range", f"a {table.kind} has no range, but values")
+    elif table.kind in HEADER:
+        yield Fault("range", f"a {table.kind} has no range")
     elif not least < most:
         yield Fault("range", f"must rise from the least to the greatest value, got [{least}, {most}]")
     else:
@@ -183,7 +189,9 @@ def _clip(table: QuantityTable, written: bool) -> Iterator[Fault]:
     if table.clip is None:
         return
     least, most = table.clip
-    if not written:
+    if table.kind in HEADER:
+        yield Fault("clip", f"a {table.kind} is limited to nothing")
+    elif not written:
         yield Fault(
             "clip", f"{_a(table.kind)} is read, not sent: only what is sent can be limited by the robot"
         )

@@ -15,7 +15,7 @@ from mutabot.campaign.baseline.places import Place
 from mutabot.errors import OperatorError
 from mutabot.families import USUAL
 from mutabot.journal.records import Drawing
-from mutabot.model import Call, LeftOut, Mutant, Operation, Reply, Vocabulary
+from mutabot.model import Call, LeftOut, Middleware, Mutant, Operation, Reply, Vocabulary
 from mutabot.model.values.quantity import is_reading_of
 from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.operator import with_operation
@@ -128,17 +128,26 @@ class _Seen:
 
 def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, str | None]:
     """What the mutant would do to the recorded calls, and why it is left out, if it is."""
+    if rule.is_chance(subject):
+        return _Seen(_value(subject, hits[0])), None
     last = _Seen()
+    middleware = rule.middleware(subject, Random(1))
+    away = ""
     for hit in hits[:TRIED]:
         before = _value(subject, hit)
+        if not rule.remembers:
+            middleware = rule.middleware(subject, Random(1))
         try:
-            passage = _rehearsal(rule, subject, hit)
+            passage = _rehearsal(rule, subject, hit, middleware)
         except LookupError:  # it asks where the robot is, which only the run can tell
             return _Seen(before), None
         if passage.acted:
             return _Seen(before, _changed(subject, passage)), None
+        away = away or passage.away
         if last.before is None:
             last = _Seen(before, before)
+    if subject.quantity is None and away:
+        return last, f"would change nothing in {_calls(len(hits))}: {away}"
     return last, _reason(subject, last.before, len(hits))
 
 
@@ -150,10 +159,11 @@ def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
     return any(is_reading_of(part, subject.quantity) for part in reading.result)
 
 
-def _rehearsal(rule: Operator, subject: Subject, hit: Hit) -> Passage:
-    call = Call(subject.operation, subject.pattern, hit.written, idle=Reply())
+def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middleware) -> Passage:
+    payload = object() if rule.remembers else None  # no two messages need be the same
+    call = Call(subject.operation, subject.pattern, hit.written, idle=Reply(), payload=payload)
     try:
-        passage = rehearse(rule.middleware(subject, Random(1)), call, hit.read, operator=rule.name)
+        passage = rehearse(middleware, call, hit.read, payload=payload, operator=rule.name)
     except (LookupError, OperatorError):
         raise
     except Exception as error:  # as above: a plug-in's own fault
@@ -189,13 +199,17 @@ def _changed(subject: Subject, passage: Passage) -> Any:
 
 
 def _reason(subject: Subject, value: Any, hits: int) -> str:
-    calls = "the call" if hits == 1 else f"any of {hits} calls"
+    calls = _calls(hits)
     if value is None:
         return "the call gives no such value" if hits == 1 else f"none of {hits} calls gives such a value"
     shown = subject.quantity.text(value) if subject.quantity is not None else str(value)
     limited = subject.quantity is not None and (subject.quantity.range or subject.quantity.values)
     within = " within the values that the vocabulary allows" if limited else ""
     return f"would change nothing in {calls}{within} (value {shown})"
+
+
+def _calls(hits: int) -> str:
+    return "the call" if hits == 1 else f"any of {hits} calls"
 
 
 def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen, *, is_shared: bool) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from random import Random
 from typing import Any
 
@@ -20,7 +21,9 @@ from mutabot.operators.control import FatalFault
 from mutabot.operators.operator import subject_of
 from mutabot.operators.passage import Carried, Passage, passed
 
+from . import mishaps
 from .door import Door, here
+from .keeping import kept_call, kept_reply
 
 
 @dataclass(slots=True)
@@ -81,23 +84,25 @@ class Activation:
         """
         assert self._middleware is not None
         self.evidence.hits += 1
-        passage = Passage(call)
+        passage = Passage(kept_call(call) if self.rule.remembers else call)
         performer = _Performer(self, door, passage, is_async)
         try:
             if self._idle is not None:
-                passage.call = replace(call, idle=self._answer(self._idle, door, call))
+                passage.call = replace(passage.call, idle=self._answer(self._idle, door, call))
             reply = await passed(passage, self._middleware, performer.proceed)
-            self._note(passage)
+            self.note(passage)
             last = passage.answered[-1] if passage.answered else None
-            return door.result(passage.call, reply, last), last
+            handed = mishaps.hand_over(passage.call, reply, partial(door.result, passage.call, original=last))
         except BaseException as error:
-            self._note(passage)
+            if passage.received is None:
+                self.note(passage)
             if isinstance(error, FatalFault):
                 self.evidence.acted += 1
             elif performer.raised is None and self.evidence.failure is None:
                 # neither the robot nor the program: the operator or the vocabulary is at fault
                 self.evidence.failure = f"operator {self.mutant.operator}: {type(error).__name__}: {error}"
             raise
+        return await handed(), last
 
     def _subject(self) -> Subject:
         pattern = self.operation.pattern(self.mutant.pattern)
@@ -115,7 +120,8 @@ class Activation:
                 return last
         return Reply({}, restore(idle.first(*self._test), here(call)))
 
-    def _note(self, passage: Passage) -> None:
+    def note(self, passage: Passage) -> None:
+        """What became of a call that is over, or of whose mutant this process dies."""
         if not passage.acted:
             if passage.away:
                 self.evidence.away[passage.away] = self.evidence.away.get(passage.away, 0) + 1
@@ -156,9 +162,11 @@ class _Performer:
         if mutated:
             self.activation.on_call(True)
         try:
-            result = self.door.perform(call, self.passage.call)
+            await mishaps.before(call, partial(self.activation.note, self.passage))
+            result = mishaps.timed(call, partial(self.door.perform, call, self.passage.call))()
             if self.is_async and inspect.isawaitable(result):
                 result = await result
+            await mishaps.after(call, result)
         except BaseException as error:
             self.raised = error
             self._judge(error)
@@ -168,7 +176,8 @@ class _Performer:
         finally:
             if mutated:
                 self.activation.on_call(False)
-        return self.door.reply(call, result)
+        reply = self.door.reply(call, result)
+        return kept_reply(reply) if self.activation.rule.remembers else reply
 
     def _judge(self, error: BaseException) -> None:
         if not self.passage.changed_command:

@@ -9,10 +9,12 @@ from __future__ import annotations
 import inspect
 import sys
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from mutabot.errors import PathError
+from mutabot.inside.targets.means import Means
 from mutabot.inside.targets.names import resolve
 from mutabot.model import Call, Operation, Pattern, Quantity, Reply
 from mutabot.model.values.answer import NotKeptError, keep, restore
@@ -20,6 +22,7 @@ from mutabot.model.values.quantity import Value, is_reading_of, same
 
 from .answers import snapshot
 from .arguments import Arguments, signature_for
+from .mishaps import why_not
 from .writer import Message, Writer
 
 
@@ -33,14 +36,16 @@ class Invocation:
         args, kwargs: as the program gave them.
         arguments: the same by name; None if they do not fit the signature.
         message: what says which command it is, or None.
+        means: what can befall it; None if nothing can.
     """
 
-    wrapped: Callable[..., Any]
+    wrapped: Callable[..., Any] = field(compare=False)
     instance: Any
     args: tuple[Any, ...]
     kwargs: dict[str, Any]
-    arguments: Arguments | None
-    message: Message | None = None
+    arguments: Arguments | None = field(compare=False)
+    message: Message | None = field(default=None, compare=False)
+    means: Means | None = field(default=None, compare=False)
 
 
 class Door:
@@ -79,11 +84,17 @@ class Door:
         self.commands = self.calls = 0
 
     def call(
-        self, wrapped: Callable[..., Any], instance: Any, args: tuple[Any, ...], kwargs: dict[str, Any]
+        self,
+        wrapped: Callable[..., Any],
+        instance: Any,
+        args: tuple[Any, ...],
+        kwargs: dict[str, Any],
+        means: Means | None = None,
     ) -> Call:
         """The call as operators see it."""
         self.calls += 1
-        invocation = Invocation(wrapped, instance, args, kwargs, self._bind(wrapped, args, kwargs))
+        bound = self._bind(wrapped, args, kwargs)
+        invocation = Invocation(wrapped, instance, args, kwargs, bound, means=means)
         pattern, values = None, dict[str, Value]()
         if invocation.arguments is not None:
             invocation.message = self._writer.message(invocation.arguments, instance)
@@ -92,7 +103,8 @@ class Door:
         async def current(quantity: Quantity) -> float:
             return await self._where(quantity, invocation, pattern)
 
-        return Call(self.operation, pattern, values, current=current, payload=invocation)
+        cannot = partial(why_not, means)
+        return Call(self.operation, pattern, values, current=current, payload=invocation, cannot=cannot)
 
     def perform(self, call: Call, original: Call) -> Any:
         """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
@@ -118,7 +130,7 @@ class Door:
         values: dict[str, Value] = {}
         for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
             try:
-                value = quantity.path.get(result)
+                value = quantity.get(result)
             except PathError as error:
                 self._on_problem(f"result.{quantity.name}", error)
                 continue
@@ -136,7 +148,7 @@ class Door:
             if quantity.name in reply.values:
                 value = reply.values[quantity.name]
                 if not same(value, before.get(quantity.name)):
-                    result = quantity.path.put(result, _typed_like(value, before.get(quantity.name)))
+                    result = quantity.put(result, _typed_like(value, before.get(quantity.name)))
         return result
 
     def _refuse_coroutine(self, result: Any) -> None:

@@ -101,7 +101,8 @@ class Passing:
             if site is None:
                 return wrapped(*args, **kwargs)
             is_async = inspect.iscoroutinefunction(wrapped)
-            on_its_way = self._pass(door, site, is_async, wrapped, instance, args, kwargs)
+            means = where.means if where is not None else None
+            on_its_way = self._pass(door, site, is_async, wrapped, instance, args, kwargs, means)
             if is_async:
                 return on_its_way
             return run(on_its_way, operator=self._operator)
@@ -120,7 +121,7 @@ class Passing:
             door: its operation's.
             site: where it stands.
             is_async: whether what the operation returns is to be awaited.
-            made: the call as Python made it: what the handler was given.
+            made: the call as Python made it, and what can befall it: what the handler was given.
         """
         __tracebackhide__ = True
         token = _under_way.set(True)

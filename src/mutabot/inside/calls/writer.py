@@ -110,7 +110,8 @@ class Writer:
         roots: dict[str, Any] = {}
         for quantity in beside:
             if quantity.name in values:
-                _put(roots, arguments, quantity.path, values[quantity.name])
+                root = quantity.path.root or ""
+                roots[root] = quantity.put(roots.get(root, arguments.get(root)), values[quantity.name])
         is_said_otherwise = call.reversed or any(name in values for name in fields)
         if pattern is not None and message is not None and self._path is not None and is_said_otherwise:
             _put(roots, arguments, self._path, message.with_text(_text(pattern, call, message)))
@@ -149,7 +150,7 @@ class Writer:
         for quantity in quantities:
             start = arguments.get(quantity.path.root or "")
             try:
-                value = quantity.path.get(start) if start is not None else None
+                value = quantity.get(start) if start is not None else None
             except PathError as error:
                 self._on_problem(f"arguments.{quantity.name}", error)
                 continue

@@ -3,6 +3,20 @@
 Which name something has is known only when it is used, after remapping and namespaces. So the hooks of a
 middleware (``inside.ros``, one file each) ask here at each use, and let the handler they get stand around it.
 They are put in place as soon as the program imports the middleware.
+
+What hooks keep to, so that all operators mean the same in every middleware:
+
+- Each use gives the handler a ``Where`` with ``means`` (``means.Means``): how the node sleeps, does something
+  later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps. All of it by the
+  clock of the node, so that simulated time counts.
+- What comes by itself (``COMING``: messages, feedback, ticks of a timer) goes through ``delivery``:
+  ``deliver`` calls the program's callback, ``Waiting.wait_for`` stands around a wait. A handler's own result
+  may be a ``Delivery`` there and nowhere else.
+- An answer that is late or never comes is the handler's matter: it awaits ``means.sleep`` and ``means.lost``.
+- What sets something up is ``wrapped(name=…, depth=…)`` with the arguments of ``SETTING_UP``; one that the
+  program leaves out is left out. ``wrapped`` takes all of them, whatever the program gave.
+- A parameter is read by ``wrapped(default=…)``, where the program or its declaration gives a default, and
+  what ``wrapped`` returns is the value itself.
 """
 
 from __future__ import annotations

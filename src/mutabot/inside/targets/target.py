@@ -20,6 +20,8 @@ from typing import Any
 
 from mutabot.model import Operation
 
+from .means import Means
+
 
 @dataclass(frozen=True, slots=True)
 class Where:
@@ -29,15 +31,17 @@ class Where:
         code: the function of the program's that is called back: its definition is the site. None if the site
             is the nearest call of the program's, as everywhere else.
         node: resolved name of the node.
+        means: what can befall the call beside other values; None if nothing can.
     """
 
     code: CodeType | None = None
     node: str | None = None
+    means: Means | None = None
 
 
 #: ``handler(wrapped, instance, args, kwargs, where=None)``, as wrapt calls it, with a ``Where`` behind it if
 #: the frames do not tell; what it returns is what the program receives: a coroutine if ``wrapped`` is a
-#: coroutine function
+#: coroutine function. Of what comes by itself it may return a ``delivery.Delivery`` in its place
 Handler = Callable[..., Any]
 
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from .path import Path
 from .rotation import Quaternion, to_quaternion, to_values
+from .stamp import seconds_of, with_seconds
 from .units import Dimension, convert
 
 #: digits that tell any two numbers apart
@@ -20,7 +21,10 @@ Value = Any
 
 
 class Kind(StrEnum):
-    """The physical meaning of a quantity."""
+    """The meaning of a quantity: mostly a physical one.
+
+    A setting is what something is set up with, such as the name of a topic; no vocabulary describes it.
+    """
 
     TRANSLATION = "translation"
     ROTATION = "rotation"
@@ -36,6 +40,9 @@ class Kind(StrEnum):
     EULER = "euler"
     LABEL = "label"
     FLAG = "flag"
+    FRAME_ID = "frame_id"
+    STAMP = "stamp"
+    SETTING = "setting"
 
 
 class Mode(StrEnum):
@@ -47,10 +54,25 @@ class Mode(StrEnum):
 
 #: orientations as a whole: several numbers that mean something only together; written and read
 WHOLE = frozenset({Kind.ROTATION_VECTOR, Kind.QUATERNION, Kind.EULER})
+#: what a message says of itself: the name of the frame it is given in, and when that was; written and read
+HEADER = frozenset({Kind.FRAME_ID, Kind.STAMP})
 #: kinds that are written to the robot
-WRITTEN = frozenset({Kind.TRANSLATION, Kind.ROTATION, Kind.OPENING, Kind.OUTPUT, Kind.DURATION, *WHOLE})
+WRITTEN = frozenset(
+    {Kind.TRANSLATION, Kind.ROTATION, Kind.OPENING, Kind.OUTPUT, Kind.DURATION, *WHOLE, *HEADER}
+)
 #: kinds that are read from the robot
-READ = frozenset({Kind.POSITION, Kind.ORIENTATION, Kind.ANGLE, Kind.DISTANCE, Kind.LABEL, Kind.FLAG, *WHOLE})
+READ = frozenset(
+    {
+        Kind.POSITION,
+        Kind.ORIENTATION,
+        Kind.ANGLE,
+        Kind.DISTANCE,
+        Kind.LABEL,
+        Kind.FLAG,
+        *WHOLE,
+        *HEADER,
+    }
+)
 #: kinds whose values are numbers on a scale, with a unit
 MEASURED = frozenset(
     {
@@ -113,6 +135,17 @@ class Quantity:
     noise: float | None = None
     clip: tuple[float, float] | None = None
     order: str | None = None
+
+    def get(self, start: Any) -> Value:
+        """Its value in what its path starts at; the seconds of a stamp. Raises PathError."""
+        value = self.path.get(start)
+        return seconds_of(value) if self.kind is Kind.STAMP else value
+
+    def put(self, start: Any, value: Value) -> Any:
+        """A copy of what its path starts at, with another value. Raises PathError."""
+        if self.kind is Kind.STAMP:
+            value = with_seconds(self.path.get(start), value)
+        return self.path.put(start, value)
 
     @property
     def is_measured(self) -> bool:

@@ -1,0 +1,34 @@
+"""Calls and replies that an operator remembers: copies, which the program cannot change afterwards."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import replace
+from typing import Any
+
+from mutabot.model import Call, Reply
+
+from .arguments import Arguments
+
+
+def kept_call(call: Call) -> Call:
+    """The same call, with copies of what the program gave: it may use an object again for the next call."""
+    invocation = call.payload
+    bound: Arguments | None = invocation.arguments
+    values = bound.values if bound is not None else {}
+    args, kwargs, values = copied((invocation.args, invocation.kwargs, values))
+    arguments = Arguments(bound.signature, args, kwargs, values) if bound is not None else None
+    return replace(call, payload=replace(invocation, args=args, kwargs=kwargs, arguments=arguments))
+
+
+def kept_reply(reply: Reply) -> Reply:
+    """The same reply, with a copy of what the robot answered."""
+    return replace(reply, payload=copied(reply.payload))
+
+
+def copied(value: Any) -> Any:
+    """A copy of a value; the value itself if it cannot be copied."""
+    try:
+        return copy.deepcopy(value)
+    except Exception:  # objects of the user's may refuse to be copied in any way
+        return value

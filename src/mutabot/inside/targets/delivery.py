@@ -1,0 +1,94 @@
+"""Giving the program what comes by itself, as a mutant would have it: late, several times, or not at all.
+
+Around what comes by itself (``model.named.COMING``) a handler may return a ``Delivery`` in the place of the
+message. The hooks of all middlewares leave it to the two functions here: ``deliver`` where a callback of the
+program's is called, ``wait_for`` where the program waits.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections import deque
+from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from .means import Means
+from .target import Handler, Where
+
+
+@dataclass(frozen=True, slots=True)
+class Delivery:
+    """What the program is to receive in the place of one message.
+
+    Attributes:
+        parts: seconds by which each comes later, and the message; none if it is lost.
+    """
+
+    parts: tuple[tuple[float, Any], ...] = ()
+
+
+def deliver(
+    handler: Handler, message: Any, callback: Callable[[Any], Any], where: Where, instance: Any = None
+) -> Any:
+    """Call the program's callback with a message, or with whatever the handler makes of it.
+
+    Returns what the callback returns: a coroutine if it is a coroutine function. A message that is lost calls
+    nothing and returns None; one that is late calls it from ``where.means.later``.
+    """
+    received = handler(lambda: message, instance, (), {}, where)
+    if not isinstance(received, Delivery):
+        return callback(received)
+    returned = []
+    for late, part in received.parts:
+        if late:
+            _means(where).later(late, partial(callback, part))
+        else:
+            returned.append(callback(part))
+    if any(inspect.isawaitable(one) for one in returned):
+        return _in_turn(returned)
+    return returned[-1] if returned else None
+
+
+@dataclass(slots=True)
+class Waiting:
+    """Messages of one name that a node waits for: what is more than one is there when it waits again."""
+
+    held: deque[Any] = field(default_factory=deque)
+
+    def wait_for(self, handler: Handler, wait: Callable[[], Any], where: Where, instance: Any = None) -> Any:
+        """What the program receives; ``wait`` waits for the next message and returns it.
+
+        A message that is lost is waited past, so ``wait`` may be called again: it keeps the time-out of the
+        whole, and raises what the program is to see when that is over.
+        """
+        if self.held:
+            return self.held.popleft()
+        while True:
+            received = handler(wait, instance, (), {}, where)
+            if not isinstance(received, Delivery):
+                return received
+            for late, part in received.parts:
+                self.held.append(part)
+                if late:
+                    _done(_means(where).sleep(late))
+            if self.held:
+                return self.held.popleft()
+
+
+def _means(where: Where) -> Means:
+    return where.means if where.means is not None else Means()
+
+
+def _done(awaitable: Awaitable[None]) -> None:
+    """Await what does not suspend."""
+    for _ in awaitable.__await__():
+        raise RuntimeError("the sleep of a plain call suspends; it must block")
+
+
+async def _in_turn(returned: Sequence[Any]) -> Any:
+    last = None
+    for one in returned:
+        last = await one if inspect.isawaitable(one) else one
+    return last
