@@ -9,7 +9,7 @@ import pytest
 from mutabot.border.codec import from_data, to_data
 from mutabot.errors import ConfigurationError
 from mutabot.model import Mode, Operation, Vocabulary
-from mutabot.model.named import Form, Named
+from mutabot.model.named import Form, Named, settings_of
 from mutabot.operators.operator import with_operation
 from mutabot.vocabulary import load
 
@@ -40,7 +40,7 @@ def test_a_topic_to_publish_on_comes_with_the_publisher(tmp_path: Path) -> None:
     (quantity,) = publish.arguments
     assert (quantity.name, str(quantity.path)) == ("pose.position.x", "message.pose.position.x")
     assert publish.source == "robot.toml:1 · publish /arm/goal"
-    assert not advertise.arguments
+    assert advertise.arguments == settings_of(Form.ADVERTISE)
 
 
 def test_what_is_received_is_read(tmp_path: Path) -> None:

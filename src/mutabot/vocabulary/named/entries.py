@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 from mutabot.model import Case, Operation, Path, Pattern, Quantity
-from mutabot.model.named import WRITTEN, Form, Named
+from mutabot.model.named import WRITTEN, Form, Named, settings_of
 from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
 from mutabot.vocabulary.cases.modes import Undecided, in_cases
@@ -144,7 +144,9 @@ def _operation(check: Check, table: NamedTable, named: Named, is_main: bool, pla
     root = WRITTEN.get(named.form)
     written, read = _QUANTITIES.get(named.form, (None, None))
     raw = getattr(table, written) if written else None
-    arguments = read_fields(check, raw, (*place, written or ""), root, _SIDES[named.form]) if raw else ()
+    arguments = settings_of(named.form)
+    if raw:
+        arguments = read_fields(check, raw, (*place, written or ""), root, _SIDES[named.form])
     result = _read(check, table, named.form, read, place) if read else ()
     source = _source(check, place, named)
     operation = Operation(
