@@ -23,6 +23,7 @@ class Evidence:
         acted: hits at which it changed something.
         example: value before and after, at the first hit at which it acted.
         refusals: the exceptions by which the robot refused mutated calls, the latest last; not all of many.
+        said: how the robot refused a mutated call by data, in words; None if it did not.
         invalid: whether a mutated call rejected its arguments' types.
         failure: what went wrong in the tool or the operator itself, or None.
         is_partial: whether any of several mutants that are one changed something.
@@ -36,6 +37,7 @@ class Evidence:
     acted: int = 0
     example: tuple[Any, ...] | None = None
     refusals: tuple[BaseException, ...] = ()
+    said: str | None = None
     invalid: bool = False
     failure: str | None = None
     is_partial: bool = False
@@ -46,7 +48,7 @@ class Evidence:
     @property
     def refusal(self) -> str | None:
         """How the robot refused a mutated call, in its own words; None if it did not."""
-        return str(leaves(self.refusals[-1])[0]) if self.refusals else None
+        return str(leaves(self.refusals[-1])[0]) if self.refusals else self.said
 
 
 def together(found: Sequence[Evidence]) -> Evidence:
@@ -58,6 +60,7 @@ def together(found: Sequence[Evidence]) -> Evidence:
         acted=min((one.acted for one in found), default=0),
         example=next((one.example for one in found if one.example is not None), None),
         refusals=tuple(refusal for one in found for refusal in one.refusals),
+        said=next((one.said for one in found if one.said is not None), None),
         invalid=any(one.invalid for one in found),
         failure=next((one.failure for one in found if one.failure is not None), None),
         is_partial=any(one.acted or one.is_partial for one in found),

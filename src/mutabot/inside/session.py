@@ -8,6 +8,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
 from types import CodeType, FrameType
+from typing import Any
 
 from mutabot.border.job import Budget, Job
 from mutabot.border.lines import Acted, CalledAtImport, Line, MutatedCall, SiteSeen
@@ -102,10 +103,22 @@ class Session:
             clock = vocabulary.clock
             reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong)
             self.interception.of().wrap(clock.tick, reader.handler())
+        self._listen()
         if self.job.mutant is not None:
             self.activate(self.job.mutant)
         if self.job.record or self.job.serving is not None:
             self._watch_imports()
+
+    def _listen(self) -> None:
+        """Hear the messages that pass by, if they may say that the robot refuses something."""
+        operations = self.job.vocabulary.operations
+        told = (one for operation in operations for one in operation.told_as_refused)
+        if any(refused.topic is not None for refused in told):
+            self.interception.of("messages").on_heard = self._heard
+
+    def _heard(self, name: str, message: Any) -> None:
+        for activation in self.activations:
+            activation.heard(name, message)
 
     def _handler(self, operation: Operation) -> Handler:
         """What stands around an operation: a door of its own, and the way that all calls go."""

@@ -119,6 +119,10 @@ class Named:
         return self.node is None or (node is not None and fnmatchcase(node, self.node))
 
 
+#: the words by which the goal of an action ends without having been reached
+ENDINGS = ("ABORTED", "REJECTED", "CANCELED")
+
+
 @dataclass(frozen=True, slots=True)
 class Refused:
     """How the answer to a command, or a message that follows it, says that the robot refuses it.
@@ -126,7 +130,8 @@ class Refused:
     Attributes:
         path: into the result, or into the message of the topic; ``""`` is the whole.
         values: each of these is a refusal.
-        topic: resolved name of the topic on which it is said; None if the result itself says it.
+        topic: resolved name under which it is said, in which ``*`` stands for any text: of a topic, or of the
+            action whose result or end (see ``ENDINGS``) says it; None if the result of the call itself does.
     """
 
     path: str

@@ -164,6 +164,11 @@ class Operation:
         of_cases = (pattern.opposite for pattern in self.patterns if pattern.notation is None)
         return tuple(dict.fromkeys(name for name in (self.opposite, *of_cases) if name is not None))
 
+    @property
+    def told_as_refused(self) -> tuple[Refused, ...]:
+        """All ways in which the robot says by data that it refuses any of its calls."""
+        return (*self.refused, *(one for pattern in self.patterns for one in pattern.refused))
+
     def pattern(self, text: str | None) -> Pattern | None:
         """The pattern with this notation, or None."""
         return next((pattern for pattern in self.patterns if pattern.text == text), None)

@@ -16,6 +16,7 @@ from .cases.when import in_case, read_when
 from .idle import read_idle
 from .named.entries import is_named, read_named
 from .named.names import NAMING
+from .named.refused import read_refused
 from .patterns import read_patterns
 from .quantities import read_arguments, read_result
 from .schema import ClockTable, OperationTable, ProbeTable
@@ -61,6 +62,7 @@ def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
         signature=table.signature,
         overrides=table.overrides,
         idle=read_idle(check, table.idle, (*place, "idle")),
+        refused=read_refused(check, table.refused, (*place, "refused")),
     )
     _check_from_self(check, operation, place)
     if not (table.arguments or table.result or table.message or operation.command):

@@ -68,6 +68,7 @@ class OperationTable(Table):
     overrides: bool = False
     patterns: list[Any] = Field(default_factory=list)
     when: Any = None
+    refused: Any = None
 
 
 class NamedTable(Table):
@@ -98,6 +99,15 @@ class NamedTable(Table):
     message: str | None = None
     patterns: list[Any] = Field(default_factory=list)
     when: Any = None
+    refused: Any = None
+
+
+class RefusedTable(Table):
+    """``refused = { path = "status", values = [5, 6], topic = "/arm/notification" }``"""
+
+    path: str = ""
+    values: list[Any]
+    topic: str | None = None
 
 
 class ClockTable(Table):

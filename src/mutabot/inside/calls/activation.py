@@ -15,6 +15,7 @@ from mutabot.inside.evidence import REFUSALS, Evidence
 from mutabot.inside.exception_groups import leaves
 from mutabot.inside.targets.names import is_named
 from mutabot.model import Call, Middleware, Mutant, Operation, Reply, Span
+from mutabot.model.named import Refused
 from mutabot.model.values.answer import restore
 from mutabot.operators import Operator, Subject, operator
 from mutabot.operators.control import FatalFault
@@ -24,6 +25,7 @@ from mutabot.operators.passage import Carried, Passage, passed
 from . import mishaps
 from .door import Door, here
 from .keeping import kept_call, kept_reply
+from .refusing import answered, heard, refused_of
 
 
 @dataclass(slots=True)
@@ -38,6 +40,7 @@ class Activation:
         on_call: told when a mutated call begins (True) and when it has returned or raised (False).
         evidence: what it did in the running test.
         rule: its operator.
+        watched: how the robot says that it refuses the last mutated call of the running test.
     """
 
     mutant: Mutant
@@ -47,6 +50,7 @@ class Activation:
     on_call: Callable[[bool], None]
     evidence: Evidence = field(default_factory=Evidence)
     rule: Operator = field(init=False)
+    watched: tuple[Refused, ...] = ()
     _middleware: Middleware | None = None
     _idle: Idle | None = None
     _test: tuple[int, str] = (0, "")
@@ -63,6 +67,7 @@ class Activation:
         self._middleware = self.rule.middleware(self._subject(), Random(seed))
         self._idle = Idle.of(self.mutant.idle) if self.rule.asks_idle else None
         self._test = (round, test)
+        self.watched = ()
 
     def is_here(self, span: Span, target: str) -> bool:
         """Whether calls of this operation at this place are the mutant's, bar the text command."""
@@ -103,6 +108,16 @@ class Activation:
                 self.evidence.failure = f"operator {self.mutant.operator}: {type(error).__name__}: {error}"
             raise
         return await handed(), last
+
+    def heard(self, name: str, message: Any) -> None:
+        """A message came by, which may say that the robot refuses what it was told."""
+        if self.watched:
+            self.refused_as(heard(self.watched, name, message))
+
+    def refused_as(self, said: str | None) -> None:
+        """How the robot refused a mutated call by data, in words; None if it did not."""
+        if said is not None and self.evidence.said is None:
+            self.evidence.said = said
 
     def _subject(self) -> Subject:
         pattern = self.operation.pattern(self.mutant.pattern)
@@ -161,6 +176,7 @@ class _Performer:
         mutated = self.passage.changed_command
         if mutated:
             self.activation.on_call(True)
+            self.activation.watched = refused_of(call)
         try:
             await mishaps.before(call, partial(self.activation.note, self.passage))
             result = mishaps.timed(call, partial(self.door.perform, call, self.passage.call))()
@@ -176,6 +192,8 @@ class _Performer:
         finally:
             if mutated:
                 self.activation.on_call(False)
+        if mutated and self.activation.watched:
+            self.activation.refused_as(answered(call, result))
         reply = self.door.reply(call, result)
         return kept_reply(reply) if self.activation.rule.remembers else reply
 

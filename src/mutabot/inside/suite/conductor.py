@@ -185,7 +185,7 @@ class Conductor:
             ending = classify(error, "collect", file, self.locator, self.job.vocabulary, evidence)
             end = TestEnd(
                 test, "failed", ending.by, ending.phase, ending.exception, ending.message, ending.place,
-                failure=evidence.failure or ending.failure, refused=ending.refused,
+                failure=evidence.failure or ending.failure, refused=ending.refused or evidence.said,
                 invalid=evidence.invalid or is_no_program(evidence, ending),
                 hits=evidence.hits, acted=evidence.acted, example=evidence.example,
             )  # fmt: skip

@@ -148,6 +148,8 @@ class Running:
         refusal = evidence.refusal
         if evidence.is_of_text and not ended_by_refusal:
             refusal = None
+        # what follows a refusal that is data follows from what the program makes of it
+        is_caught = refusal is not None and evidence.said is None
         return TestEnd(
             test=test,
             outcome=self._outcome,
@@ -160,7 +162,7 @@ class Running:
             failure=evidence.failure or (cause.failure if cause else None),
             invalid=evidence.invalid or is_no_program(evidence, cause),
             refused=refusal,
-            caught=refusal is not None and self._outcome == FAILED and not ended_by_refusal,
+            caught=is_caught and self._outcome == FAILED and not ended_by_refusal,
             hits=evidence.hits,
             acted=evidence.acted,
             away=evidence.away,

@@ -26,6 +26,7 @@ import sys
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from types import ModuleType
+from typing import Any
 
 import wrapt
 
@@ -72,6 +73,14 @@ class Messages(Targets):
             fitting = (handler for named, handler in self._handlers if named.fits(form, name, node))
             found = self._found[key] = None if self._removed else next(fitting, None)
             return found
+
+    def heard(self, name: str, message: Any) -> None:
+        """A message passed under a resolved name, received or published, as it is in truth.
+
+        Of an action: its result, or the word by which its goal ended (``model.named.ENDINGS``).
+        """
+        if self.on_heard is not None:
+            self.on_heard(name, message)
 
     def tell(self, target: str, finding: Finding) -> None:
         """Say what is wrong with a target that was found."""

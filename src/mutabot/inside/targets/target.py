@@ -72,7 +72,12 @@ class Targets(ABC):
 
     Args:
         tell: told about a target that turns out wrong when it is found.
+
+    Attributes:
+        on_heard: told of each message that passes under a name, where there are such; None if nobody asks.
     """
+
+    on_heard: Callable[[str, Any], None] | None = None
 
     @abstractmethod
     def __init__(self, tell: Tell) -> None: ...

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Any
 
 from mutabot.model import Case, Operation, Path, Pattern, Quantity
-from mutabot.model.named import WRITTEN, Form, Named, settings_of
+from mutabot.model.named import WRITTEN, Form, Named, Refused, settings_of
 from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
 from mutabot.vocabulary.cases.modes import Undecided, in_cases
@@ -23,6 +23,7 @@ from mutabot.vocabulary.schema import NamedTable
 from mutabot.vocabulary.targets import target_fault
 
 from .names import DIRECTIONS, NAMING, forms_of, name_of, node_of, type_of
+from .refused import read_refused
 
 #: the kind of target that all of them have
 _KIND = "messages"
@@ -54,7 +55,10 @@ _SIDES: Mapping[Form, tuple[str, str]] = {
 #: forms that make the robot do something, unless the vocabulary says otherwise
 _COMMANDS = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL, Form.CANCEL})
 #: keys of those forms alone that write a message
-_OF_COMMANDS = ("command", "opposite", "idle", "message", "patterns", "current", "refusals", "when")
+_OF_COMMANDS = (
+    *("command", "opposite", "idle", "message", "patterns", "current"),
+    *("refusals", "refused", "when"),
+)
 #: keys for quantities
 _TABLES = tuple(dict.fromkeys(key for pair in _QUANTITIES.values() for key in pair if key is not None))
 
@@ -170,6 +174,7 @@ def _operation(check: Check, table: NamedTable, named: Named, is_main: bool, pla
         opposite=table.opposite,
         refusals=tuple(table.refusals),
         idle=read_idle(check, table.idle, (*place, "idle")),
+        refused=_refused(check, table, named, place),
         message=_message(check, table, root, place),
         patterns=tuple(_in_message(pattern, root) for pattern in patterns),
     )
@@ -222,6 +227,12 @@ def _in_root(case: Case, root: str) -> Case:
 
 def _path(text: str, root: str) -> str:
     return str(in_message(Path.parse(text, rooted=True), root))
+
+
+def _refused(check: Check, table: NamedTable, named: Named, place: KeyPath) -> tuple[Refused, ...]:
+    action = named.name if named.form is Form.GOAL else None
+    answers = named.form is not Form.PUBLISH
+    return read_refused(check, table.refused, (*place, "refused"), action=action, answers=answers)
 
 
 def _is_command(

@@ -1,0 +1,70 @@
+"""How answers and messages say that a command is refused."""
+
+from __future__ import annotations
+
+from enum import Enum
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mutabot.inside.calls.refusing import answered, heard, refused_of
+from mutabot.model import Call, Operation, Pattern
+from mutabot.model.named import Form, Named, Refused
+
+STATUS = Refused(".status", (5, 6))
+
+
+class State(Enum):
+    FINE = 0
+    STUCK = 5
+
+
+def call(*refused: Refused, named: Named | None = None) -> Call:
+    return Call(Operation("robot:Arm.move", refused=refused, named=named))
+
+
+@pytest.mark.parametrize(
+    ("refused", "result", "words"),
+    [
+        (STATUS, SimpleNamespace(status=5), "answered status 5"),
+        (STATUS, SimpleNamespace(status=np.uint8(6)), "answered status 6"),
+        (STATUS, SimpleNamespace(status=State.STUCK), "answered status 5"),
+        (STATUS, SimpleNamespace(status=4), None),
+        (STATUS, SimpleNamespace(), None),
+        (STATUS, None, None),
+        (Refused("", (False,)), False, "answered False"),
+        (Refused("", (False,)), np.False_, "answered False"),
+        (Refused("", (False,)), 0, None),
+        (Refused("", (0,)), False, None),
+        (Refused("['error']", ("no way",)), {"error": "no way"}, "answered ['error'] no way"),
+        (Refused("", (5,)), np.zeros(3), None),
+    ],
+)
+def test_an_answer_is_a_refusal_by_its_value(refused: Refused, result: Any, words: str | None) -> None:
+    assert answered(call(refused), result) == words
+
+
+def test_a_message_that_follows_is_one_under_its_name_alone() -> None:
+    told = (Refused(".code", (7,), "/arm/*"), STATUS)
+    assert heard(told, "/arm/note", SimpleNamespace(code=7)) == "/arm/note: code 7"
+    assert heard(told, "/arm/note", SimpleNamespace(code=8)) is None
+    assert heard(told, "/note", SimpleNamespace(code=7)) is None
+    assert heard(told, "/arm/note", SimpleNamespace(status=5)) is None
+
+
+def test_the_goal_of_an_action_is_refused_by_its_end() -> None:
+    told = Refused("", ("ABORTED", "REJECTED"), "/follow")
+    goal = call(told, named=Named(Form.GOAL, "/follow"))
+    assert answered(goal, SimpleNamespace(accepted=False)) == "/follow: REJECTED"
+    assert answered(goal, SimpleNamespace(accepted=True)) is None
+    assert heard(refused_of(goal), "/follow", "ABORTED") == "/follow: ABORTED"
+    assert heard(refused_of(goal), "/follow", "SUCCEEDED") is None
+
+
+def test_what_an_entry_says_of_some_calls_goes_before_the_operation() -> None:
+    own = Pattern("kind=1", refused=(STATUS,))
+    operation = Operation("a:b", patterns=(own,), refused=(Refused("", (1,)),))
+    assert refused_of(Call(operation, own)) == (STATUS,)
+    assert refused_of(Call(operation)) == operation.refused
