@@ -132,7 +132,7 @@ class Passing:
             if call.pattern is None and door.operation.is_partial:  # none of the calls that are meant
                 _under_way.reset(token)
                 token = _under_way.set(False)
-                return await self._leave_alone(is_async, *made)
+                return await self._leave_alone(is_async, made[0], made[2], made[3])
             try:
                 # 2. A trunk forks a branch for each mutant that differs from here on, and goes on as the
                 #    original; a branch comes back from here as its mutant.
@@ -157,7 +157,6 @@ class Passing:
         self,
         is_async: bool,
         wrapped: Callable[..., Any],
-        instance: Any,
         args: tuple[Any, ...],
         kwargs: dict[str, Any],
     ) -> Any:
