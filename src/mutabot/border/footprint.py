@@ -37,6 +37,7 @@ class Footprint:
             outlive the test first.
         outlives: whether a later test may find something of these.
         exclusive: the first of these that other processes would get in the way of, or None.
+        processes: processes below the tests that were there during it, by number, with a name for people.
     """
 
     fixtures: tuple[SharedFixture, ...] = ()
@@ -46,3 +47,4 @@ class Footprint:
     files: tuple[str, ...] = ()
     outlives: bool = False
     exclusive: str | None = None
+    processes: tuple[tuple[int, str], ...] = ()

@@ -62,10 +62,14 @@ class Acted:
 
 @dataclass(frozen=True, slots=True)
 class PlacesReached:
-    """Places of the program text that a test reached; those before any test, if ``test`` is empty."""
+    """Places of the program text that a test reached; those before any test, if ``test`` is empty.
+
+    ``elsewhere``: whether that was in processes below the tests.
+    """
 
     test: str
     places: tuple[int, ...]
+    elsewhere: bool = False
 
 
 @dataclass(frozen=True, slots=True)

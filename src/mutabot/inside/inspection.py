@@ -26,12 +26,16 @@ class Inspection:
         vocabulary: what is looked at.
         is_asked: whether all of it is to be looked at; else only what comes up is told.
         send: where it is told.
+
+    Attributes:
+        elsewhere: modules that processes below the tests have, and that may not be importable here.
     """
 
     def __init__(self, vocabulary: Vocabulary, is_asked: bool, send: Callable[[Line], None]) -> None:
         self._vocabulary = vocabulary
         self.is_asked = is_asked
         self._send = send
+        self.elsewhere: set[str] = set()
         self._told: set[tuple[str, str]] = set()
         self._askers: dict[str, type | None] = {}
         self._unfit: dict[tuple[str, str], Callable[[], None]] = {}
@@ -156,7 +160,8 @@ class Inspection:
         except NotFoundError as error:
             self.tell(source, Finding(key, str(error), error.name, error.known))
         except Exception as error:  # the user's module may fail in any way; say which and how
-            self.tell(source, not_imported(module, error, key))
+            if module not in self.elsewhere:
+                self.tell(source, not_imported(module, error, key))
         return None
 
     def _source_of(self, target: str) -> str:

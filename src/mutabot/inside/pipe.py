@@ -5,9 +5,16 @@ from __future__ import annotations
 import fcntl
 import json
 import os
-from typing import Any
+from typing import Any, Protocol
 
 from mutabot.border.lines import Line, line_to_data
+
+
+class Sink(Protocol):
+    """Where report lines go."""
+
+    def send(self, line: Line) -> None:
+        """Take one line."""
 
 
 class Pipe:

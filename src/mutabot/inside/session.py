@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
@@ -11,7 +11,7 @@ from types import CodeType, FrameType
 from typing import Any
 
 from mutabot.border.job import Budget, Job
-from mutabot.border.lines import Acted, CalledAtImport, Line, MutatedCall, SiteSeen
+from mutabot.border.lines import Acted, CalledAtImport, Line, MutatedCall, SiteSeen, TextsSeen
 from mutabot.inside.calls.activation import Activation
 from mutabot.inside.calls.answers import Answers, handles_of
 from mutabot.inside.calls.bypasses import Bypasses
@@ -32,7 +32,7 @@ from mutabot.model import Call, Choice, Mutant, Operation, Probe, Role, Span
 from .evidence import Evidence, together
 from .inspection import Inspection
 from .limits import Meter
-from .pipe import Held, Pipe
+from .pipe import Sink
 from .seeds import derive
 
 
@@ -52,10 +52,12 @@ class Session:
         text: the program text, if it is instrumented.
         returns: what the program returns to its tests; None if that is not noted.
         test: node id of the running test.
+        parts: the mutants of which its own consists that changed something in it; that of the text has no
+            name.
     """
 
     job: Job
-    pipe: Pipe | Held
+    pipe: Sink
     locate: Callable[[FrameType | None], tuple[Span, Role] | None]
     locate_definition: Callable[[CodeType], tuple[Span, Role] | None] = lambda code: None
     recorder: Recorder = field(init=False)
@@ -69,8 +71,8 @@ class Session:
     text: SessionText | None = None
     returns: Returns | None = None
     test: str = ""
+    parts: set[str] = field(default_factory=set)
     _doors: list[Door] = field(default_factory=list)
-    _parts: set[str] = field(default_factory=set)
     _bypasses: Bypasses = field(init=False)
 
     def __post_init__(self) -> None:
@@ -198,7 +200,7 @@ class Session:
         if self.text is not None:
             self.text.become(choices)
 
-    def take_on(self, job: Job, pipe: Pipe) -> None:
+    def take_on(self, job: Job, pipe: Sink) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
         self.job, self.pipe = job, pipe
         self.inspection.is_asked, self.passing.on_end = job.inspect, self._on_end
@@ -209,7 +211,7 @@ class Session:
         """A test begins, before its fixtures."""
         self._end_imports()
         self.test = test
-        self._parts.clear()
+        self.parts.clear()
         self._look_again()
         self.passing.meter = Meter(self.job.budgets.get(test, Budget()))
         is_baseline = self.job.record and self.job.mutant is None and self.job.branching is None
@@ -281,12 +283,15 @@ class Session:
         """The tests are about to begin: say what can be said about the targets that are there already."""
         self.inspection.look_ahead(self.interception)
 
-    def finish(self) -> None:
-        """All tests are over: wait for branches, tell what was seen, and check the vocabulary if asked to."""
+    def finish(self, texts: Iterable[TextsSeen] = ()) -> None:
+        """All tests are over: wait for branches, tell what was seen, and check the vocabulary if asked to.
+
+        ``texts`` is what processes below the tests saw of the program text.
+        """
         if self.trunk is not None:
             self.trunk.finish()
         if self.text is not None:
-            self.text.finish()
+            self.text.finish(texts)
         if self.job.inspect:
             self.inspect_targets()
             self.inspection.tell_overrides(self.interception, self._bypasses)
@@ -318,10 +323,10 @@ class Session:
 
     def _acted(self, part: str) -> None:
         """A part of the mutant changed something; the one of the program text has no name."""
-        self._parts.add(part)
+        self.parts.add(part)
         if self.text is not None and self.text.is_mutant and not self.text.has_acted:
             return
-        if all(activation.mutant.id in self._parts for activation in self.activations):
+        if all(activation.mutant.id in self.parts for activation in self.activations):
             self.pipe.send(Acted(self.test, self.branch))
 
     def _in_mutated_call(self, began: bool) -> None:

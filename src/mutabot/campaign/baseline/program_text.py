@@ -146,13 +146,15 @@ class ProgramTexts:
 
     def _note_reached(self, round: int, result: Result) -> None:
         places = {place.number: place for text in self.texts for place in text.places}
-        for test, numbers in result.reached.items():
+        told = [(result.reached, True), (result.reached_elsewhere, False)]
+        for test, numbers, is_here in ((*one, is_here) for found, is_here in told for one in found.items()):
             for place in (places[number] for number in numbers if number in places):
                 where = Place(place.site, "")
                 tests = self.reached.setdefault((round, where), [])
                 if test not in tests:
                     tests.append(test)
-                if place.at_import or not test:
+                # what a process below the tests evaluates holds for that process alone
+                if (place.at_import and is_here) or not test:
                     self.early.add(where)
 
 

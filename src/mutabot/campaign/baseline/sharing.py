@@ -62,6 +62,7 @@ class Sharing:
 
     def _add(self, test: str, footprint: Footprint, replaceable: Collection[str]) -> None:
         used = {("", one.instance): f"fixture {one.name} ({one.scope})" for one in footprint.fixtures}
+        used |= {("process", pid): f"the process {name}" for pid, name in footprint.processes}
         self.shared[test] = used
         taken_down = [one for one in footprint.fixtures if one.has_teardown]
         changed = [name for name in footprint.left if name not in replaceable]

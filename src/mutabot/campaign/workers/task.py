@@ -64,6 +64,7 @@ class Result:
         sites, ends, problems: what it reported.
         acted: tests in which its mutant did something; the empty one stands for before any test.
         reached: places of the program text by test, likewise.
+        reached_elsewhere: the same in processes below the tests.
         called_at_import: trace of the operations that were called before any test.
         seen: what a recording saw of the program text.
         not_instrumented: files whose mutants cannot run, with the reason.
@@ -85,6 +86,7 @@ class Result:
     problems: list[Problem] = field(default_factory=list)
     acted: list[str] = field(default_factory=list)
     reached: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    reached_elsewhere: dict[str, tuple[int, ...]] = field(default_factory=dict)
     called_at_import: tuple[Any, ...] = ()
     seen: TextsSeen | None = None
     not_instrumented: dict[str, str] = field(default_factory=dict)
@@ -111,6 +113,8 @@ class Result:
                 self.watched.append(line)
             case Acted() if line.mutant is None:
                 self.acted.append(line.test)
+            case PlacesReached() if line.elsewhere:
+                self.reached_elsewhere[line.test] = line.places
             case PlacesReached():
                 self.reached[line.test] = line.places
             case CalledAtImport():

@@ -17,6 +17,7 @@ from types import TracebackType
 
 from mutabot.border import stack
 from mutabot.border.lines import Line, TestStart
+from mutabot.border.processes import acted_in
 from mutabot.border.test_end import TestEnd
 from mutabot.errors import JournalError
 
@@ -259,6 +260,8 @@ class _Worker:
         self.result.exit_code = self._process.end()
         lines = self.read()
         self.result.find_overdue(time.monotonic())
+        if self.result.end is None:
+            self.result.acted += acted_in(self._home.folder)
         self.result.wall = time.monotonic() - self._started + self._process.startup
         self.result.log = self._home.log_text()
         self.close(selector)

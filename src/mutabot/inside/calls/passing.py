@@ -47,6 +47,7 @@ class Passing:
 
     Attributes:
         on_end: told of each call that is over, with what it read; None if nobody asks.
+        turn: asked before each call, in a process that does not see its tests begin; None in all others.
         meter: what the running test has used; None between tests: then nothing is noted.
         trunk: set while this process runs the original and forks a branch per mutant.
         activations: the mutants of calls that are at work: none for the original.
@@ -69,6 +70,7 @@ class Passing:
         self._along = along
         self._on_error = on_error
         self.on_end = on_end
+        self.turn: Callable[[], None] | None = None
         self.meter: Meter | None = None
         self.trunk: Trunk | None = None
         self.activations: list[Activation] = []
@@ -90,6 +92,8 @@ class Passing:
             where: Where | None = None,
         ) -> Any:
             __tracebackhide__ = True
+            if self.turn is not None:
+                self.turn()
             if self.meter is None:
                 return wrapped(*args, **kwargs)
             if instance is not None and not self._instances.is_idle:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.border.lines import SiteSeen
@@ -25,6 +25,7 @@ class Recorder:
         trace: hits of the running test: site index, written values, read values, note of the answer.
         truncated: whether hits were left out of the trace.
         sites: all sites reached so far, in the order of their indexes.
+        on_hit: told of each hit, as it is in the trace; None while nobody asks.
     """
 
     on_site: Callable[[SiteSeen], None]
@@ -32,6 +33,7 @@ class Recorder:
     trace: list[tuple[Any, ...]] = field(default_factory=list)
     truncated: bool = False
     sites: list[SiteSeen] = field(default_factory=list)
+    on_hit: Callable[[int, Any, Any, Any], None] | None = None
     _indexes: dict[tuple[Span, str, str | None], int] = field(default_factory=dict)
 
     def start(self) -> None:
@@ -55,14 +57,21 @@ class Recorder:
         if len(self.trace) >= TRACE_LIMIT:
             self.truncated = True
             return
-        key = (span, operation, pattern)
+        index = self.index_of(SiteSeen(-1, span, operation, pattern, role is Role.ORACLE))
+        answer = self.answers.note(index, returned) if self.answers is not None else None
+        self.trace.append((index, _frozen(written), _frozen(read), answer))
+        if self.on_hit is not None:
+            self.on_hit(*self.trace[-1])
+
+    def index_of(self, seen: SiteSeen) -> int:
+        """The index of a site that was reached here or, under another index, in another process."""
+        key = (seen.span, seen.operation, seen.pattern)
         index = self._indexes.get(key)
         if index is None:
             index = self._indexes[key] = len(self._indexes)
-            self.sites.append(SiteSeen(index, span, operation, pattern, role is Role.ORACLE))
+            self.sites.append(replace(seen, index=index))
             self.on_site(self.sites[-1])
-        answer = self.answers.note(index, returned) if self.answers is not None else None
-        self.trace.append((index, _frozen(written), _frozen(read), answer))
+        return index
 
     def sites_of_trace(self) -> tuple[SiteSeen, ...]:
         """The sites that the running test's trace refers to."""

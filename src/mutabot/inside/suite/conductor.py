@@ -25,6 +25,9 @@ from mutabot.inside.fork.trunk import FAILED as BRANCH_FAILED
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import limit_memory
 from mutabot.inside.pipe import Held, Pipe
+from mutabot.inside.processes.host import Host
+from mutabot.inside.processes.member import watch_forks
+from mutabot.inside.processes.members import Members
 from mutabot.inside.session import Session
 from mutabot.inside.stacks import say_where_on_signal
 from mutabot.inside.text.returns import Returns
@@ -98,7 +101,8 @@ class Conductor:
         conductor.session.install()
         if job.no_oracle:
             conductor.switch_off_checks()
-        conductor._begin(home)
+        if job.serving is None:
+            conductor._begin(home)
         return conductor
 
     def _make_private(self, job: Job, home: str) -> None:
@@ -107,6 +111,10 @@ class Conductor:
             die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
+        host = Host(home, self.job)
+        host.open()
+        self.running.members = Members(host, self.session)
+        watch_forks(host.folder, self.session)
         if self.job.branching is not None:
             preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
             self.grow(self.job.branching, os.path.join(home, LOG))
@@ -262,7 +270,8 @@ class Conductor:
 
     def _say_goodbye(self, status: int) -> None:
         """Say what is left to say, and goodbye."""
-        self.session.finish()
+        members = self.running.members
+        self.session.finish(members.texts_seen() if members is not None else ())
         self.session.pipe.send(SessionEnd(status, self._collected, tuple(self._errors), self._not_private))
 
 

@@ -15,6 +15,7 @@ from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.evidence import Evidence
 from mutabot.inside.footprint.footprints import Footprints
+from mutabot.inside.processes.members import Members
 from mutabot.inside.readings.probes import Reading
 from mutabot.inside.session import Session
 from mutabot.inside.watchdogs import drop_idle_watchdog, watched, watched_by_faulthandler
@@ -34,6 +35,7 @@ class Running:
 
     Attributes:
         branch: what to do if this process turns out to be a branch when the test is over.
+        members: processes below the tests; None as long as no job is known.
     """
 
     def __init__(self, session: Session, locator: Locator, footprints: Footprints) -> None:
@@ -41,6 +43,7 @@ class Running:
         self.locator = locator
         self.footprints = footprints
         self.branch = BranchOfTest(session, footprints, self.start_clocks)
+        self.members: Members | None = None
         self._ending: Ending | None = None
         self._expected: Ending | None = None
         self._outcome = PASSED
@@ -64,6 +67,8 @@ class Running:
         self.branch.item = item
         self.footprints.start_test()
         self.start_clocks()
+        if self.members is not None:
+            self.members.start_test(item.nodeid)
         self.session.start_test(item.nodeid)
         try:
             result = yield
@@ -72,6 +77,8 @@ class Running:
             raise
         self.branch.leave_if_it_is_one(lambda: self._test_end(item.nodeid))
         end = self._test_end(item.nodeid)
+        if self.members is not None:
+            end = self.members.merged(end)
         self.session.end_test()
         self.session.pipe.send(end)
         if job.stop_at_kill and end.is_decided:

@@ -86,6 +86,14 @@ class Callables(Targets):
             if target in self.owners:
                 self._wrap_overriding(target, overrides)
 
+    def here(self) -> Iterable[str]:
+        """The targets whose modules were imported."""
+        return self.found.keys()
+
+    def found_elsewhere(self, targets: Iterable[str]) -> None:
+        """Their modules may not even be importable here."""
+        self.pending.difference_update(targets)
+
     def wrap_bypasses(self, targets: Iterable[str], handler: Callable[[str, type], Handler]) -> None:
         """Wrap every method there is that overrides one of these targets, but those wrapped."""
         wanted = frozenset(targets)

@@ -42,6 +42,16 @@ class Interception:
         """All kinds that are in use."""
         return self._kinds.values()
 
+    @property
+    def found(self) -> frozenset[str]:
+        """The targets that this process has."""
+        return frozenset(name for targets in self._kinds.values() for name in targets.here())
+
+    def found_elsewhere(self, names: Iterable[str]) -> None:
+        """A process below the tests has these targets: nobody needs to seek them here."""
+        for targets in self._kinds.values():
+            targets.found_elsewhere(names)
+
     def look_again(self) -> None:
         """A test begins: find what was made since the last one."""
         for targets in self._kinds.values():

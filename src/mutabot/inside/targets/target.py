@@ -101,6 +101,13 @@ class Targets(ABC):
     def check(self, operation: Operation) -> Iterator[Finding]:
         """What of an operation does not fit its target, once that is found."""
 
+    def here(self) -> Iterable[str]:
+        """The targets that this process has."""
+        return ()
+
+    def found_elsewhere(self, targets: Iterable[str]) -> None:  # noqa: B027  # most kinds have nothing to do
+        """A process below the tests has these: nobody needs to seek them here."""
+
     def look_again(self) -> None:  # noqa: B027  # most kinds have nothing to do
         """A test begins: find what was made since the last one."""
 

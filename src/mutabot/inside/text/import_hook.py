@@ -12,7 +12,7 @@ from typing import Any
 
 from mutabot.model.alternative import Instrumentation, ProgramText
 
-from . import loading
+from . import loading, scripts
 from .foresee import Forms
 from .instrument import MismatchError, forms_of, instrumented
 from .sightings import Sightings
@@ -66,6 +66,7 @@ class ImportHook:
             if text is not None:
                 self._refuse(text, "it was imported before mutabot could look at it")
         loading.add(self)
+        scripts.hook_runpy()
 
     def remove(self) -> None:
         """Import as ever from now on; text that is instrumented goes on as the original."""

@@ -2,7 +2,8 @@
 
 Every way to import a source file asks ``SourceFileLoader.get_code`` for the code: the import statement,
 ``importlib``, ``runpy.run_module``. That is the one place that is patched; loader, spec and module stay what
-they are without it. Of a file that a step wants, no compiled form is read or written.
+they are without it. Files that are run without being imported come here by way of ``scripts``. Of a file that
+a step wants, no compiled form is read or written.
 """
 
 from __future__ import annotations
@@ -47,6 +48,11 @@ def remove(step: Step) -> None:
     _steps.remove(step)
     if not _steps and "get_code" in vars(SourceFileLoader):
         del SourceFileLoader.get_code
+
+
+def is_wanted(path: str) -> bool:
+    """Whether any step has anything to do with a file."""
+    return any(step.wants(path) for step in _steps)
 
 
 def compile_tree(tree: ast.Module, path: str) -> CodeType:

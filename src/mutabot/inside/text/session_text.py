@@ -9,7 +9,7 @@ from mutabot.border.job import Job
 from mutabot.border.lines import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.inside.calls.activation import is_refusal, with_refusal
 from mutabot.inside.evidence import Evidence
-from mutabot.inside.pipe import Held, Pipe
+from mutabot.inside.pipe import Sink
 from mutabot.model import Call, Choice
 
 from .import_hook import ImportHook
@@ -30,7 +30,7 @@ class SessionText:
         on_act: told when all active alternatives have changed something in a test.
     """
 
-    def __init__(self, hook: ImportHook, pipe: Pipe | Held, on_act: Callable[[], None]) -> None:
+    def __init__(self, hook: ImportHook, pipe: Sink, on_act: Callable[[], None]) -> None:
         self.hook = hook
         self.pipe = pipe
         self._on_act = on_act
@@ -43,7 +43,7 @@ class SessionText:
         hook.alternatives.on_act = self._acted
 
     @classmethod
-    def of(cls, job: Job, pipe: Pipe | Held, on_act: Callable[[], None]) -> SessionText | None:
+    def of(cls, job: Job, pipe: Sink, on_act: Callable[[], None]) -> SessionText | None:
         """Instrument the program from now on; None if the job leaves its text alone."""
         if job.instrumentation is None:
             return None
@@ -87,10 +87,15 @@ class SessionText:
         elif self.hook.alternatives.on_place is not None:
             self.hook.alternatives.watch({})  # what is reached between tests belongs to none
 
-    def finish(self) -> None:
-        """All tests are over."""
+    def finish(self, others: Iterable[TextsSeen] = ()) -> None:
+        """All tests are over; ``others`` is what was seen in processes below them."""
         if self.hook.sightings is not None:
-            self.pipe.send(TextsSeen(tuple(self.hook.imported), self.hook.sightings.seen()))
+            others = list(others)
+            imported = dict.fromkeys(
+                [*self.hook.imported, *(file for one in others for file in one.imported)]
+            )
+            seen = [*self.hook.sightings.seen(), *(seen for one in others for seen in one.sightings)]
+            self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
 
     def become(self, choices: tuple[Choice, ...]) -> None:
         """In a branch that was just forked: let these alternatives stand in the text from now on."""

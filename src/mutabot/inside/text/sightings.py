@@ -40,7 +40,19 @@ class Sightings:
         """``size``: the largest number of a place; ``variables``: names of the places that are variables."""
         self._witnesses = [_Witness(self, place, variables.get(place)) for place in range(1, size + 1)]
         self.entered: set[int] = set()
+        self._on_first: Callable[[int], None] | None = None
         self.switches: list[Callable[[Any], Any]] = [self.entered.add, *self._witnesses]
+
+    def tell_first(self, on_first: Callable[[int], None]) -> None:
+        """Tell of each place when it is reached for the first time since the start of a test."""
+        self._on_first = on_first
+        self.switches[0] = self._enter
+
+    def _enter(self, place: int) -> None:
+        if place not in self.entered:
+            self.entered.add(place)
+            if self._on_first is not None:
+                self._on_first(place)
 
     def install(self) -> None:
         """Let instrumented program text find its switches."""

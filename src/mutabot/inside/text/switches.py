@@ -95,6 +95,7 @@ class Alternatives:
             differ from the original for the first time, or may be; it may activate one of them, which then
             stands for the original at once.
         forms: gives a place as trees that can be looked ahead of; None for statements.
+        on_first: told the number of a place that is on when it is first evaluated since ``start``.
         on_act: told the number of an active place when its alternative is known to change something, or
             may do so, for the first time since ``start``.
         switches: what instrumented program text looks at; item 0 is this object.
@@ -111,6 +112,7 @@ class Alternatives:
         self.forms: Callable[[int], Forms | None] = lambda place: None
         self._forms: dict[int, Forms | None] = {}
         self.on_act: Callable[[int], None] | None = None
+        self.on_first: Callable[[int], None] | None = None
         self.switches: list[Any] = [self, *([False] * size)]
 
     def install(self) -> None:
@@ -168,7 +170,9 @@ class Alternatives:
     def reached(self, switch: Switch, frame: FrameType) -> bool:
         """A place that is on is evaluated; whether an alternative stands for it."""
         place = switch.place
-        self.hits[place] = self.hits.get(place, 0) + 1
+        hits = self.hits[place] = self.hits.get(place, 0) + 1
+        if hits == 1 and self.on_first is not None:
+            self.on_first(place)
         if switch.watched:
             self._look_ahead(switch, frame)
         index = self.active.get(place)

@@ -1,0 +1,113 @@
+"""The test process's side: what it gives to processes below it, and what it makes of what they tell."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+
+from mutabot.border.job import Job
+from mutabot.border.processes import FOLDER, SUFFIX, VARIABLE, WAKE, Entry, entry_of
+
+from . import startup
+from .exits import Exits
+from .now import Now
+
+#: modules of middlewares, which nodes import, where the vocabulary names anything on one
+_MIDDLEWARES = ("rclpy", "rospy", "actionlib", "tf2_ros")
+_STARTUP = os.path.dirname(os.path.abspath(startup.__file__))
+
+
+@dataclass(slots=True)
+class Diaries:
+    """The files of all members, as far as they have been read."""
+
+    folder: str
+    _read: dict[str, int] = field(default_factory=dict)
+
+    def new(self) -> list[tuple[str, list[Entry]]]:
+        """Entries that are new, by file."""
+        found = []
+        for name in sorted(os.listdir(self.folder)):
+            if name.endswith(SUFFIX):
+                entries = self._new_in(name)
+                if entries:
+                    found.append((name, entries))
+        return found
+
+    def _new_in(self, name: str) -> list[Entry]:
+        start = self._read.get(name, 0)
+        with open(os.path.join(self.folder, name), "rb") as file:
+            file.seek(start)
+            data = file.read()
+        whole = data[: data.rfind(b"\n") + 1]
+        self._read[name] = start + len(whole)
+        entries = (entry_of(line) for line in whole.splitlines())
+        return [entry for entry in entries if entry is not None]
+
+
+class Host:
+    """The processes below a test process.
+
+    Args:
+        home: the home of the test process.
+        job: its job.
+
+    Attributes:
+        diaries: what members have written.
+        exits: how processes ended, as far as the test process knows.
+        number: the running test's.
+    """
+
+    def __init__(self, home: str, job: Job) -> None:
+        self.folder = os.path.join(home, FOLDER)
+        os.mkdir(self.folder)
+        self._write_wake(job)
+        self._now = Now(self.folder, is_host=True)
+        self.diaries = Diaries(self.folder)
+        self.exits = Exits()
+
+    @property
+    def number(self) -> int:
+        """The number of the running test."""
+        return self._now.number
+
+    def open(self) -> None:
+        """Let every Python process that is started from now on find its way here."""
+        others = os.environ.get("PYTHONPATH")
+        if others is None or _STARTUP not in others.split(os.pathsep):
+            os.environ["PYTHONPATH"] = _STARTUP + (os.pathsep + others if others else "")
+        os.environ[VARIABLE] = self.folder
+        self.exits.watch()
+
+    def start_test(self, test: str) -> None:
+        """A test begins."""
+        self._now.begin(test)
+
+    def _write_wake(self, job: Job) -> None:
+        names: set[str] = set()
+        for operation in job.vocabulary.operations:
+            names.update(_MIDDLEWARES if operation.named is not None else [_top(operation.target)])
+        if job.vocabulary.clock is not None:
+            names.add(_top(job.vocabulary.clock.tick))
+        files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]
+        for path in (*job.program, *job.oracle):
+            names.update(part.removesuffix(".py") for part in path.split("/") if part not in (".", "..", ""))
+        lines = [
+            *(f"path {folder}" for folder in _own_folders()),
+            *(f"name {name}" for name in sorted(names)),
+            *(f"file {file}" for file in files),
+        ]
+        with open(os.path.join(self.folder, WAKE), "w", encoding="utf-8") as file:
+            file.write("".join(f"{line}\n" for line in lines))
+
+
+def _top(target: str) -> str:
+    return target.partition(":")[0].partition(".")[0]
+
+
+def _own_folders() -> list[str]:
+    """Where another interpreter finds what the inside needs."""
+    found = (find_spec(name) for name in ("mutabot", "wrapt"))
+    places = [spec.submodule_search_locations for spec in found if spec is not None]
+    return list(dict.fromkeys(os.path.dirname(place) for several in places if several for place in several))

@@ -1,0 +1,321 @@
+"""A process below the tests that is part of a campaign: it runs the session of its test process's job.
+
+It finds, mutates and records calls as the test process does. What it sees goes into its diary at once. Which
+test runs is looked up at each call, since a process may outlive the test that started it.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import sys
+import threading
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from mutabot.border.job import Job
+from mutabot.border.lines import (
+    Acted,
+    Line,
+    MutatedCall,
+    NotInstrumented,
+    PlacesReached,
+    Problem,
+    Remark,
+    SiteSeen,
+    TextsSeen,
+)
+from mutabot.border.processes import (
+    Called,
+    Did,
+    Ended,
+    Exceeded,
+    Found,
+    Node,
+    Places,
+    Raised,
+    Signalled,
+    Used,
+)
+from mutabot.errors import MutabotError
+from mutabot.inside import FOLDER as OURS
+from mutabot.inside.calls.locate import Locator
+from mutabot.inside.evidence import Evidence
+from mutabot.inside.exception_groups import everything, is_due_to, leaves
+from mutabot.inside.limits import BudgetExceeded
+from mutabot.inside.session import Session
+from mutabot.inside.targets.names import is_named
+from mutabot.inside.text.scripts import hook_script
+from mutabot.model import Call
+from mutabot.model.class_name import class_name
+from mutabot.model.values.quantity import Value
+
+from .diary import Diary
+from .job_of import job_of
+from .now import Now
+
+#: the member that this process is; None in all others
+_member: Member | None = None
+
+
+def join(folder: str) -> None:
+    """Be a member of the campaign whose processes have this folder."""
+    global _member  # noqa: PLW0603  # one process, one member
+    if _member is None:
+        _member = Member(folder, job_of(folder))
+        _member.begin()
+
+
+def note_node(name: str) -> None:
+    """A node of this resolved name was made in this process."""
+    if _member is not None:
+        _member.diary.write(Node(name))
+
+
+class Member:
+    """This process, as part of a campaign. Also what a session takes for its pipe.
+
+    Args:
+        folder: the folder of the campaign's processes.
+        job: the job of the test process.
+        session: the session that goes on, in a process that was forked; None to make one.
+    """
+
+    def __init__(self, folder: str, job: Job, session: Session | None = None) -> None:
+        self._folder = folder
+        self._now = Now(folder)
+        self._test = self._now.number
+        self.diary = Diary(folder, self._test)
+        locator = Locator(job.root, job.program, job.oracle)
+        self.session = session or Session(
+            replace(job, inspect=False, moments={}), self, locator.locate, locator.locate_definition
+        )
+        self._told = Evidence()
+        self._parts: frozenset[str] = frozenset()
+        self._places: set[int] = set()
+        self._found: set[str] = set()
+        self._modules: set[str] = set()
+        self._exceeded = False
+        self._is_over = False
+
+    def begin(self) -> None:
+        """Put the session in place."""
+        self.session.install()
+        if self.session.text is not None:
+            hook_script()
+        self._attend()
+        self.session.start_test(self._now.name_of(self._test))
+        self._watch_text()
+
+    def go_on(self) -> None:
+        """In a process that was forked: go on with the session that it has, and tell of it."""
+        session = self.session
+        for site in session.recorder.sites:
+            self.diary.write(site)
+        self._told = session.evidence
+        self._attend()
+        session.pipe = self
+        if session.text is not None:
+            session.text.pipe = self
+        self._watch_text()
+
+    def _attend(self) -> None:
+        session = self.session
+        watch_forks(self._folder, session)
+        session.recorder.on_hit = self._hit
+        session.passing.on_end = self._after
+        session.passing.turn = self.turn
+        atexit.register(self.end)
+        self._watch_exits()
+
+    def turn(self) -> None:
+        """Look whether another test has begun."""
+        if self._now.number != self._test:
+            self.poll()
+            self._use()
+            self._test = self._now.number
+            self._told, self._parts, self._exceeded = Evidence(), frozenset(), False
+            self._places.clear()
+            self.session.start_test(self._now.name_of(self._test))
+
+    def send(self, line: Line) -> None:
+        """What the session tells: written down, as far as it is news."""
+        match line:
+            case SiteSeen() | MutatedCall() | NotInstrumented() | Problem() | Remark() | TextsSeen():
+                self.diary.write(line)
+            case Acted():
+                self.poll()
+            case PlacesReached():
+                self._reached(line.places)
+            case _:  # the test process tells of its tests itself
+                pass
+
+    def poll(self) -> None:
+        """Tell what the mutant did since the last time, and what was found."""
+        session = self.session
+        now, before = session.evidence, self._told
+        parts = frozenset(session.parts)
+        if now.hits != before.hits or now != before or parts != self._parts:
+            self._told = replace(now, away=dict(now.away))
+            self.diary.write(self._did(before, now, parts - self._parts))
+            self._parts = parts
+        self._tell_found()
+        meter = session.meter
+        if meter is not None and meter.exceeded is not None and not self._exceeded:
+            self._exceeded = True
+            self.diary.write(Exceeded(self._test, meter.exceeded))
+
+    def _did(self, before: Evidence, now: Evidence, parts: frozenset[str]) -> Did:
+        away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
+        is_refused = now.refusals != before.refusals
+        return Did(
+            self._test,
+            time.monotonic(),
+            hits=now.hits - before.hits,
+            acted=now.acted - before.acted,
+            away={why: count for why, count in away.items() if count},
+            example=now.example if before.example is None else None,
+            invalid=now.invalid and not before.invalid,
+            failure=now.failure if before.failure is None else None,
+            refused=now.refusal if is_refused and not now.is_of_text else None,
+            parts=tuple(sorted(parts)),
+        )
+
+    def _hit(self, site: int, written: Any, read: Any, answer: Any) -> None:
+        self.diary.write(Called(self._test, time.monotonic(), site, written, read, answer))
+
+    def _after(self, call: Call, read: Mapping[str, Value]) -> None:
+        self.poll()
+
+    def _tell_found(self) -> None:
+        targets = self.session.interception.found - self._found
+        if targets:
+            self._found |= targets
+            for operation in self.session.job.vocabulary.operations:
+                if operation.target in targets:
+                    self.session.inspection.check_target(operation, self.session.interception)
+            self.diary.write(Found(targets=tuple(sorted(targets))))
+
+    def _use(self) -> None:
+        meter = self.session.meter
+        if meter is not None:
+            self.diary.write(Used(self._test, meter.operations, self.session.commands, meter.simulated))
+
+    def _watch_text(self) -> None:
+        """Places of the program text are told when they are reached first: the process may die any time."""
+        text = self.session.text
+        if text is None:
+            return
+        if text.hook.sightings is not None:
+            text.hook.sightings.tell_first(lambda place: self._reached((place,)))
+        else:
+            text.hook.alternatives.on_first = lambda place: self.poll()
+
+    def _reached(self, places: tuple[int, ...]) -> None:
+        self.turn()
+        new = set(places) - self._places
+        if new:
+            self._places |= new
+            self.diary.write(Places(self._test, tuple(sorted(new))))
+
+    def end(self) -> None:
+        """The process ends: tell what is left to tell."""
+        if self._is_over or _member is not self:
+            return
+        self._is_over = True
+        self.poll()
+        self._use()
+        if self.session.text is not None:
+            self.session.text.finish()
+        self.diary.write(Found(modules=tuple(sorted(self._modules_of_vocabulary()))))
+        self.diary.write(Ended(time.monotonic()))
+
+    def _modules_of_vocabulary(self) -> set[str]:
+        vocabulary = self.session.job.vocabulary
+        names = [one.target for one in vocabulary.operations if one.named is None]
+        names += [*vocabulary.refusals, *vocabulary.checks, *vocabulary.failures]
+        names += [name for one in vocabulary.operations for name in one.refusals]
+        return {module for name in names if (module := name.partition(":")[0]) in sys.modules}
+
+    def _watch_exits(self) -> None:
+        """Exceptions that nobody catches, ends without clearing up, and signals sent to others."""
+        main, thread, leave = sys.excepthook, threading.excepthook, os._exit
+
+        def in_main(kind: type[BaseException], error: BaseException, traceback: Any) -> None:
+            self._raised(error, in_thread=False)
+            main(kind, error, traceback)
+
+        def in_thread(arguments: Any) -> None:
+            if arguments.exc_value is not None:
+                self._raised(arguments.exc_value, in_thread=True)
+            thread(arguments)
+
+        def leave_at_once(status: int) -> None:
+            self.end()
+            leave(status)
+
+        sys.excepthook, threading.excepthook = in_main, in_thread
+        os._exit = leave_at_once  # type: ignore[assignment]
+        sys.addaudithook(self._hear)
+
+    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+        if event in ("os.kill", "os.killpg") and _member is self:
+            pid, number = arguments
+            self.diary.write(Signalled(-pid if event == "os.killpg" else pid, int(number)))
+        elif event == "os.exec" and _member is self:
+            self.end()
+
+    def _raised(self, error: BaseException, *, in_thread: bool) -> None:
+        if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:
+            return
+        self.poll()
+        refusals = self.session.evidence.refusals
+        culprits = frozenset(id(leaf) for refusal in refusals for leaf in (refusal, *leaves(refusal)))
+        first = leaves(error)[0]
+        if isinstance(first, BudgetExceeded):
+            return
+        self.diary.write(
+            Raised(
+                self._test,
+                time.monotonic(),
+                class_name(type(first)),
+                str(first)[:2000],
+                is_refusal=bool(culprits) and is_due_to(error, culprits),
+                failure=self._failure(error),
+                in_thread=in_thread,
+            )
+        )
+
+    def _failure(self, error: BaseException) -> str | None:
+        failures = self.session.job.vocabulary.failures
+        for link in everything(error):
+            if isinstance(link, MemoryError):
+                return "the memory limit was reached"
+            if isinstance(link, MutabotError) or is_named(link, failures):
+                return f"{type(link).__name__}: {link}"
+        return None
+
+
+_watched: tuple[str, Session] | None = None
+
+
+def watch_forks(folder: str, session: Session) -> None:
+    """Let each process that the program forks off this one be a member of its own."""
+    global _watched  # noqa: PLW0603  # hooks cannot be taken back: the last one watched counts
+    if _watched is None:
+        os.register_at_fork(after_in_child=_after_fork)
+    _watched = folder, session
+
+
+def _after_fork() -> None:
+    if _watched is not None and not sys._getframe(1).f_code.co_filename.startswith(OURS):
+        _forked(*_watched)
+
+
+def _forked(folder: str, session: Session) -> None:
+    """In a process that a program has forked: it is a member of its own from now on."""
+    global _member  # noqa: PLW0603  # see above
+    _member = Member(folder, session.job, session)
+    _member.go_on()

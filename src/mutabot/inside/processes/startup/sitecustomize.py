@@ -1,0 +1,134 @@
+"""What Python processes below the tests load when they start: it waits for what concerns a campaign.
+
+Its folder is first in ``PYTHONPATH`` while a campaign runs, so every Python of 3.8 or newer loads it in
+place of a ``sitecustomize`` that may be there, which it loads then. It imports nothing that Python has not
+loaded by itself. A process is of interest as soon as it runs or imports a file of the program, or imports a
+module that the vocabulary names. Only then the rest of mutabot is loaded.
+
+The file ``wake`` of the folder that the environment names says what is of interest, a line each:
+``path FOLDER`` where packages of ours can be found, ``name MODULE``, ``file PATH`` of a file or folder.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+TYPE_CHECKING = False  # importing typing would cost each process more than all else here
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from importlib.machinery import ModuleSpec
+    from types import ModuleType
+
+_VARIABLE = "MUTABOT_PROCESSES"
+_NEWEST_TOO_OLD = (3, 10)
+
+
+class _Finder:
+    """Wakes the process when a module of interest is asked for; finds none itself."""
+
+    def __init__(self, folder: str, names: frozenset[str], files: Sequence[str]) -> None:
+        self.folder, self.names, self.files = folder, names, files
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        if name.partition(".")[0] not in self.names:
+            return None
+        _wake(self)
+        # what was put before us now has not been asked
+        for finder in sys.meta_path:
+            found = finder.find_spec(name, path, target) if finder is not self else None
+            if found is not None:
+                return found
+        return None
+
+    def is_of_interest(self, path: str) -> bool:
+        real = os.path.realpath(path)
+        return any(real == file or real.startswith(file.rstrip("/") + "/") for file in self.files)
+
+
+class _Ours:
+    """Finds our packages where the interpreter has none of its own."""
+
+    def __init__(self, folders: list[str]) -> None:
+        self.folders = folders
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        if path is not None or name not in ("mutabot", "wrapt"):
+            return None
+        from importlib.machinery import PathFinder
+
+        return PathFinder.find_spec(name, self.folders, target)
+
+
+def _wake(finder: _Finder) -> None:
+    if finder in sys.meta_path:
+        sys.meta_path.remove(finder)
+    if sys.version_info[:2] <= _NEWEST_TOO_OLD:
+        _tell_unable(finder.folder, "Python %d.%d is older than 3.11" % sys.version_info[:2])
+        return
+    try:
+        from mutabot.inside.processes.member import join
+    except Exception as error:
+        _tell_unable(finder.folder, "mutabot cannot be loaded: %r" % (error,))
+    else:
+        join(finder.folder)
+
+
+def _tell_unable(folder: str, why: str) -> None:
+    def quoted(text: str) -> str:
+        return '"%s"' % "".join(one if one.isalnum() or one in " ._-/:()'," else "?" for one in text)
+
+    command = ",".join(quoted(one) for one in getattr(sys, "orig_argv", sys.argv))
+    entry = '{"type":"Began","pid":%d,"parent":%d,"group":%d,"command":[%s],"time":0.0,"unable":%s}\n'
+    try:
+        with open(os.path.join(folder, "%d-unable.jsonl" % os.getpid()), "w") as file:
+            file.write(entry % (os.getpid(), os.getppid(), os.getpgrp(), command, quoted(why)))
+    except OSError:
+        pass
+
+
+def enter(command: str | None = None) -> None:
+    """Look whether there is a campaign, and from now on whether the process is of interest.
+
+    ``command`` is the script that it runs; by default the one that it was started with.
+    """
+    folder = os.environ.get(_VARIABLE)
+    if not folder or any(isinstance(finder, _Finder) for finder in sys.meta_path):
+        return
+    try:
+        with open(os.path.join(folder, "wake"), encoding="utf-8") as file:
+            lines = [line.rstrip("\n").partition(" ") for line in file]
+    except OSError:  # the campaign is over
+        return
+    told: dict[str, list[str]] = {"path": [], "name": [], "file": []}
+    for key, _, value in lines:
+        told[key].append(value)
+    finder = _Finder(folder, frozenset(told["name"]), told["file"])
+    sys.meta_path.append(_Ours(told["path"]))
+    sys.meta_path.insert(0, finder)
+    script = command if command is not None else getattr(sys, "argv", [""])[0]
+    if script and script[0] != "-" and finder.is_of_interest(script):
+        _wake(finder)
+
+
+def _chain(here: str) -> None:
+    """Load the module of our name that would have been found without us."""
+    from importlib.machinery import PathFinder
+    from importlib.util import module_from_spec
+
+    sys.path[:] = [entry for entry in sys.path if os.path.abspath(entry) != here]
+    spec = PathFinder.find_spec("sitecustomize")
+    if spec is None or spec.loader is None:
+        return
+    module = module_from_spec(spec)
+    sys.modules["sitecustomize"] = module
+    spec.loader.exec_module(module)
+
+
+if __name__ == "sitecustomize":
+    enter()
+    _chain(os.path.dirname(os.path.abspath(__file__)))

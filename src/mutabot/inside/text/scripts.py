@@ -1,0 +1,113 @@
+"""Program files that are run rather than imported: as the script of a process, or by ``runpy.run_path``.
+
+Python compiles these without asking a loader. The script of a process it runs by way of a loader if a path
+hook claims it, as it does with a zip file; what the script sees of itself is then put right before its first
+statement. ``runpy`` compiles in one function, which is patched.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import sys
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec, SourceFileLoader
+from importlib.util import spec_from_file_location
+from types import ModuleType
+from typing import Any
+
+import wrapt
+
+from . import loading
+
+
+def hook_runpy() -> None:
+    """Let ``runpy`` compile files that it runs as files are compiled that are imported."""
+    wrapt.register_post_import_hook(_patch, "runpy")
+
+
+def _patch(runpy: Any) -> None:
+    original = runpy._get_code_from_file
+    if getattr(original, "is_of_mutabot", False):
+        return
+
+    def code_of(*arguments: Any) -> Any:  # the name of the module came before the file in older versions
+        path = os.path.abspath(os.fspath(arguments[-1]))
+        if not loading.is_wanted(path):
+            return original(*arguments)
+        code = SourceFileLoader("__main__", path).get_code("__main__")
+        return (code, arguments[-1]) if len(arguments) > 1 else code
+
+    code_of.is_of_mutabot = True  # type: ignore[attr-defined]
+    runpy._get_code_from_file = code_of
+
+
+def hook_script() -> None:
+    """If the script that this process is about to run is wanted, let it be compiled as modules are.
+
+    To be called before Python looks for the script: while it is still setting itself up.
+    """
+    script = getattr(sys, "argv", [""])[0]
+    if script in ("", "-c", "-m") or not loading.is_wanted(os.path.abspath(script)):
+        return
+    path = os.path.abspath(script)
+    loading.add(_AsScript(path))
+
+    def claim(entry: str) -> _Importer:
+        if entry not in (script, path):  # as it was given, or as newer versions complete it
+            raise ImportError(entry)
+        return _Importer(path)
+
+    sys.path_hooks.insert(0, claim)
+    for entry in (script, path):
+        sys.path_importer_cache.pop(entry, None)
+
+
+class _Importer:
+    """Finds one module: the script."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+
+    def find_spec(self, name: str, target: ModuleType | None = None) -> ModuleSpec | None:
+        """The script, if it is asked for."""
+        if name != "__main__":
+            return None
+        if sys.path and os.path.abspath(sys.path[0]) == self._path:  # where a script has its own folder
+            sys.path[0] = os.path.dirname(os.path.realpath(self._path))
+        return spec_from_file_location(name, self._path, loader=SourceFileLoader(name, self._path))
+
+
+class _AsScript:
+    """Lets a script see itself as one: not as a module that was found somewhere. See ``loading.Step``."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+
+    def wants(self, path: str) -> bool:
+        """Only that script."""
+        return path == self._path
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Forget its spec before its first statement."""
+        forget = ast.parse("__spec__ = __package__ = __cached__ = None").body
+        for node in ast.walk(forget[0]):
+            if isinstance(node, ast.expr | ast.stmt):
+                node.lineno = node.end_lineno = 1
+                node.col_offset = node.end_col_offset = 0
+        tree.body[_beginning(tree.body) : _beginning(tree.body)] = forget
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """It runs as a module that was found."""
+
+
+def _beginning(body: Sequence[ast.stmt]) -> int:
+    """Where the first statement may stand: behind the docstring and what must come first."""
+    count = 0
+    for number, statement in enumerate(body):
+        is_text = isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+        is_future = isinstance(statement, ast.ImportFrom) and statement.module == "__future__"
+        if not (is_future or (is_text and number == 0)):
+            break
+        count += 1
+    return count
