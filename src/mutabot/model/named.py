@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from fnmatch import fnmatchcase
+from typing import Any
 
 from mutabot.model.values.path import Path
 from mutabot.model.values.quantity import Kind, Quantity
@@ -135,5 +136,5 @@ class Refused:
     """
 
     path: str
-    values: tuple[object, ...]
+    values: tuple[Any, ...]
     topic: str | None = None

@@ -114,7 +114,7 @@ class Member:
         session = self.session
         for site in session.recorder.sites:
             self.diary.write(site)
-        self._told = session.evidence
+        self._told = _copy_of(session.evidence)
         self._attend()
         session.pipe = self
         if session.text is not None:
@@ -158,7 +158,7 @@ class Member:
         now, before = session.evidence, self._told
         parts = frozenset(session.parts)
         if now.hits != before.hits or now != before or parts != self._parts:
-            self._told = replace(now, away=dict(now.away))
+            self._told = _copy_of(now)
             self.diary.write(self._did(before, now, parts - self._parts))
             self._parts = parts
         self._tell_found()
@@ -296,6 +296,10 @@ class Member:
             if isinstance(link, MutabotError) or is_named(link, failures):
                 return f"{type(link).__name__}: {link}"
         return None
+
+
+def _copy_of(evidence: Evidence) -> Evidence:
+    return replace(evidence, away=dict(evidence.away))
 
 
 _watched: tuple[str, Session] | None = None
