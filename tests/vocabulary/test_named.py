@@ -177,3 +177,9 @@ def test_two_operations_of_one_site_are_told_apart_by_name() -> None:
 def test_a_wrong_entry_is_refused_with_place_and_remedy(text: str, words: list[str], tmp_path: Path) -> None:
     message = refused(tmp_path, text)
     assert [word for word in words if word not in message] == [], message
+
+
+def test_a_quaternion_of_a_message_has_its_parts_by_name(tmp_path: Path) -> None:
+    found = entry(tmp_path, f'{GOAL}fields.pose.orientation = {{ kind = "quaternion" }}')
+    (quantity,) = found["publish /arm/goal"].arguments
+    assert quantity.order == "xyzw"

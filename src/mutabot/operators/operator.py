@@ -11,6 +11,7 @@ declares as class attributes, here and in ``rule.py``; there also stands where i
 from __future__ import annotations
 
 from abc import abstractmethod
+from array import array
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from random import Random
@@ -200,12 +201,15 @@ def is_number(value: Value) -> bool:
 def map_numbers(value: Value, change: Any) -> Value | None:
     """``change`` applied to a number, or to each number of a vector; None where there is none.
 
-    The container's type is kept: lists stay lists, tuples tuples, arrays arrays.
+    The container's type is kept: lists stay lists, tuples tuples, arrays arrays. An array of whole numbers
+    becomes one of floating-point numbers.
     """
     if is_number(value):
         return change(value)
     if isinstance(value, list | tuple) and value and all(is_number(item) for item in value):
         return type(value)(change(item) for item in value)
+    if isinstance(value, array) and len(value):
+        return array(value.typecode if value.typecode in "fd" else "d", [change(item) for item in value])
     if hasattr(value, "dtype") and getattr(value, "ndim", 0) == 1:
         changed = value.copy() if value.dtype.kind == "f" else value.astype(float)
         for index in range(len(changed)):

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from mutabot.model import Path, Quantity
+from mutabot.model import Kind, Path, Quantity
 from mutabot.model.values.path import Step
 from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
@@ -64,6 +64,8 @@ def read_quantity(
     sides: tuple[str, str] = SIDES,
 ) -> Iterator[Quantity]:
     """The quantity of a table, or one per axis where a slice has several; mistakes are noted."""
+    if sides is not SIDES and isinstance(raw, dict) and raw.get("kind") == Kind.QUATERNION:
+        raw = {"order": "xyzw", **raw}  # messages name the parts of a quaternion, or have them in this order
     raw, choice = read_mode_choice(check, raw, place)
     table = check.table(QuantityTable, raw, place)
     if table is None:

@@ -14,6 +14,7 @@ from __future__ import annotations
 import ast
 import copy
 import re
+from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass, is_dataclass
 from dataclasses import fields as dataclass_fields
@@ -110,7 +111,8 @@ class Path:
         inner = self._put(self._advance(value, step), new, depth + 1)
         try:
             return _with_step(value, step, inner)
-        except (TypeError, AttributeError, ValueError) as error:
+        except (TypeError, AttributeError, ValueError, AssertionError, OverflowError) as error:
+            # messages of ROS 2 assert that a value is of the type of its field
             raise PathError(
                 f"cannot replace {step} of {type(value).__name__} (path {self}): {error}",
                 path=str(self),
@@ -181,7 +183,8 @@ def _with_step(value: Any, step: Step, inner: Any) -> Any:
         items[step.key] = inner
         return type(value)(*items) if hasattr(value, "_fields") else type(value)(items)
     copied = _copy_for_item(value, inner)
-    copied[step.key] = inner
+    is_array = isinstance(value, array) and step.bounds is not None
+    copied[step.key] = array(value.typecode, inner) if is_array else inner
     return copied
 
 

@@ -9,6 +9,7 @@ from enum import StrEnum
 from math import isclose
 from typing import Any
 
+from .parts import numbers_of, with_numbers
 from .path import Path
 from .rotation import Quaternion, to_quaternion, to_values
 from .stamp import seconds_of, with_seconds
@@ -137,15 +138,27 @@ class Quantity:
     order: str | None = None
 
     def get(self, start: Any) -> Value:
-        """Its value in what its path starts at; the seconds of a stamp. Raises PathError."""
+        """Its value in what its path starts at: the seconds of a stamp, the numbers of an orientation.
+
+        Raises PathError.
+        """
         value = self.path.get(start)
+        if self.is_whole:
+            return numbers_of(value, self._parts)
         return seconds_of(value) if self.kind is Kind.STAMP else value
 
     def put(self, start: Any, value: Value) -> Any:
         """A copy of what its path starts at, with another value. Raises PathError."""
         if self.kind is Kind.STAMP:
             value = with_seconds(self.path.get(start), value)
+        elif self.is_whole:
+            value = with_numbers(self.path.get(start), self._parts, value)
         return self.path.put(start, value)
+
+    @property
+    def _parts(self) -> str:
+        """The names of the parts of an orientation, where these are attributes."""
+        return "xyz" if self.kind is Kind.ROTATION_VECTOR else (self.order or "").lower()
 
     @property
     def is_measured(self) -> bool:
