@@ -23,44 +23,6 @@ from mutabot.operators.passage import rehearse
 from mutabot.operators.registry import operator
 
 
-class Ros2:
-    """A message as the generator of ROS 2 writes them: private slots, and setters that assert types."""
-
-    class Quaternion:
-        __slots__ = ["_check_fields", "_w", "_x", "_y", "_z"]
-
-        def __init__(self, **parts: float) -> None:
-            self._check_fields = True
-            self.x, self.y, self.z = (parts.get(name, 0.0) for name in "xyz")
-            self.w = parts.get("w", 1.0)
-
-        def __eq__(self, other: object) -> bool:
-            return all(getattr(self, name) == getattr(other, name) for name in "xyzw")
-
-        __hash__ = None  # type: ignore[assignment]  # it can change
-
-    class Pose:
-        __slots__ = ["_check_fields", "_orientation"]
-
-        def __init__(self, orientation: Any) -> None:
-            self._check_fields = True
-            self.orientation = orientation
-
-    class Point:
-        __slots__ = ["_check_fields", "_covariance", "_effort", "_positions"]
-
-        def __init__(self, positions: Any, covariance: Any, effort: Any) -> None:
-            self._check_fields = True
-            self.positions, self.covariance, self.effort = positions, covariance, effort
-
-    class Trajectory:
-        __slots__ = ["_check_fields", "_points"]
-
-        def __init__(self, points: Any) -> None:
-            self._check_fields = True
-            self.points = points
-
-
 def _checked(name: str, fits: Callable[[Any], bool]) -> property:
     def put(self: Any, value: Any) -> None:
         if self._check_fields:
@@ -70,21 +32,42 @@ def _checked(name: str, fits: Callable[[Any], bool]) -> property:
     return property(lambda self: getattr(self, f"_{name}"), put)
 
 
-def _is_doubles(value: Any) -> bool:
-    return isinstance(value, array) and value.typecode == "d"
+def _is_float(value: Any) -> bool:
+    return isinstance(value, float)
 
 
-for _part in "xyzw":
-    setattr(Ros2.Quaternion, _part, _checked(_part, lambda value: isinstance(value, float)))
-Ros2.Pose.orientation = _checked("orientation", lambda value: isinstance(value, Ros2.Quaternion))  # type: ignore[attr-defined]
-Ros2.Point.positions = _checked("positions", _is_doubles)  # type: ignore[attr-defined]
-Ros2.Point.covariance = _checked(  # type: ignore[attr-defined]
-    "covariance", lambda value: isinstance(value, np.ndarray) and value.dtype == np.float64
-)
-Ros2.Point.effort = _checked("effort", lambda value: isinstance(value, array) and value.typecode == "B")  # type: ignore[attr-defined]
-Ros2.Trajectory.points = _checked(  # type: ignore[attr-defined]
-    "points", lambda value: all(isinstance(one, Ros2.Point) for one in value)
-)
+def _is_array(typecode: str) -> Callable[[Any], bool]:
+    return lambda value: isinstance(value, array) and value.typecode == typecode
+
+
+class Ros2:
+    """A message as the generator of ROS 2 writes them: private slots, and setters that assert types."""
+
+    class Message:
+        __slots__: list[str] = ["_check_fields"]
+
+        def __init__(self, **values: Any) -> None:
+            self._check_fields = True
+            for name, value in values.items():
+                setattr(self, name, value)
+
+    class Quaternion(Message):
+        __slots__ = ["_w", "_x", "_y", "_z"]
+        x, y, z, w = (_checked(name, _is_float) for name in "xyzw")
+
+    class Pose(Message):
+        __slots__ = ["_orientation"]
+        orientation = _checked("orientation", lambda value: isinstance(value, Ros2.Quaternion))
+
+    class Point(Message):
+        __slots__ = ["_covariance", "_effort", "_positions"]
+        positions = _checked("positions", _is_array("d"))
+        covariance = _checked("covariance", lambda value: getattr(value, "dtype", None) == np.float64)
+        effort = _checked("effort", _is_array("B"))
+
+    class Trajectory(Message):
+        __slots__ = ["_points"]
+        points = _checked("points", lambda value: all(isinstance(one, Ros2.Point) for one in value))
 
 
 class Ros1:
