@@ -4,6 +4,7 @@ PYTHON ?= python3
 VENV   := .venv
 RUN    := $(VENV)/bin/python
 READY  := $(VENV)/.ready
+ROS2   := $(VENV)/.ready-ros2
 
 .PHONY: demo test check format docs comparison bench stress judged shipped foreign clean
 
@@ -13,7 +14,7 @@ demo: $(READY)
 	$(RUN) benchmarks/paper_scores.py examples/paper
 
 ## lint, types and the whole test suite
-test: check
+test: check $(ROS2)
 	$(RUN) -m pytest -n 2 --dist worksteal
 
 ## lint and types only
@@ -59,7 +60,7 @@ bench: $(READY)
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the
 ## examples; both engines against plain pytest; ten thousand mutants; 200 campaigns in a row;
 ## 400 campaigns with a test that fails at random
-stress: $(READY)
+stress: $(READY) $(ROS2)
 	$(RUN) benchmarks/kill_and_resume.py --kills 30
 	$(RUN) benchmarks/differential.py
 	$(RUN) benchmarks/judged.py
@@ -87,6 +88,12 @@ $(VENV)-shipped/.ready: tools/shipped.txt pyproject.toml
 
 $(READY): requirements.lock pyproject.toml tools/setup.sh
 	PYTHON=$(PYTHON) VENV=$(VENV) sh tools/setup.sh
+	@touch $@
+
+# ROS 2 in the same environment. Where its wheels cannot be had, its tests skip themselves.
+$(ROS2): $(READY) requirements-ros2.lock
+	@$(RUN) -m pip install --quiet --disable-pip-version-check --no-deps -r requirements-ros2.lock || \
+	    echo "no wheels of ROS 2 for this Python and machine: its tests skip themselves"
 	@touch $@
 
 clean:

@@ -1,0 +1,54 @@
+"""The example ``ros2``: its own suite, in real processes over a real middleware."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from ros2_domain import domain
+
+pytest.importorskip("rclpy", reason="no ROS 2 in this environment (requirements-ros2.lock)")
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "ros2"
+
+
+@pytest.fixture
+def example(tmp_path: Path) -> Path:
+    """A copy of the example."""
+    folder = tmp_path / "ros2"
+    shutil.copytree(
+        EXAMPLE, folder, ignore=shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache")
+    )
+    return folder
+
+
+def run_suite(folder: Path, number: int, seed: int) -> subprocess.CompletedProcess[str]:
+    """Plain pytest on the example."""
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(number), "MUTABOT_SEED": str(seed)}
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+    return subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+@pytest.mark.usefixtures("plugins")
+def test_the_program_passes_its_test_for_both_colours(example: Path) -> None:
+    with domain() as number:
+        for seed in (0, 2):
+            done = run_suite(example, number, seed)
+            assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.usefixtures("plugins")
+def test_a_move_in_the_wrong_direction_is_noticed(example: Path) -> None:
+    mission = example / "mission.py"
+    mission.write_text(mission.read_text().replace("arm.move_by(y=0.2)", "arm.move_by(y=-0.2)"))
+    with domain() as number:
+        done = run_suite(example, number, 0)
+    assert done.returncode == 1, done.stdout
+    assert "1 failed" in done.stdout
