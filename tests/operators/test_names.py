@@ -22,6 +22,7 @@ OTHERWISE = {
     "noise": {"vocabulary"},
     "skip": {"cli"},
     "drop": {"proposal"},
+    "delay": {"proposal"},
 }
 #: what an id ends with, and what a selection may be made of
 AT_THE_END = re.compile(r"^(?:.*:)?(?P<name>[\w-]+)(?:=.*)?$", re.DOTALL)

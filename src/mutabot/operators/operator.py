@@ -124,6 +124,7 @@ class Operator(Rule):
             operator, and the mutant gets no verdict.
         remembers: whether what it does to a call depends on earlier ones of the same test. It is then given
             copies, which the program cannot change afterwards, and one middleware for all calls of a test.
+        least_calls: how many calls it takes to be what it is; it is left out where there are fewer.
     """
 
     family: ClassVar[str] = ROBOT
@@ -133,6 +134,7 @@ class Operator(Rule):
     asks_neighbours: ClassVar[bool] = False
     does_nothing: ClassVar[bool] = False
     remembers: ClassVar[bool] = False
+    least_calls: ClassVar[int] = 1
 
     def is_chance(self, subject: Subject) -> bool:
         """Whether only chance says at which calls it acts, so that nobody can tell beforehand."""

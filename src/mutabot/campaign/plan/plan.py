@@ -128,6 +128,8 @@ class _Seen:
 
 def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, str | None]:
     """What the mutant would do to the recorded calls, and why it is left out, if it is."""
+    if len(hits) < rule.least_calls:
+        return _Seen(), f"takes {rule.least_calls} calls, and the tests make {len(hits)}"
     if rule.is_chance(subject):
         return _Seen(_value(subject, hits[0])), None
     last = _Seen()

@@ -13,8 +13,9 @@ What hooks keep to, so that all operators mean the same in every middleware:
   ``deliver`` calls the program's callback, ``Waiting.wait_for`` stands around a wait. A handler's own result
   may be a ``Delivery`` there and nowhere else.
 - An answer that is late or never comes is the handler's matter: it awaits ``means.sleep`` and ``means.lost``.
-- What sets something up is ``wrapped(name=…, depth=…)`` with the arguments of ``SETTING_UP``; one that the
-  program leaves out is left out. ``wrapped`` takes all of them, whatever the program gave.
+- What sets something up is ``wrapped(name=…, depth=…)`` with the arguments of ``SETTING_UP``, as they come
+  out with the defaults of the middleware; those that it does not know are left out, and a deadline of 0 is
+  none. ``wrapped`` has a parameter for each that it is called with.
 - A parameter is read by ``wrapped(default=…)``, where the program or its declaration gives a default, and
   what ``wrapped`` returns is the value itself.
 """

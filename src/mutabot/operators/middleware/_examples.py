@@ -28,3 +28,30 @@ RECEIVE = operation(Form.RECEIVE, "/gap", result=(GAP,))
 CALL = operation(Form.CALL, "/gripper/close")
 GOAL = operation(Form.GOAL, "/arm/follow")
 TICK = operation(Form.TICK, "/mission/check")
+RESULT = operation(Form.RESULT, "/arm/follow")
+SPEED = operation(
+    Form.PARAMETER, "speed", settings_of(Form.PARAMETER), (Quantity("value", Path(), Kind.SETTING),)
+)
+ADVERTISE = setting_up(Form.ADVERTISE, "/arm/target")
+SUBSCRIBE = setting_up(Form.SUBSCRIBE, "/gap")
+CLIENT = setting_up(Form.CLIENT, "/arm/follow")
+TIMER = setting_up(Form.TIMER, "/mission/check")
+RATE = setting_up(Form.RATE, "/mission")
+
+FRAME = Quantity(
+    "header.frame_id",
+    Path.parse("message.header.frame_id", rooted=True),
+    Kind.FRAME_ID,
+    values=("base", "tool"),
+)
+OPEN_FRAME = Quantity("header.frame_id", FRAME.path, Kind.FRAME_ID)
+HEARD_FRAME = Quantity("header.frame_id", Path.parse(".header.frame_id", rooted=False), Kind.FRAME_ID)
+STAMP = Quantity("header.stamp", Path.parse("message.header.stamp", rooted=True), Kind.STAMP, unit="s")
+HEARD_STAMP = Quantity("header.stamp", Path.parse(".header.stamp", rooted=False), Kind.STAMP, unit="s")
+SEND_STAMP = operation(Form.PUBLISH, "/arm/target", (STAMP,))
+HEAR_STAMP = operation(Form.RECEIVE, "/scan", result=(HEARD_STAMP,))
+
+
+def setting_of(operation: Operation, name: str) -> Quantity:
+    """One of the settings of an operation."""
+    return next(one for one in operation.arguments if one.name == name)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from mutabot.model import Case, Operation, Path, Pattern, Quantity
+from mutabot.model import Case, Kind, Operation, Path, Pattern, Quantity
 from mutabot.model.named import WRITTEN, Form, Named, Refused, settings_of
 from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
@@ -187,7 +187,9 @@ def _operation(check: Check, table: NamedTable, named: Named, is_main: bool, pla
 def _read(check: Check, table: NamedTable, form: Form, key: str, place: KeyPath) -> tuple[Quantity, ...]:
     """What is read: a value as a whole, or fields of a message."""
     raw = getattr(table, key)
-    if form is Form.PARAMETER and raw is not None:
+    if form is Form.PARAMETER and raw is None:
+        return (Quantity(key, Path(), Kind.SETTING),)
+    if form is Form.PARAMETER:
         where = (*place, key)
         return tuple(read_quantity(check, raw, where, Path(), written=False, name=key, sides=_SIDES[form]))
     return read_fields(check, raw, (*place, key), None, _SIDES[form])

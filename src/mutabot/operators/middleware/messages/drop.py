@@ -23,8 +23,8 @@ class Drop(FormOperator):
 
     name = "drop"
     summary = (
-        "A message, request or goal is lost on its way, a result or the tick of a timer never comes: each, "
-        "every third, or with a probability of 30 %."
+        "A message, request or goal is lost on its way, a result or the tick of a timer never comes: each,"
+        " every third, or with a probability of 30 %."
     )
     rank = 110
     remembers = True

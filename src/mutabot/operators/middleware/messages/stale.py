@@ -22,8 +22,8 @@ class Stale(FormOperator):
 
     name = "stale"
     summary = (
-        "An old message is sent, or received, in the place of the new one: always the first, or always the "
-        "previous."
+        "An old message is sent, or received, in the place of the new one: always the first, or always the"
+        " previous."
     )
     rank = 130
     remembers = True

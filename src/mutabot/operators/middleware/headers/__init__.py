@@ -1,0 +1,1 @@
+"""What the headers of messages say wrongly, one operator to a file."""

@@ -1,0 +1,1 @@
+"""What befalls nodes, services and actions, one operator to a file."""

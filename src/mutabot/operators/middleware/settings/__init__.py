@@ -1,0 +1,1 @@
+"""What publishers, subscriptions, clients, timers and rates are set up with, one operator to a file."""
