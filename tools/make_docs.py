@@ -1,4 +1,5 @@
-"""Write docs/operators.md from the operators' own examples, and docs/configuration.md from the settings.
+"""Write docs/operators.md and docs/middleware.md from the operators' own examples, and docs/configuration.md
+from the settings.
 
 Use: ``python tools/make_docs.py``; with ``--check`` nothing is written, and the exit code is 1 if a page is
 out of date.
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import configuration_page
+from mutabot.families import MIDDLEWARE
 from mutabot.model import Mishap, Quantity
 from mutabot.model.values.notation import Notation
 from mutabot.operators import Example, Operator, Subject, operator
@@ -27,7 +29,8 @@ HEAD = """\
 An *operator* is a rule that plants one small fault in what the program tells the robot or hears from it.
 It sees what the [vocabulary](vocabulary.md) describes: operations and quantities, never program text.
 A changed value stays one that the robot takes: where it would leave the range or the values that the
-vocabulary gives, the operator stays away.
+vocabulary gives, the operator stays away. What befalls messages on their way has a page of its own:
+[middleware](middleware.md).
 """
 
 TAIL = """\
@@ -61,11 +64,26 @@ The whole package stands in `tests/plugins/package`.
 
 def page() -> str:
     """The text of the page."""
-    operators = [operator(name) for name in built_in()]
+    operators = _operators(of_middleware=False)
     lines = [HEAD, *_overview(operators), *_published(operators)]
     for each in operators:
         lines += _section(each)
     return "\n".join([*lines, TAIL])
+
+
+def page_of_middleware() -> str:
+    """The text of the page on the family ``middleware``."""
+    operators = _operators(of_middleware=True)
+    text = (Path(__file__).parent / "middleware_page.md").read_text(encoding="utf-8")
+    lines = [text.replace("{overview}\n", "\n".join(_overview(operators)))]
+    for each in operators:
+        lines += _section(each)
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _operators(*, of_middleware: bool) -> list[Operator]:
+    found = (operator(name) for name in built_in())
+    return [one for one in found if (one.family == MIDDLEWARE) is of_middleware]
 
 
 def _overview(operators: list[Operator]) -> Iterator[str]:
@@ -145,7 +163,11 @@ def _call(subject: Subject, values: Mapping[str, Any]) -> str:
         return f'`{operation.name}("{text}")`'
     target = (opposite and operation.opposite) or operation.target
     name = target if operation.named is not None else target.partition(":")[2]
-    return ", ".join([f"`{name}({_values(subject.written, values)})`", *mishaps])
+    given = _values(subject.written, values)
+    if operation.named is not None:
+        given = f": {given}" if given else ""
+        return ", ".join([f"`{name}{given}`", *mishaps])
+    return ", ".join([f"`{name}({given})`", *mishaps])
 
 
 def _mishap(mishap: Mishap, seconds: float) -> str:
@@ -194,7 +216,11 @@ def _row(*cells: str) -> str:
 
 def main(arguments: list[str]) -> int:
     """Write the pages, or check them; returns the exit code."""
-    pages = {"operators.md": page(), "configuration.md": configuration_page.page()}
+    pages = {
+        "operators.md": page(),
+        "middleware.md": page_of_middleware(),
+        "configuration.md": configuration_page.page(),
+    }
     if arguments == ["--check"]:
         paths = {DOCS / name: text for name, text in pages.items()}
         return int(any(not path.is_file() or path.read_text("utf-8") != text for path, text in paths.items()))

@@ -91,6 +91,12 @@ class Client:
         handler = self._find(Form.RECEIVE, name)
         return callback(message) if handler is None else deliver(handler, message, callback, where)
 
+    def tick(self, callback: Callable[[Any], Any]) -> None:
+        """A timer's callback is called."""
+        handler = self._find(Form.TICK, "/mission/check")
+        where = Where(callback.__code__, NODE, self._means)
+        callback(None) if handler is None else deliver(handler, None, callback, where)
+
     def wait(self, name: str) -> Any:
         """Wait for a message."""
 
@@ -105,10 +111,14 @@ class Client:
 
     def set_up(self, form: Form, **settings: Any) -> None:
         """Set something up."""
-        name = settings.get("name", "/timer")
+        name = f"/arm/{settings['name']}"  # the node stands in this namespace
 
-        def wrapped(**settings: Any) -> None:
-            self.log.append(settings)
+        def wrapped(
+            name: Any = ..., depth: Any = ..., reliability: Any = ..., deadline: Any = ..., latch: Any = ...
+        ) -> None:
+            given = {**locals()}
+            given.pop("self")
+            self.log.append({key: value for key, value in given.items() if value is not ...})
 
         handler = self._find(form, name)
         where = Where(node=NODE, means=self._means)
@@ -212,6 +222,18 @@ class ClientStage:
         client.coming = list(coming)
         program.run(client)
         session.interception.remove()
+        return self.again(program, operator, variant, quantity, coming=coming)
+
+    def again(
+        self,
+        program: ModuleType,
+        operator: str,
+        variant: str = "",
+        quantity: str | None = None,
+        *,
+        coming: Any = (),
+    ) -> tuple[Any, Client, Activation]:
+        """The same for a program that has run as the original."""
         seen = [line for line in self.pipe.lines if isinstance(line, SiteSeen)][-1]
         site = Site(seen.span, "text", 1, Role.PROGRAM)
         mutant = Mutant(1, "middleware", operator, site, seen.operation, seen.pattern, quantity, variant, "")

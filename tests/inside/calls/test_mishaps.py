@@ -7,7 +7,19 @@ from typing import Any
 
 import pytest
 
-from mutabot.operators.middleware._examples import CALL, GOAL, PUBLISH, RECEIVE
+from mutabot.model.named import Form
+from mutabot.operators.middleware._examples import (
+    ADVERTISE,
+    CALL,
+    FRAME,
+    GOAL,
+    PUBLISH,
+    RECEIVE,
+    SPEED,
+    STAMP,
+    TICK,
+    operation,
+)
 from tests.inside.client import ClientStage, LostAnswerError
 
 POINT = "from types import SimpleNamespace as Point\n"
@@ -114,3 +126,129 @@ def test_what_cannot_be_known_before_is_said(stage: ClientStage) -> None:
     assert activation.evidence.hits == 4
     assert activation.evidence.acted == 3
     assert activation.evidence.away == {"there is none before it": 1}
+
+
+def test_what_is_published_late_goes_out_by_itself(stage: ClientStage) -> None:
+    assert sent(stage, "delay", "1") == [(1.0, 1.0), (1.0, 2.0), (1.0, 3.0), (1.0, 4.0)]
+
+
+def test_what_comes_late_is_heard_late(stage: ClientStage) -> None:
+    assert [gap for _, gap in heard(stage, "delay", "1")] == [0.1, 0.2, 0.3]
+    assert min(now for now, _ in heard(stage, "delay", "1")) == 1.0
+
+
+def test_who_waits_for_a_late_answer_waits_longer(stage: ClientStage) -> None:
+    answer, client, _ = stage.mutated(ASK, "delay", "1")
+    assert (answer, client.log[0][0], client.now) == ("now", 1.0, 1.0)
+
+
+def test_messages_change_places(stage: ClientStage) -> None:
+    assert [x for _, x in sent(stage, "reorder", fresh=False)] == [2.0, 1.0, 4.0, 3.0]
+    assert [gap for _, gap in heard(stage, "reorder")] == [0.2, 0.1]
+    assert waited(stage, "reorder") == [0.2, 0.1]
+
+
+def test_a_goal_is_cancelled_once_it_is_sent(stage: ClientStage) -> None:
+    text = "def run(client):\n    return client.send('/arm/follow', 7)\n"
+    result, client, _ = stage.mutated(text, "cancel-goal")
+    assert (result, client.cancelled, len(client.log)) == (7, [7], 1)
+
+
+def test_an_answer_is_lost_after_the_service_has_done_its_work(stage: ClientStage) -> None:
+    result, client, _ = stage.mutated(ASK, "lose-answer")
+    assert isinstance(result, LostAnswerError)
+    assert len(client.log) == 1
+
+
+def test_the_process_of_the_tests_is_never_killed(stage: ClientStage) -> None:
+    for operator in ("kill-node", "restart-node"):
+        result, _, activation = stage.mutated(ASK, operator)
+        assert result == "now"
+        assert activation.evidence.acted == 0
+        assert activation.evidence.away == {"the program runs in the tests' own process": 1}
+
+
+@pytest.mark.parametrize(("variant", "expected"), [("10", 10.0), ("-10", -10.0)])
+def test_a_clock_jumps_once(tmp_path: Path, variant: str, expected: float) -> None:
+    text = """
+def run(client):
+    for _ in range(3):
+        client.tick(check)
+
+def check(event):
+    pass
+"""
+    _, client, activation = ClientStage(tmp_path, (TICK,)).mutated(text, "jump-clock", variant)
+    assert client.jumped == expected
+    assert activation.evidence.acted == 1
+
+
+SET_UP = """
+from mutabot.model.named import Form
+
+def run(client):
+    client.set_up(Form.ADVERTISE, name="target", depth=10, reliability="reliable", deadline=0.0, latch=False)
+"""
+
+
+@pytest.mark.parametrize(
+    ("operator", "variant", "setting", "expected"),
+    [
+        ("wrong-name", "misspelt", "name", "target_misspelt"),
+        ("wrong-name", "global", "name", "/target"),
+        ("short-queue", "", "depth", 1),
+        ("flip-latch", "", "latch", True),
+        ("wrong-reliability", "", "reliability", "best_effort"),
+        ("wrong-deadline", "tight", "deadline", 0.001),
+    ],
+)
+def test_one_setting_is_another(
+    tmp_path: Path, operator: str, variant: str, setting: str, expected: Any
+) -> None:
+    stage = ClientStage(tmp_path, (ADVERTISE,))
+    _, client, activation = stage.mutated(SET_UP, operator, variant, setting)
+    usual = {"name": "target", "depth": 10, "reliability": "reliable", "deadline": 0.0, "latch": False}
+    assert client.log == [{**usual, setting: expected}]
+    assert activation.evidence.example == (usual[setting], expected)
+
+
+def test_a_setting_that_the_middleware_does_not_have_stays_away(tmp_path: Path) -> None:
+    stage = ClientStage(tmp_path, (ADVERTISE,))
+    _, _, activation = stage.mutated(SET_UP, "wrong-durability", "", "durability")
+    assert activation.evidence.away == {"the call gives no such value": 1}
+
+
+@pytest.mark.parametrize(("default", "expected"), [(1, 1), (5, 5)])
+def test_a_parameter_has_its_default(tmp_path: Path, default: int, expected: int) -> None:
+    text = f"def run(client):\n    return client.parameter('speed', default={default})\n"
+    result, _, activation = ClientStage(tmp_path, (SPEED,)).mutated(text, "use-default", "", "value")
+    assert result == expected
+    assert activation.evidence.acted == int(default != 5)
+
+
+HEADER = f"""{POINT}
+def run(client):
+    message = Point(header=Point(frame_id="base", stamp=Point(sec=20, nanosec=5)))
+    client.publish("/arm/target", message)
+    return message.header.frame_id, message.header.stamp.sec
+"""
+
+
+@pytest.mark.parametrize(
+    ("operator", "variant", "quantity", "expected"),
+    [
+        ("wrong-frame", "", "header.frame_id", ("tool", 20, 5)),
+        ("wrong-frame", "empty", "header.frame_id", ("", 20, 5)),
+        ("shift-stamp", "-5", "header.stamp", ("base", 15, 5)),
+        ("empty-stamp", "", "header.stamp", ("base", 0, 0)),
+    ],
+)
+def test_the_header_of_a_copy_is_wrong(
+    tmp_path: Path, operator: str, variant: str, quantity: str, expected: Any
+) -> None:
+    send = operation(Form.PUBLISH, "/arm/target", (FRAME, STAMP))
+    own, client, _ = ClientStage(tmp_path, (send,)).mutated(HEADER, operator, variant, quantity)
+    assert own == ("base", 20)
+    (_, _, message) = client.log[0]
+    stamp = message.header.stamp
+    assert (message.header.frame_id, stamp.sec, pytest.approx(stamp.nanosec, abs=2)) == expected

@@ -178,7 +178,7 @@ class _Performer:
             self.activation.on_call(True)
             self.activation.watched = refused_of(call)
         try:
-            await mishaps.before(call, partial(self.activation.note, self.passage))
+            await mishaps.before(call, self._last_words)
             result = mishaps.timed(call, partial(self.door.perform, call, self.passage.call))()
             if self.is_async and inspect.isawaitable(result):
                 result = await result
@@ -196,6 +196,12 @@ class _Performer:
             self.activation.refused_as(answered(call, result))
         reply = self.door.reply(call, result)
         return kept_reply(reply) if self.activation.rule.remembers else reply
+
+    def _last_words(self) -> None:
+        """This process is about to die of the mutant: tell what it did."""
+        self.activation.note(self.passage)
+        self.activation.on_call(False)
+        self.activation.on_act()
 
     def _judge(self, error: BaseException) -> None:
         if not self.passage.changed_command:
