@@ -36,6 +36,7 @@ from mutabot.inside.session import Session
 from mutabot.model.outcome import added
 
 from .host import Host
+from .unseen import Unseen
 
 #: signals by which a program dies of its own fault
 _OWN_FAULT = {signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL}
@@ -109,6 +110,8 @@ class Members:
         self._signalled: set[int] = set()
         self._unable: set[str] = set()
         self._acted = False
+        if session.job.inspect:
+            Unseen(self._say_unseen).watch()
 
     def start_test(self, test: str) -> None:
         """A test begins: some may be there from before."""
@@ -288,6 +291,8 @@ class Members:
         name = " ".join(began.command[:3])
         if self._session.job.inspect and name not in self._unable:
             self._unable.add(name)
-            self._session.pipe.send(
-                Remark("processes", name, f"nothing in this process is seen or mutated: {began.unable}")
-            )
+            self._say_unseen(name, began.unable or "")
+
+    def _say_unseen(self, name: str, why: str) -> None:
+        text = f"nothing in this process is seen or mutated: {why}"
+        self._session.pipe.send(Remark("processes", name, text))

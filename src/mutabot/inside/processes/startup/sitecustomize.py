@@ -9,8 +9,6 @@ The file ``wake`` of the folder that the environment names says what is of inter
 ``path FOLDER`` where packages of ours can be found, ``name MODULE``, ``file PATH`` of a file or folder.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 
@@ -27,12 +25,12 @@ _NEWEST_TOO_OLD = (3, 10)
 class _Finder:
     """Wakes the process when a module of interest is asked for; finds none itself."""
 
-    def __init__(self, folder: str, names: frozenset[str], files: Sequence[str]) -> None:
+    def __init__(self, folder: str, names: "frozenset[str]", files: "Sequence[str]") -> None:
         self.folder, self.names, self.files = folder, names, files
 
     def find_spec(
-        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
-    ) -> ModuleSpec | None:
+        self, name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None
+    ) -> "ModuleSpec | None":
         if name.partition(".")[0] not in self.names:
             return None
         _wake(self)
@@ -51,15 +49,15 @@ class _Finder:
 class _Ours:
     """Finds our packages where the interpreter has none of its own."""
 
-    def __init__(self, folders: list[str]) -> None:
+    def __init__(self, folders: "list[str]") -> None:
         self.folders = folders
 
     def find_spec(
-        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
-    ) -> ModuleSpec | None:
+        self, name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None
+    ) -> "ModuleSpec | None":
         if path is not None or name not in ("mutabot", "wrapt"):
             return None
-        from importlib.machinery import PathFinder
+        from _frozen_importlib_external import PathFinder
 
         return PathFinder.find_spec(name, self.folders, target)
 
@@ -91,7 +89,7 @@ def _tell_unable(folder: str, why: str) -> None:
         pass
 
 
-def enter(command: str | None = None) -> None:
+def enter(command: "str | None" = None) -> None:
     """Look whether there is a campaign, and from now on whether the process is of interest.
 
     ``command`` is the script that it runs; by default the one that it was started with.
@@ -104,7 +102,7 @@ def enter(command: str | None = None) -> None:
             lines = [line.rstrip("\n").partition(" ") for line in file]
     except OSError:  # the campaign is over
         return
-    told: dict[str, list[str]] = {"path": [], "name": [], "file": []}
+    told: "dict[str, list[str]]" = {"path": [], "name": [], "file": []}
     for key, _, value in lines:
         told[key].append(value)
     finder = _Finder(folder, frozenset(told["name"]), told["file"])
@@ -117,8 +115,8 @@ def enter(command: str | None = None) -> None:
 
 def _chain(here: str) -> None:
     """Load the module of our name that would have been found without us."""
-    from importlib.machinery import PathFinder
-    from importlib.util import module_from_spec
+    from _frozen_importlib import module_from_spec
+    from _frozen_importlib_external import PathFinder
 
     sys.path[:] = [entry for entry in sys.path if os.path.abspath(entry) != here]
     spec = PathFinder.find_spec("sitecustomize")
