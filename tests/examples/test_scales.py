@@ -116,6 +116,21 @@ def test_every_mutant_ends_as_it_must(journal: Journal) -> None:
     assert ends == EXPECTED
 
 
+def test_the_same_program_as_a_script_in_a_process_of_its_own_ends_alike(project: Path) -> None:
+    configuration = load_configuration(project / "script")
+    vocabulary = load(configuration.vocabulary, configuration.root)
+    few = ("*:pick:*", "*lift/{height}:repeat", "*lift/{height}:opposite", "*color*")
+    request = Request(configuration, vocabulary, ROUNDS, configuration.seed, jobs=2, only=few, repeats=False)
+    with Journal.open(run_campaign(request, Silent())) as journal:
+        ends = {
+            outcome.mutant.removeprefix("sort_box.py:<module>:line."): in_words(outcome)
+            for outcome in journal.outcomes()
+        }
+    assert len(ends) > len(few)
+    expected = {mutant.removeprefix("link."): end for mutant, end in EXPECTED.items()}
+    assert ends == {mutant: expected[mutant] for mutant in ends}
+
+
 def test_amounts_outside_the_robots_range_are_left_out(journal: Journal) -> None:
     assert {short(left.id) for left in journal.left_out()} == LEFT_OUT
 

@@ -1,0 +1,202 @@
+"""Programs that the tests start as processes: each end has the verdict that a person would give."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mutabot.campaign.run import run_campaign
+from mutabot.model import Outcome, Verdict
+from tests.campaign.project import ROBOT, Quiet, request_for, run, write_project
+
+TESTS = """
+    import json
+    import os
+    import subprocess
+    import sys
+
+    def start(*arguments):
+        command = [sys.executable, "mission.py", *arguments]
+        return subprocess.run(command, capture_output=True, text=True, timeout=60)
+
+    def test_mission():
+        done = start()
+        assert done.returncode == 0, done.stderr
+        assert done.stdout == "0.5\\n"
+"""
+
+
+def ends_of(folder: Path, mission: str, tests: str = TESTS, robot: str = ROBOT) -> dict[str, Outcome]:
+    project = write_project(folder, mission, tests, robot=robot)
+    found = run(project, fresh=True)
+    return {mutant.removeprefix("mission.py:"): outcome for mutant, outcome in found.items()}
+
+
+def test_a_refusal_that_ends_the_process_is_no_kill_and_one_that_it_handles_is(tmp_path: Path) -> None:
+    mission = """
+        from robot import Arm, Refused
+
+        arm = Arm(x=0.9)
+        arm.move_by(-0.4)
+        try:
+            arm.move_by(0.4)
+            arm.move_by(-0.4)
+        except Refused:
+            print("gave up")
+        print(round(arm.x, 6))
+    """
+    found = ends_of(tmp_path, mission)
+    first = found["<module>:arm.move_by#1:dx:reverse"]
+    assert (first.verdict, first.acted) == (Verdict.REFUSED, 1)
+    assert first.message is not None
+    assert "out of reach" in first.message
+
+
+def test_a_crash_of_the_process_is_noticed_by_the_test_that_looks_at_it(tmp_path: Path) -> None:
+    mission = """
+        import ctypes
+
+        from robot import Arm
+
+        arm = Arm()
+        arm.move_by(0.5)
+        if arm.x < 0:
+            ctypes.string_at(0)
+        print(arm.x)
+    """
+    found = ends_of(tmp_path, mission)["<module>:arm.move_by#1:dx:reverse"]
+    assert (found.verdict, found.acted) == (Verdict.KILLED, 1)
+
+
+def test_a_process_that_somebody_else_kills_says_nothing_about_its_mutant(tmp_path: Path) -> None:
+    tests = """
+        import subprocess
+        import sys
+
+        def test_mission():
+            mission = subprocess.Popen([sys.executable, "mission.py"], stdout=subprocess.PIPE, text=True)
+            for line in mission.stdout:
+                if float(line) < 0:  # a shell: nobody of the campaign's
+                    subprocess.run(["sh", "-c", f"kill -9 {mission.pid}"], check=True)
+            assert mission.wait() == 0
+    """
+    mission = """
+        import time
+
+        from robot import Arm
+
+        arm = Arm()
+        arm.move_by(0.5)
+        print(arm.x, flush=True)
+        if arm.x < 0:
+            time.sleep(60)
+    """
+    found = ends_of(tmp_path, mission, tests)["<module>:arm.move_by#1:dx:reverse"]
+    assert found.verdict is Verdict.ERROR
+    assert found.message == "the process mission.py was killed from outside, by signal 9"
+
+
+def test_a_process_that_fails_before_the_mutant_acts_is_an_error(tmp_path: Path) -> None:
+    mission = """
+        import os
+        from pathlib import Path
+
+        from robot import Arm
+
+        runs = Path(os.environ["RUNS"])
+        runs.write_text(runs.read_text() + "x" if runs.exists() else "x")
+        if len(runs.read_text()) > int(os.environ["LIMIT"]):
+            raise OSError("the licence server does not answer")
+        arm = Arm()
+        arm.move_by(0.5)
+        print(arm.x)
+    """
+    project = write_project(tmp_path, mission, TESTS)
+    with pytest.MonkeyPatch.context() as patch:
+        # a folder that no run keeps to itself: two runs of the baseline, one of each control, two mutants
+        patch.setenv("RUNS", f"/dev/shm/{tmp_path.name}-{id(tmp_path)}")
+        patch.setenv("LIMIT", "5")
+        try:
+            found = run(project, fresh=True, jobs=1)
+        finally:
+            Path(f"/dev/shm/{tmp_path.name}-{id(tmp_path)}").unlink(missing_ok=True)
+    failed = [one for one in found.values() if one.message and "licence server" in one.message]
+    assert failed
+    assert {one.verdict for one in failed} == {Verdict.ERROR}
+    assert all("ended before the mutant changed anything" in (one.message or "") for one in failed)
+
+
+def test_a_process_that_never_ends_times_out(tmp_path: Path) -> None:
+    mission = """
+        from robot import Arm
+
+        arm = Arm()
+        arm.move_by(0.5)
+        while arm.position() < 0:
+            pass
+        print(arm.x)
+    """
+    found = ends_of(tmp_path, mission)["<module>:arm.move_by#1:dx:reverse"]
+    assert found.verdict is Verdict.TIMEOUT
+    assert found.message is not None
+    assert "operations" in found.message
+
+
+def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
+    tests = """
+        import os
+        import subprocess
+        import sys
+
+        import mission
+
+        def test_mission():
+            assert mission.go() == 0.5
+
+        def test_apart():
+            subprocess.run([sys.executable, "mission.py"], env={"PATH": os.environ["PATH"]}, check=True)
+            subprocess.run([sys.executable, "-I", "-c", "pass"], check=True)
+    """
+    mission = """
+        from robot import Arm
+
+        def go():
+            arm = Arm()
+            arm.move_by(0.5)
+            return arm.x
+    """
+    progress = Quiet()
+    run_campaign(request_for(write_project(tmp_path, mission, tests)), progress)
+    notes = [line for line in progress.lines if "nothing in this process is seen or mutated" in line]
+    assert len(notes) == 2
+    assert "start from os.environ" in notes[0]
+    assert "-I" in notes[1]
+
+
+def test_a_script_sees_itself_as_ever_when_its_text_is_mutated(tmp_path: Path) -> None:
+    mission = '''
+        """What it does."""
+        from __future__ import annotations
+
+        import sys
+
+        own = (__name__, __spec__, __package__, __doc__, __file__ == sys.argv[1], sys.path[0] == sys.argv[2])
+        size = 3
+        print(own, sys.argv[0], size)
+    '''
+    tests = """
+        import os
+        import subprocess
+        import sys
+
+        def test_own():
+            place = os.path.abspath("mission.py")
+            told = subprocess.run([sys.executable, "mission.py", place, os.path.dirname(place)],
+                                  capture_output=True, text=True, check=True).stdout
+            assert told == "('__main__', None, None, 'What it does.', True, True) mission.py 3\\n"
+    """
+    found = run(write_project(tmp_path, mission, tests), fresh=True, families=("classical",))
+    changed = [one for mutant, one in found.items() if ":3#1:" in mutant]
+    assert changed
+    assert {one.verdict for one in changed} == {Verdict.KILLED}
