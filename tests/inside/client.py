@@ -64,8 +64,14 @@ class Client:
 
         def wrapped(message: Any) -> None:
             self.log.append((self.now, name, message))
+            self.tell(name, message)
 
         self._do(Form.PUBLISH, name, wrapped, message)
+
+    def tell(self, name: str, message: Any) -> None:
+        """A message passes by."""
+        if self.messages is not None:
+            self.messages.heard(name, message)
 
     def call(self, name: str, request: Any) -> Any:
         """Call a service, which answers with what it was asked."""
@@ -87,6 +93,7 @@ class Client:
 
     def receive(self, name: str, message: Any, callback: Callable[[Any], Any]) -> Any:
         """A message has come: the program's callback is called."""
+        self.tell(name, message)
         where = Where(callback.__code__, NODE, self._means)
         handler = self._find(Form.RECEIVE, name)
         return callback(message) if handler is None else deliver(handler, message, callback, where)

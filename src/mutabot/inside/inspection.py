@@ -113,6 +113,9 @@ class Inspection:
         if operation.target not in self._askers:
             return
         for current in operation.currents:
+            reading = self._vocabulary.operation(current)
+            if reading is not None and reading.named is not None:
+                continue  # nothing is asked: what came last tells
             try:
                 why = why_not_asked(current, self._askers[operation.target])
             except (NotFoundError, AttributeError, KeyError):  # it is told as an operation of its own

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
@@ -28,6 +28,7 @@ from mutabot.inside.targets.target import Finding, Handler
 from mutabot.inside.text.returns import Returns
 from mutabot.inside.text.session_text import SessionText
 from mutabot.model import Call, Choice, Mutant, Operation, Probe, Role, Span
+from mutabot.model.values.quantity import Value
 
 from .evidence import Evidence, together
 from .inspection import Inspection
@@ -73,6 +74,8 @@ class Session:
     test: str = ""
     parts: set[str] = field(default_factory=set)
     _doors: list[Door] = field(default_factory=list)
+    _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
+    _telling: list[Door] = field(default_factory=list)
     _bypasses: Bypasses = field(init=False)
 
     def __post_init__(self) -> None:
@@ -112,15 +115,21 @@ class Session:
             self._watch_imports()
 
     def _listen(self) -> None:
-        """Hear the messages that pass by, if they may say that the robot refuses something."""
+        """Hear the messages that pass by, if they tell of refusals, or of where the robot is."""
         operations = self.job.vocabulary.operations
+        asked = {name for operation in operations for name in operation.currents}
         told = (one for operation in operations for one in operation.told_as_refused)
-        if any(refused.topic is not None for refused in told):
+        self._telling = [door for door in self._doors if door.operation.target in asked]
+        if any(refused.topic is not None for refused in told) or any(
+            door.operation.named is not None for door in self._telling
+        ):
             self.interception.of("messages").on_heard = self._heard
 
     def _heard(self, name: str, message: Any) -> None:
         for activation in self.activations:
             activation.heard(name, message)
+        for door in self._telling:
+            door.hear(name, message)
 
     def _handler(self, operation: Operation) -> Handler:
         """What stands around an operation: a door of its own, and the way that all calls go."""
@@ -128,6 +137,7 @@ class Session:
         readings = {name: vocabulary.operation(name) for name in operation.currents}
         door = Door(operation, readings, partial(self.inspection.path_is_wrong, operation))
         door.handles = handles_of(self.job.vocabulary)
+        door.lately = self._lately
         self._doors.append(door)
         return self.passing.handler(door)
 

@@ -16,6 +16,7 @@ from .alternative import TextPlace as TextPlace
 from .call import Call as Call
 from .call import Middleware as Middleware
 from .call import Mishap as Mishap
+from .call import NotToldError as NotToldError
 from .call import Proceed as Proceed
 from .call import Reply as Reply
 from .mutant import Mutant as Mutant

@@ -31,6 +31,10 @@ class Mishap(StrEnum):
     JUMPED = "jumped"
 
 
+class NotToldError(LookupError):
+    """What tells where the robot is has told nothing yet."""
+
+
 async def _unknown(quantity: Quantity) -> float:
     raise LookupError(f"no reading tells where {quantity.name} is now")
 
@@ -105,7 +109,7 @@ class Call:
             in this call (an omitted part, None) is missing here.
         reversed: whether the opposite of the operation or pattern is to be done.
         current: tells where a written quantity is now, in that quantity's unit; raises LookupError when
-            the vocabulary names no such reading.
+            the vocabulary names no such reading, and NotToldError if that has told nothing yet.
         idle: what the operation answers while the robot does nothing; None unless the operator has declared
             that it asks (``asks_idle``).
         payload: what the door needs to perform the call; operators never look inside.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from mutabot.model.named import Named, Refused
+from mutabot.model.named import Form, Named, Refused
 from mutabot.model.values.notation import Notation
 from mutabot.model.values.path import Path
 from mutabot.model.values.quantity import Quantity
@@ -157,6 +157,12 @@ class Operation:
         """All operations that tell where the robot is, for any of its calls."""
         named = (self.current, *(pattern.current for pattern in self.patterns))
         return tuple(dict.fromkeys(name for name in named if name is not None))
+
+    @property
+    def readings(self) -> tuple[Quantity, ...]:
+        """The quantities that may tell where the robot is: what it reads, or what is published last."""
+        is_published = self.named is not None and self.named.form is Form.PUBLISH
+        return self.arguments if is_published else self.result
 
     @property
     def opposites(self) -> tuple[str, ...]:

@@ -136,6 +136,10 @@ class Operator(Rule):
     remembers: ClassVar[bool] = False
     least_calls: ClassVar[int] = 1
 
+    def needs_where(self, subject: Subject) -> bool:
+        """Whether it asks for this subject where a quantity is now; by default as ``asks_where`` says."""
+        return self.asks_where
+
     def is_chance(self, subject: Subject) -> bool:
         """Whether only chance says at which calls it acts, so that nobody can tell beforehand."""
         return False

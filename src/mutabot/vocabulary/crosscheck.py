@@ -23,6 +23,8 @@ def check_operations(entries: Iterable[Read], read: Mapping[str, Read]) -> None:
     for operation, check, place in entries:
         for name in operation.currents:
             _check_current(operation, name, check, (*place, "current"), read)
+        if not operation.currents and any(one.relative for one in _all_arguments(operation)):
+            check.error(place, "relative = true needs current: what tells where the robot is")
         for name in operation.opposites:
             _check_opposite(operation, name, check, (*place, "opposite"), read)
 
@@ -33,14 +35,15 @@ def _check_current(
     if name not in read:
         check.unknown(place, "operation", name, read)
         return
-    if read[name][0].command:
+    reading = read[name][0]
+    if reading.command and reading.named is None:
         check.error(place, f"{name} is a command: asking it where the robot is would make the robot act")
         return
     moved = [quantity for quantity in _all_arguments(operation) if quantity.kind in READING_OF]
     if not moved:
         check.error(place, "is of no use here: no argument is a translation or a rotation")
         return
-    readings = read[name][0].result
+    readings = reading.readings
     if not any(is_reading_of(reading, written) for written in moved for reading in readings):
         missing = ", ".join(dict.fromkeys(_wanted(quantity) for quantity in moved))
         found = ", ".join(_described(reading) for reading in readings) or "nothing"

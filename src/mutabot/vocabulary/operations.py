@@ -14,6 +14,7 @@ from mutabot.settings.toml_lines import KeyPath
 from .cases.modes import Undecided, in_cases
 from .cases.when import in_case, read_when
 from .idle import read_idle
+from .named.current import read_current
 from .named.entries import is_named, read_named
 from .named.names import NAMING
 from .named.refused import read_refused
@@ -53,7 +54,7 @@ def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
         arguments=tuple(one for one in arguments if not isinstance(one, Undecided)),
         result=result,
         command=_is_command(table, arguments, result, patterns),
-        current=table.current,
+        current=read_current(check, table.current, (*place, "current")),
         opposite=table.opposite,
         refusals=tuple(table.refusals),
         message=message,

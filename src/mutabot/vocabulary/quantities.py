@@ -188,5 +188,6 @@ def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | No
         range=(table.range[0], table.range[1]) if table.range is not None else None,
         noise=table.noise,
         order=table.order,
+        relative=table.relative,
         clip=(table.clip[0], table.clip[1]) if table.clip is not None else None,
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from mutabot.errors import nearest_name
-from mutabot.model import Kind
+from mutabot.model import Kind, Mode
 from mutabot.model.values.quantity import DIMENSIONS, HEADER, MEASURED, READ, WHOLE, WRITTEN
 from mutabot.model.values.rotation import QUATERNION_ORDERS, is_euler_order
 from mutabot.model.values.units import UNITS, dimension_of
@@ -60,6 +60,7 @@ def faults(
         return
     yield from _unit(table)
     yield from _mode(table)
+    yield from _relative(table, vector)
     yield from _axis(table)
     yield from _vector(table, vector)
     yield from _values(table)
@@ -126,6 +127,19 @@ def _mode(table: QuantityTable) -> Iterator[Fault]:
         yield Fault("mode", f'{_a(table.kind)} needs mode = "by" (relative) or "to" (absolute target)')
     if table.kind not in _MOVED and table.mode is not None:
         yield Fault("mode", f"{_a(table.kind)} has no mode; only a translation or rotation has")
+
+
+def _relative(table: QuantityTable, vector: bool) -> Iterator[Fault]:
+    if not table.relative:
+        return
+    if table.kind not in _MOVED or table.mode is not Mode.TO:
+        yield Fault(
+            "relative",
+            'only a translation or rotation with mode = "to" can hide a relative move: the program computes '
+            "its target from where the robot is",
+        )
+    elif vector:
+        yield Fault("relative", "give the axes of the slice, or indices: each has a place of its own")
 
 
 def _axis(table: QuantityTable) -> Iterator[Fault]:

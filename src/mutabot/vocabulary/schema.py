@@ -31,6 +31,7 @@ class QuantityTable(Table):
     clip: Annotated[list[float], Field(min_length=2, max_length=2)] | None = None
     noise: float | None = None
     order: str | None = None
+    relative: bool = False
 
 
 class PatternTable(Table):
@@ -50,6 +51,7 @@ class PatternTable(Table):
     range: Any = None
     clip: Any = None
     noise: Any = None
+    relative: Any = None
 
 
 class OperationTable(Table):
@@ -59,7 +61,7 @@ class OperationTable(Table):
     arguments: dict[str, Any] = Field(default_factory=dict)
     result: dict[str, Any] | None = None
     command: bool | None = None
-    current: str | None = None
+    current: Any = None
     opposite: str | None = None
     idle: Any = None
     refusals: list[str] = Field(default_factory=list)
@@ -92,7 +94,7 @@ class NamedTable(Table):
     result: dict[str, Any] | None = None
     value: dict[str, Any] | None = None
     command: bool | None = None
-    current: str | None = None
+    current: Any = None
     opposite: str | None = None
     idle: Any = None
     refusals: list[str] = Field(default_factory=list)
@@ -100,6 +102,18 @@ class NamedTable(Table):
     patterns: list[Any] = Field(default_factory=list)
     when: Any = None
     refused: Any = None
+
+
+class CurrentTable(Table):
+    """``current = { topic = "/arm/pose" }``"""
+
+    topic: str | None = None
+    direction: str | None = None
+    service: str | None = None
+    action: str | None = None
+    parameter: str | None = None
+    tf: str | None = None
+    node: str | None = None
 
 
 class RefusedTable(Table):

@@ -62,7 +62,7 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             mutant = _mutant(len(mutants) + 1, rule, subject, place)
             mutant = _distinct(mutant, taken)
             seen, reason = _foresee(rule, subject, hits)
-            if rule.asks_where and not _is_told(subject, vocabulary):
+            if rule.needs_where(subject) and not _is_told(subject, vocabulary):
                 reason = f"{subject.current or 'no reading'} does not tell where it is"
             mutant = replace(
                 mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
@@ -158,7 +158,7 @@ def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
     reading = vocabulary.operation(subject.current or "")
     if reading is None or subject.quantity is None:
         return False
-    return any(is_reading_of(part, subject.quantity) for part in reading.result)
+    return any(is_reading_of(part, subject.quantity) for part in reading.readings)
 
 
 def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middleware) -> Passage:

@@ -16,7 +16,8 @@ from typing import Any
 from mutabot.errors import PathError
 from mutabot.inside.targets.means import Means
 from mutabot.inside.targets.names import resolve
-from mutabot.model import Call, Operation, Pattern, Quantity, Reply
+from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply
+from mutabot.model.named import Form
 from mutabot.model.values.answer import NotKeptError, keep, restore
 from mutabot.model.values.quantity import Value, is_reading_of, same
 
@@ -59,6 +60,7 @@ class Door:
     Attributes:
         commands: how often the robot was made to do this, if it does anything.
         calls: how often it was called.
+        lately: values that last came by under the names of a middleware, by target; doors share it.
         handles: classes that are part of the robot API: their objects are never copied.
     """
 
@@ -76,11 +78,13 @@ class Door:
         self._last_replies: dict[str | None, Any] = {}
         self.commands = 0
         self.calls = 0
+        self.lately: dict[str, Mapping[str, Value]] = {}
         self.handles: Collection[str] = ()
 
     def reset(self) -> None:
         """Forget earlier answers and commands: a new test begins."""
         self._last_replies.clear()
+        self.lately.clear()
         self.commands = self.calls = 0
 
     def call(
@@ -127,8 +131,18 @@ class Door:
         """The reply as operators see it."""
         self._refuse_coroutine(result)
         self._refuse_signature(call.payload)
+        meant = call.pattern if call.pattern is not None else self.operation
+        values = self._read(meant.result, result)
+        if call.is_command:
+            self._last_replies[_text_of(call.pattern)] = snapshot(result)
+        if self.operation.named is not None:
+            self.lately[self.operation.target] = {**call.values, **values}
+        return Reply(values, result)
+
+    def _read(self, quantities: tuple[Quantity, ...], result: Any) -> dict[str, Value]:
+        """The values that are read from a result."""
         values: dict[str, Value] = {}
-        for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
+        for quantity in quantities:
             try:
                 value = quantity.get(result)
             except PathError as error:
@@ -136,9 +150,13 @@ class Door:
                 continue
             if value is not None:
                 values[quantity.name] = value
-        if call.is_command:
-            self._last_replies[_text_of(call.pattern)] = snapshot(result)
-        return Reply(values, result)
+        return values
+
+    def hear(self, name: str, message: Any) -> None:
+        """A message came by that the program may receive without a call of this operation at any site."""
+        named = self.operation.named
+        if named is not None and named.node is None and named.fits(Form.RECEIVE, name, None):
+            self.lately[self.operation.target] = self._read(self.operation.result, message)
 
     def result(self, call: Call, reply: Reply, original: Reply | None) -> Any:
         """What the program receives: the result itself, or a copy with changed values."""
@@ -194,6 +212,8 @@ class Door:
         reading = self._readings.get(own or self.operation.current or "")
         if reading is None:
             raise LookupError(f"{self.operation.target} names no reading that tells where {quantity.name} is")
+        if reading.named is not None:
+            return self._lately_at(reading, quantity)
         value = self._other(reading.target, invocation.instance)
         if callable(value):
             value = value()
@@ -202,6 +222,16 @@ class Door:
         for part in reading.result:
             if is_reading_of(part, quantity):
                 number = part.path.get(value)
+                return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
+        raise LookupError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
+
+    def _lately_at(self, reading: Operation, quantity: Quantity) -> float:
+        """Where a quantity is by what came last under a name: the program knows no better."""
+        for part in reading.readings:
+            if is_reading_of(part, quantity):
+                number = self.lately.get(reading.target, {}).get(part.name)
+                if number is None:
+                    raise NotToldError(f"nothing has come yet of {reading.target}")
                 return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
         raise LookupError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
 

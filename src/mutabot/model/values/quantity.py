@@ -122,6 +122,8 @@ class Quantity:
             the nearer end; None if it does not.
         noise: standard deviation of the sensor noise to plant, or None for the operator's default.
         order: of the parts of a quaternion (``wxyz`` or ``xyzw``), or the axes of Euler angles; else None.
+        relative: whether the program computes this absolute target from where the robot is, so that it hides
+            a relative move.
     """
 
     name: str
@@ -136,6 +138,7 @@ class Quantity:
     noise: float | None = None
     clip: tuple[float, float] | None = None
     order: str | None = None
+    relative: bool = False
 
     def get(self, start: Any) -> Value:
         """Its value in what its path starts at: the seconds of a stamp, the numbers of an orientation.
@@ -239,11 +242,16 @@ def told_apart(one: Value, other: Value, text: Callable[[Value, int], str], digi
 
 
 def is_reading_of(reading: Quantity, written: Quantity) -> bool:
-    """Whether a reading tells where a commanded motion starts from: same axis, no other frame."""
+    """Whether a reading tells where a commanded motion starts from: same axis, no other frame.
+
+    The target that was sent last tells it as well.
+    """
     frames = {reading.frame, written.frame} - {None}
     if reading.axis != written.axis or len(frames) > 1:
         return False
     is_joint = written.axis is not None and written.axis.startswith("j")
+    if reading.kind is written.kind and reading.mode is Mode.TO:
+        return reading.kind in READING_OF
     return reading.kind is READING_OF.get(written.kind) or (
         is_joint and written.kind is Kind.ROTATION and reading.kind is Kind.ANGLE
     )

@@ -13,6 +13,8 @@ from mutabot.operators.operator import Operator, Subject
 
 #: why an operator stays away from a call without a value
 NOT_GIVEN = "the call gives no such value"
+#: why an operator that asks where the robot is stays away
+NOT_TOLD = "nothing has told yet where the robot is"
 
 
 class _ValueOperator(Operator):

@@ -7,13 +7,24 @@ from dataclasses import replace
 from random import Random
 from typing import ClassVar
 
-from mutabot.model import Kind, Mode, Operation, Path, Quantity
+from mutabot.model import (
+    Call,
+    Kind,
+    Middleware,
+    Mode,
+    NotToldError,
+    Operation,
+    Path,
+    Proceed,
+    Quantity,
+    Reply,
+)
 from mutabot.model.values.quantity import Value
-from mutabot.operators.operator import Example, Subject, map_numbers
+from mutabot.operators.operator import Example, Subject, is_number, map_numbers
 from mutabot.operators.rule import Published
 
 from ._orientation import the_other_way
-from ._values import WrittenValueOperator, quantity_of
+from ._values import NOT_GIVEN, NOT_TOLD, WrittenValueOperator, label, quantity_of, why_away
 
 _DY = Quantity("dy", Path("dy"), Kind.TRANSLATION, "y", "m", "base", Mode.BY)
 _YAW = Quantity("yaw", Path("yaw"), Kind.ROTATION, "z", "deg", "base", Mode.BY)
@@ -27,11 +38,14 @@ _STEP = Operation("env:Env.step", (_PUSH,))
 _CLIPPED = Operation("env:Env.step", (_LIMITED,))
 _ROTVEC = Quantity("rotation", Path("rotation"), Kind.ROTATION_VECTOR, unit="rad")
 _ORIENT = Operation("robot:Arm.orient", (_ROTVEC,))
+_PATH = Path.parse("message.pose.x", rooted=True)
+_GOAL = Quantity("pose.x", _PATH, Kind.TRANSLATION, "x", "m", mode=Mode.TO, relative=True)
+_HIDDEN = Operation("publish /arm/goal", (_GOAL,), current="receive /arm/pose")
 _LIFT_TO = Operation("robot:Arm.lift_to", (_LIFT,))
 
 
 class Reverse(WrittenValueOperator):
-    """Negates one translation or rotation component."""
+    """Negates one translation or rotation component, or mirrors a target at where the robot is."""
 
     name = "reverse"
     summary = "A translation or rotation goes the other way: one component is negated."
@@ -81,10 +95,51 @@ class Reverse(WrittenValueOperator):
             {"rotation": [0.0, math.pi, 0.0]},
             away="half a turn the other way is the same orientation",
         ),
+        Example(
+            Subject(_HIDDEN, quantity=_GOAL),
+            {"pose.x": 0.5},
+            current={"pose.x": 0.3},
+            performed=({"pose.x": 0.1},),
+            note="a relative move that is hidden in an absolute target: 2 · current − target",
+        ),
+        Example(
+            Subject(_HIDDEN, quantity=_GOAL),
+            {"pose.x": 0.5},
+            current={"pose.x": 0.5},
+            away="the target is where the robot is",
+        ),
         Example(Subject(_MOVE, quantity=_DY), {"dy": 0.0}, away="a zero has no other way"),
         Example(Subject(_MOVE, quantity=_DY), {"yaw": 80}, away="the call does not give this component"),
         Example(Subject(_LIFT_TO, quantity=_LIFT), {"z": 0.3}, away="−0.3 m is outside the allowed range"),
     )
+
+    def needs_where(self, subject: Subject) -> bool:
+        return quantity_of(subject).relative
+
+    def middleware(self, subject: Subject, random: Random) -> Middleware:
+        quantity = quantity_of(subject)
+        if not quantity.relative:
+            return super().middleware(subject, random)
+
+        async def mirrored(call: Call, proceed: Proceed) -> Reply:
+            value = call.values.get(quantity.name)
+            if value is None or not is_number(value):
+                return await proceed(call.as_is(NOT_GIVEN))
+            try:
+                here = await call.current(quantity)
+            except NotToldError:
+                return await proceed(call.as_is(NOT_TOLD))
+            changed = _within_turn(quantity, 2.0 * here - value)
+            why = why_away(quantity, value, changed)
+            return await proceed(call.as_is(why) if why else call.with_value(quantity, changed))
+
+        return mirrored
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        if not quantity.relative:
+            return super().describe(subject, before, after)
+        return f"{label(quantity)} {quantity.text(before)} → as far to the other side of where it is"
 
     def fits(self, quantity: Quantity) -> bool:
         return quantity.kind in (Kind.TRANSLATION, Kind.ROTATION) or quantity.is_whole

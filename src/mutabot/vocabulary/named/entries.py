@@ -22,6 +22,7 @@ from mutabot.vocabulary.quantities import in_message, read_fields, read_quantity
 from mutabot.vocabulary.schema import NamedTable
 from mutabot.vocabulary.targets import target_fault
 
+from .current import read_current
 from .names import DIRECTIONS, NAMING, forms_of, name_of, node_of, type_of
 from .refused import read_refused
 
@@ -170,7 +171,7 @@ def _operation(check: Check, table: NamedTable, named: Named, is_main: bool, pla
     operation = replace(
         operation,
         arguments=tuple(one for one in arguments if not isinstance(one, Undecided)),
-        current=table.current,
+        current=read_current(check, table.current, (*place, "current")),
         opposite=table.opposite,
         refusals=tuple(table.refusals),
         idle=read_idle(check, table.idle, (*place, "idle")),
