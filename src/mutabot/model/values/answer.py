@@ -38,6 +38,9 @@ _OWN_WAYS = (
     "__getnewargs_ex__", "__copy__", "__deepcopy__", "__del__", "__getattr__", "__getattribute__",
 )  # fmt: skip
 
+#: the modules of ROS 1 that its messages and moments have their methods from
+_OF_ROS_1 = ("genpy.message", "genpy.rostime")
+
 
 class NotKeptError(ValueError):
     """An answer that cannot be kept by value; the text says what it is."""
@@ -169,7 +172,7 @@ def _is_all_state(value: Any) -> bool:
     kind = type(value)
     for name in _OWN_WAYS:
         own = getattr(kind, name, None)
-        if own is not getattr(object, name, None) and not _is_made_by_dataclass(kind, own):
+        if own is not getattr(object, name, None) and not _does_the_same(kind, own):
             return False
     try:
         object.__reduce_ex__(value, 4)  # says whether C code hides something
@@ -178,9 +181,10 @@ def _is_all_state(value: Any) -> bool:
     return True
 
 
-def _is_made_by_dataclass(kind: type[Any], method: Any) -> bool:
-    """Frozen dataclasses with slots get methods that do what is done here."""
-    return is_dataclass(kind) and getattr(method, "__module__", None) == "dataclasses"
+def _does_the_same(kind: type[Any], method: Any) -> bool:
+    """Frozen dataclasses with slots, and messages of ROS 1, have methods that do what is done here."""
+    made_by = getattr(method, "__module__", None)
+    return made_by in _OF_ROS_1 or (is_dataclass(kind) and made_by == "dataclasses")
 
 
 def _slots(kind: type[Any]) -> list[str]:
