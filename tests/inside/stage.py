@@ -93,7 +93,8 @@ class Stage:
             inspect=inspect,
         )
         locator = Locator(job.root, job.program, job.oracle)
-        session = Session(job, self.pipe, locator.locate)  # type: ignore[arg-type]  # the same two methods
+        where = (locator.locate, locator.locate_definition)
+        session = Session(job, self.pipe, *where)  # type: ignore[arg-type]  # the same two methods
         session.install()
         session.start_test("test")
         self.sessions.append(session)

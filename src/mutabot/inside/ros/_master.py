@@ -1,0 +1,117 @@
+"""A master of ROS 1 for the nodes of one worker.
+
+Workers that shared a master would meet in its names. One alone takes 0.1 s and 30 MB, so each worker has its
+own: on a port that nobody uses, of this machine only, with its logs in the worker's home. It ends with the
+worker, also if that is killed.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import socket
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+
+from mutabot.model import Operation, Vocabulary
+
+#: environment variables by which nodes find it
+URI, ADDRESS, LOGS, HOME = "ROS_MASTER_URI", "ROS_IP", "ROS_LOG_DIR", "ROS_HOME"
+#: how long it may take to come up, s; on a busy machine 0.1 s are more
+_PATIENCE = 20.0
+_PAUSE = 0.005
+_TRIES = 5
+_LOCAL = "127.0.0.1"
+_PROGRAM = """
+import ctypes, os, signal, sys
+ctypes.CDLL(None).prctl(1, signal.SIGKILL, 0, 0, 0)  # end with the parent, which is there still
+if os.getppid() == int(sys.argv[1]):
+    import rosmaster
+    rosmaster.rosmaster_main(["rosmaster", "--core", "-p", sys.argv[2]])
+"""
+_MODULES = ("rospy", "actionlib")
+
+
+class MasterError(Exception):
+    """No master came up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Master:
+    """A master that runs.
+
+    Attributes:
+        uri: where nodes find it.
+        process: its process.
+    """
+
+    uri: str
+    process: subprocess.Popen[bytes]
+
+    def stop(self) -> None:
+        """End it."""
+        self.process.kill()
+        self.process.wait()
+
+
+def is_wanted(vocabulary: Vocabulary) -> bool:
+    """Whether programs of this vocabulary use ROS 1, and it is installed."""
+    if not any(_is_ours(operation) for operation in vocabulary.operations):
+        return False
+    return all(importlib.util.find_spec(name) is not None for name in ("rospy", "rosmaster"))
+
+
+def _is_ours(operation: Operation) -> bool:
+    return operation.named is not None or operation.target.partition(":")[0].partition(".")[0] in _MODULES
+
+
+def start(home: str) -> Master:
+    """Start a master and let this process, and all that it starts, find it. Raises MasterError."""
+    folder = os.path.join(home, "ros")
+    os.makedirs(os.path.join(folder, "log"), exist_ok=True)
+    os.environ.update({ADDRESS: _LOCAL, LOGS: os.path.join(folder, "log"), HOME: folder})
+    os.environ.pop("ROS_HOSTNAME", None)  # it would go before the address
+    said = ""
+    for _ in range(_TRIES):
+        port = _free_port()
+        os.environ[URI] = f"http://{_LOCAL}:{port}"
+        log = os.path.join(folder, "master.txt")
+        master = Master(os.environ[URI], _process(port, log))
+        if _comes_up(master.process, port):
+            return master
+        master.stop()
+        with open(log, encoding="utf-8", errors="replace") as file:
+            said = file.read()[-500:]
+    raise MasterError(
+        f"no rosmaster came up on {_LOCAL} in {_TRIES} tries; the last one said: {said.strip()}"
+    )
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind((_LOCAL, 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def _process(port: int, log: str) -> subprocess.Popen[bytes]:
+    with open(log, "wb") as file:
+        return subprocess.Popen(
+            [sys.executable, "-c", _PROGRAM, str(os.getpid()), str(port)],
+            stdin=subprocess.DEVNULL,
+            stdout=file,
+            stderr=subprocess.STDOUT,
+            process_group=0,
+        )
+
+
+def _comes_up(process: subprocess.Popen[bytes], port: int) -> bool:
+    end = time.monotonic() + _PATIENCE
+    while process.poll() is None and time.monotonic() < end:
+        with socket.socket() as probe:
+            if probe.connect_ex((_LOCAL, port)) == 0:
+                return True
+        time.sleep(_PAUSE)
+    return False

@@ -1,0 +1,53 @@
+"""Transforms: what a node reads from the buffer of tf2, in ROS 1 and ROS 2 alike."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from mutabot.inside.targets.means import Means
+from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.target import Finding, Where
+from mutabot.model import Operation
+from mutabot.model.named import Form
+
+from ._patches import Patches
+
+MODULE = "tf2_ros"
+
+
+def hook(messages: Messages) -> Callable[[], None]:
+    """Let transforms pass by; returns what takes the hook away."""
+    patches = Patches()
+
+    def look_up(
+        original: Any, buffer: Any, target_frame: str, source_frame: str, *more: Any, **named: Any
+    ) -> Any:
+        node = _node()
+        name = f"{target_frame.removeprefix('/')} → {source_frame.removeprefix('/')}"
+        handler = messages.find(Form.TRANSFORM, name, node)
+        if handler is None:
+            return original(buffer, target_frame, source_frame, *more, **named)
+
+        def read() -> Any:
+            return original(buffer, target_frame, source_frame, *more, **named)
+
+        async def lost() -> Any:
+            tf2_ros: Any = sys.modules[MODULE]
+            raise tf2_ros.LookupException(f"no transform {name} has come")
+
+        return handler(read, buffer, (), {}, Where(node=node, means=Means(lost=lost)))
+
+    patches.put(sys.modules[MODULE].Buffer, "lookup_transform", look_up)
+    return patches.undo
+
+
+def check(operation: Operation) -> Iterator[Finding]:
+    """Transforms are of one type."""
+    return iter(())
+
+
+def _node() -> str | None:
+    rospy: Any = sys.modules.get("rospy")
+    return rospy.get_name() if rospy is not None else None
