@@ -15,6 +15,7 @@ demo: $(READY)
 
 ## lint, types and the whole test suite
 test: check $(ROS2)
+	$(RUN) tools/see_rospy.py
 	$(RUN) -m pytest -n 2 --dist worksteal
 
 ## lint and types only
