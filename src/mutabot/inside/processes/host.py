@@ -7,15 +7,14 @@ from dataclasses import dataclass, field
 from importlib.util import find_spec
 
 from mutabot.border.job import Job
-from mutabot.border.processes import FOLDER, SUFFIX, VARIABLE, WAKE, Entry, entry_of
+from mutabot.border.processes import FOLDER, SUFFIX, WAKE, Entry, entry_of
 
-from . import startup
+from .carried import carry
 from .exits import Exits
 from .now import Now
 
 #: modules of middlewares, which nodes import, where the vocabulary names anything on one
 _MIDDLEWARES = ("rclpy", "rospy", "actionlib", "tf2_ros")
-_STARTUP = os.path.dirname(os.path.abspath(startup.__file__))
 
 
 @dataclass(slots=True)
@@ -74,10 +73,7 @@ class Host:
 
     def open(self) -> None:
         """Let every Python process that is started from now on find its way here."""
-        others = os.environ.get("PYTHONPATH")
-        if others is None or _STARTUP not in others.split(os.pathsep):
-            os.environ["PYTHONPATH"] = _STARTUP + (os.pathsep + others if others else "")
-        os.environ[VARIABLE] = self.folder
+        carry(self.folder)
         self.exits.watch()
 
     def start_test(self, test: str) -> None:

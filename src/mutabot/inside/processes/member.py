@@ -11,8 +11,9 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from mutabot.border.job import Job
@@ -52,6 +53,7 @@ from mutabot.model import Call
 from mutabot.model.class_name import class_name
 from mutabot.model.values.quantity import Value
 
+from .carried import carry
 from .diary import Diary
 from .job_of import job_of
 from .now import Now
@@ -102,6 +104,7 @@ class Member:
 
     def begin(self) -> None:
         """Put the session in place."""
+        carry(self._folder)
         self.session.install()
         if self.session.text is not None:
             hook_script()
@@ -127,6 +130,9 @@ class Member:
         session.recorder.on_hit = self._hit
         session.passing.on_end = self._after
         session.passing.turn = self.turn
+        for targets in session.interception.kinds:
+            if targets.on_heard is not None:
+                targets.on_heard = partial(self._heard, targets.on_heard)
         atexit.register(self.end)
         self._watch_exits()
 
@@ -169,7 +175,7 @@ class Member:
 
     def _did(self, before: Evidence, now: Evidence, parts: frozenset[str]) -> Did:
         away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
-        is_refused = now.refusals != before.refusals
+        is_refused = now.refusals != before.refusals or now.said != before.said
         return Did(
             self._test,
             time.monotonic(),
@@ -180,6 +186,7 @@ class Member:
             invalid=now.invalid and not before.invalid,
             failure=now.failure if before.failure is None else None,
             refused=now.refusal if is_refused and not now.is_of_text else None,
+            is_final=now.said is not None,
             parts=tuple(sorted(parts)),
         )
 
@@ -188,6 +195,12 @@ class Member:
 
     def _after(self, call: Call, read: Mapping[str, Value]) -> None:
         self.poll()
+
+    def _heard(self, heard: Callable[[str, Any], None], name: str, message: Any) -> None:
+        before = self.session.evidence.said
+        heard(name, message)
+        if self.session.evidence.said != before:
+            self.poll()
 
     def _tell_found(self) -> None:
         targets = self.session.interception.found - self._found

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
-
-from mutabot.border.processes import VARIABLE
 
 #: options of Python by which it leaves out the environment, or what is loaded at its start
 _APART = {"-I": "the option -I", "-E": "the option -E", "-S": "the option -S"}
@@ -31,9 +29,9 @@ class Unseen:
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event != "subprocess.Popen":
             return
-        executable, command, _, environment = arguments
+        executable, command, *_ = arguments
         words = _words(executable, command)
-        why = _why(words, environment)
+        why = _why(words)
         name = " ".join(words[:3])
         if why is not None and name not in self._told:
             self._told.add(name)
@@ -49,7 +47,7 @@ def _words(executable: Any, command: Any) -> list[str]:
         return []
 
 
-def _why(words: Sequence[str], environment: Any) -> str | None:
+def _why(words: Sequence[str]) -> str | None:
     if not words or not os.path.basename(words[0]).startswith("python"):
         return None
     for word in words[1:]:
@@ -57,6 +55,4 @@ def _why(words: Sequence[str], environment: Any) -> str | None:
             break
         if word in _APART:
             return f"{_APART[word]} keeps it apart"
-    if isinstance(environment, Mapping) and VARIABLE not in environment:
-        return "it is started with an environment of its own; start from os.environ, changed as need be"
     return None
