@@ -9,10 +9,8 @@ from typing import Any
 
 from mutabot.border.processes import VARIABLE
 
-from . import startup
-
 #: the folder of the start-up module
-STARTUP = os.path.dirname(os.path.abspath(startup.__file__))
+STARTUP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "startup")
 #: which argument of ``fork_exec`` is the environment, <Lib/subprocess.py>
 _ENVIRONMENT = 5
 _folder = ""
