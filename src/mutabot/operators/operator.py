@@ -124,7 +124,7 @@ class Operator(Rule):
             operator, and the mutant gets no verdict.
         remembers: whether what it does to a call depends on earlier ones of the same test. It is then given
             copies, which the program cannot change afterwards, and one middleware for all calls of a test.
-        least_calls: how many calls it takes to be what it is; it is left out where there are fewer.
+        is_for_oracle: whether readings that the tests' own checks take are a place for it, too.
     """
 
     family: ClassVar[str] = ROBOT
@@ -134,7 +134,7 @@ class Operator(Rule):
     asks_neighbours: ClassVar[bool] = False
     does_nothing: ClassVar[bool] = False
     remembers: ClassVar[bool] = False
-    least_calls: ClassVar[int] = 1
+    is_for_oracle: ClassVar[bool] = True
 
     def needs_where(self, subject: Subject) -> bool:
         """Whether it asks for this subject where a quantity is now; by default as ``asks_where`` says."""
@@ -143,6 +143,10 @@ class Operator(Rule):
     def is_chance(self, subject: Subject) -> bool:
         """Whether only chance says at which calls it acts, so that nobody can tell beforehand."""
         return False
+
+    def least_calls(self, subject: Subject) -> int:
+        """How many calls it takes to be what it is; it is left out where the tests make fewer."""
+        return 1
 
     def magnitudes(self, quantity: Quantity) -> tuple[float, ...]:
         """How big its fault is to be in a quantity, in that quantity's unit: a mutant each.

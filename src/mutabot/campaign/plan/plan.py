@@ -15,7 +15,7 @@ from mutabot.campaign.baseline.places import Place
 from mutabot.errors import OperatorError
 from mutabot.families import USUAL
 from mutabot.journal.records import Drawing
-from mutabot.model import Call, LeftOut, Middleware, Mutant, Operation, Reply, Vocabulary
+from mutabot.model import Call, Kind, LeftOut, Middleware, Mutant, Operation, Reply, Role, Vocabulary
 from mutabot.model.values.quantity import is_reading_of
 from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.operator import with_operation
@@ -86,6 +86,8 @@ def _subjects(
 ) -> Iterator[tuple[Subject, Operator]]:
     pattern = operation.pattern(place.pattern)
     for rule in operators:
+        if place.site.role is Role.ORACLE and not rule.is_for_oracle:
+            continue
         try:
             subjects = list(rule.subjects(operation, pattern))
         except Exception as error:  # a plug-in may fail in any way; the user needs to know which one it was
@@ -128,8 +130,9 @@ class _Seen:
 
 def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, str | None]:
     """What the mutant would do to the recorded calls, and why it is left out, if it is."""
-    if len(hits) < rule.least_calls:
-        return _Seen(), f"takes {rule.least_calls} calls, and the tests make {len(hits)}"
+    least = rule.least_calls(subject)
+    if len(hits) < least:
+        return _Seen(), f"takes {least} calls, and the tests make {len(hits)}"
     if rule.is_chance(subject):
         return _Seen(_value(subject, hits[0])), None
     last = _Seen()
@@ -148,7 +151,7 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, 
         away = away or passage.away
         if last.before is None:
             last = _Seen(before, before)
-    if subject.quantity is None and away:
+    if away and (subject.quantity is None or subject.quantity.kind is Kind.SETTING):
         return last, f"would change nothing in {_calls(len(hits))}: {away}"
     return last, _reason(subject, last.before, len(hits))
 

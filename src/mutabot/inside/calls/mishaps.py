@@ -116,7 +116,7 @@ def _quietly(perform: Callable[[], Any]) -> None:
 def _is_node() -> bool:
     """Whether this process was started by the tests, and is not the one that runs them."""
     member = sys.modules.get("mutabot.inside.processes.member")  # it stands on this module
-    return getattr(member, "_member", None) is not None
+    return member is not None and bool(member.is_member())
 
 
 def _end(*, anew: bool) -> NoReturn:

@@ -70,6 +70,11 @@ def join(folder: str) -> None:
         _member.begin()
 
 
+def is_member() -> bool:
+    """Whether this process is one below the tests, and not the one that runs them."""
+    return _member is not None
+
+
 def note_node(name: str) -> None:
     """A node of this resolved name was made in this process."""
     if _member is not None:

@@ -15,7 +15,8 @@ def operation(
 ) -> Operation:
     """An operation of a form, with what it writes and reads."""
     named = Named(form, name)
-    return Operation(named.target, arguments, result, command=bool(arguments), named=named, kind="messages")
+    command = form in (Form.PUBLISH, Form.CALL, Form.GOAL)
+    return Operation(named.target, arguments, result, command=command, named=named, kind="messages")
 
 
 def setting_up(form: Form, name: str) -> Operation:

@@ -44,6 +44,9 @@ class Drop(FormOperator):
         Example(Subject(PUBLISH, variant=_THIRD), {"x": 0.3}, earlier=({"x": 0.2},), away="only the second"),
     )
 
+    def least_calls(self, subject: Subject) -> int:
+        return 3 if subject.variant else 1
+
     def is_chance(self, subject: Subject) -> bool:
         return subject.variant == _CHANCE
 

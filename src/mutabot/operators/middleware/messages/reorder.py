@@ -21,7 +21,6 @@ class Reorder(FormOperator):
     )
     rank = 150
     remembers = True
-    least_calls = 2
     forms = frozenset({Form.PUBLISH, Form.RECEIVE, Form.FEEDBACK})
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(PUBLISH), {"x": 0.4}, earlier=({"x": 0.2},), performed=({"x": 0.4}, {"x": 0.2})),
@@ -36,6 +35,9 @@ class Reorder(FormOperator):
         ),
         Example(Subject(RECEIVE), replied={"gap": 0.5}, performed=({},), lost=True),
     )
+
+    def least_calls(self, subject: Subject) -> int:
+        return 2
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         held_call: Call | None = None

@@ -49,6 +49,9 @@ class Stale(FormOperator):
         Example(Subject(RECEIVE, variant=_PREVIOUS), replied={"gap": 0.02}, earlier=(), away=_NONE_BEFORE),
     )
 
+    def least_calls(self, subject: Subject) -> int:
+        return 2
+
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         writes = form_of(subject.operation) in _WRITTEN
         is_first = subject.variant == _FIRST

@@ -20,6 +20,7 @@ class MishapOperator(FormOperator):
         once: whether only the first call of a test.
     """
 
+    is_for_oracle = False
     mishap: ClassVar[Mishap]
     once: ClassVar[bool] = False
 
