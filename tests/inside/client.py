@@ -196,7 +196,9 @@ class ClientStage:
         finally:
             sys.path.remove(str(self.folder))
 
-    def session(self, program: ModuleType, mutant: Mutant | None = None) -> tuple[Session, Client]:
+    def session(
+        self, program: ModuleType, mutant: Mutant | None = None, oracle_nodes: tuple[str, ...] = ()
+    ) -> tuple[Session, Client]:
         """A session in the midst of a test, and the client library under its hooks."""
         job = Job(
             root=str(self.folder),
@@ -208,6 +210,7 @@ class ClientStage:
             mutant=mutant,
             budgets={"test": Budget()},
             inspect=False,
+            oracle_nodes=oracle_nodes,
         )
         locator = Locator(job.root, job.program, job.oracle)
         session = Session(job, self.pipe, locator.locate, locator.locate_definition)  # type: ignore[arg-type]
@@ -218,7 +221,14 @@ class ClientStage:
         return session, Client(messages)
 
     def mutated(
-        self, text: str, operator: str, variant: str = "", quantity: str | None = None, *, coming: Any = ()
+        self,
+        text: str,
+        operator: str,
+        variant: str = "",
+        quantity: str | None = None,
+        *,
+        coming: Any = (),
+        oracle_nodes: tuple[str, ...] = (),
     ) -> tuple[Any, Client, Activation]:
         """Run a program as the original to find its only site, then as a mutant there.
 
@@ -229,7 +239,7 @@ class ClientStage:
         client.coming = list(coming)
         program.run(client)
         session.interception.remove()
-        return self.again(program, operator, variant, quantity, coming=coming)
+        return self.again(program, operator, variant, quantity, coming=coming, oracle_nodes=oracle_nodes)
 
     def again(
         self,
@@ -239,12 +249,13 @@ class ClientStage:
         quantity: str | None = None,
         *,
         coming: Any = (),
+        oracle_nodes: tuple[str, ...] = (),
     ) -> tuple[Any, Client, Activation]:
         """The same for a program that has run as the original."""
         seen = [line for line in self.pipe.lines if isinstance(line, SiteSeen)][-1]
         site = Site(seen.span, "text", 1, Role.PROGRAM)
         mutant = Mutant(1, "middleware", operator, site, seen.operation, seen.pattern, quantity, variant, "")
-        session, client = self.session(program, mutant)
+        session, client = self.session(program, mutant, oracle_nodes)
         client.coming = list(coming)
         try:
             result: Any = program.run(client)

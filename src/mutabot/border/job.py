@@ -80,6 +80,7 @@ class Job:
         instrumentation: what to put into the program text; None to leave it alone.
         no_oracle: whether all checks are switched off.
         private_files: whether the process is to keep to itself what it does to files.
+        oracle_nodes: resolved names of the tests' own nodes, in which ``*`` stands for any text.
     """
 
     root: str
@@ -101,3 +102,4 @@ class Job:
     instrumentation: Instrumentation | None = None
     no_oracle: bool = False
     private_files: bool = True
+    oracle_nodes: tuple[str, ...] = ()

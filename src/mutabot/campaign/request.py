@@ -93,6 +93,7 @@ class Request:
             memory=self.configuration.memory,
             no_oracle=self.no_oracle,
             private_files=self.configuration.private_files,
+            oracle_nodes=self.configuration.oracle_nodes,
             **details,
         )
 

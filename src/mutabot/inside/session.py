@@ -92,6 +92,7 @@ class Session:
             self._on_end,
             self.locate_definition,
         )
+        self.passing.oracle_nodes = self.job.oracle_nodes
         self._bypasses = Bypasses(self.locate, self._calls_of, is_under_way)
 
     def install(self) -> None:

@@ -51,6 +51,13 @@ def _known_family(name: str) -> str:
     return name
 
 
+def _node_name(name: str) -> str:
+    if not name.startswith(("/", "*")):
+        raise _fault(f"{name!r} is not resolved: the name of a node begins with /, such as '/{name}'")
+    return name
+
+
+_NodeName = Annotated[str, AfterValidator(_node_name)]
 _Texts = Annotated[tuple[str, ...], Field(strict=False)]
 _SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
 _Family = Annotated[str, AfterValidator(_known_family), WithJsonSchema({"enum": list(FAMILIES)})]
@@ -77,6 +84,12 @@ class Settings(BaseModel):
     in it are mutated in the role `oracle`, whose score is a score of its own. No file can be both.
 
         oracle = ["tests/sensors.py"]
+    """
+    oracle_nodes: Annotated[tuple[_NodeName, ...], Field(strict=False)] = ()
+    """Nodes of the tests' own, by resolved names in which `*` stands for any text. What is done under a name
+    in such a node (a topic received, a service called) has the role `oracle`, in whatever file it stands.
+
+        oracle_nodes = ["/checker*"]
     """
     tests: _SomeTexts = ("tests",)
     """Pytest's arguments that say which tests there are: folders, files,

@@ -122,3 +122,22 @@ def test_a_command_that_the_mutant_leaves_alone_is_refused_for_its_own_reasons(s
     text = program(PUBLISH, "hear(Message(x=500))", 'client.tell("/arm/note", Message(code=7))')
     _, _, activation = stage.mutated(text, "reverse", quantity="x")
     assert activation.evidence.refusal is None
+
+
+def test_what_is_done_in_a_node_of_the_tests_is_the_oracles(stage: ClientStage) -> None:
+    for nodes, wanted in (((), False), (("/miss*",), True), (("/checker",), False)):
+        module = stage.program(program(PUBLISH, RECEIVED))
+        session, client = stage.session(module, oracle_nodes=nodes)
+        module.run(client)
+        session.interception.remove()
+        assert [(one.operation, one.oracle) for one in session.recorder.sites] == [
+            ("receive /arm/pose", wanted),
+            ("publish /arm/goal", wanted),
+        ]
+
+
+def test_a_site_of_both_roles_is_mutated_in_its_own_alone(stage: ClientStage) -> None:
+    text = program(PUBLISH, RECEIVED)
+    _, client, activation = stage.mutated(text, "reverse", quantity="x", oracle_nodes=("/mission",))
+    assert [message.x for _, _, message in client.log] == [0.75]
+    assert activation.evidence.hits == 0

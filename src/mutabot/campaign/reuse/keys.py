@@ -183,6 +183,7 @@ def _settings(request: Request) -> dict[str, str]:
         "seed": str(request.seed),
         "program": ", ".join(configuration.program),
         "oracle": ", ".join(configuration.oracle) or "none",
+        "oracle_nodes": ", ".join(configuration.oracle_nodes) or "none",
         "timeout_factor": str(configuration.timeout_factor),
         "timeout_seconds": str(configuration.timeout_seconds),
         "memory": str(configuration.memory),

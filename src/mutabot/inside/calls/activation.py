@@ -14,7 +14,7 @@ from mutabot.errors import OperatorError
 from mutabot.inside.evidence import REFUSALS, Evidence
 from mutabot.inside.exception_groups import leaves
 from mutabot.inside.targets.names import is_named
-from mutabot.model import Call, Middleware, Mutant, Operation, Reply, Span
+from mutabot.model import Call, Middleware, Mutant, Operation, Reply, Role, Span
 from mutabot.model.named import Refused
 from mutabot.model.values.answer import restore
 from mutabot.operators import Operator, Subject, operator
@@ -69,9 +69,10 @@ class Activation:
         self._test = (round, test)
         self.watched = ()
 
-    def is_here(self, span: Span, target: str) -> bool:
+    def is_here(self, site: tuple[Span, Role], target: str) -> bool:
         """Whether calls of this operation at this place are the mutant's, bar the text command."""
-        return self.mutant.operation == target and self.mutant.site.span == span
+        own = self.mutant.site
+        return self.mutant.operation == target and (own.span, own.role) == site
 
     def fits(self, call: Call) -> bool:
         """Whether the call is the text command that the mutant is about."""

@@ -12,6 +12,7 @@ import inspect
 import sys
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
+from fnmatch import fnmatchcase
 from types import CodeType, FrameType
 from typing import Any
 
@@ -50,6 +51,7 @@ class Passing:
         turn: asked before each call, in a process that does not see its tests begin; None in all others.
         meter: what the running test has used; None between tests: then nothing is noted.
         trunk: set while this process runs the original and forks a branch per mutant.
+        oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
         activations: the mutants of calls that are at work: none for the original.
     """
 
@@ -74,6 +76,7 @@ class Passing:
         self.meter: Meter | None = None
         self.trunk: Trunk | None = None
         self.activations: list[Activation] = []
+        self.oracle_nodes: tuple[str, ...] = ()
         self._operator = ""
 
     def activate(self, activation: Activation) -> None:
@@ -114,9 +117,15 @@ class Passing:
         return handle
 
     def _site(self, frame: FrameType, where: Where | None) -> tuple[Span, Role] | None:
-        if where is not None and where.code is not None:
-            return self._locate_definition(where.code)
-        return self._locate(frame)
+        code = where.code if where is not None else None
+        site = self._locate(frame) if code is None else self._locate_definition(code)
+        node = where.node if where is not None else None
+        if site is not None and node is not None and self._is_oracle(node):
+            return site[0], Role.ORACLE
+        return site
+
+    def _is_oracle(self, node: str) -> bool:
+        return any(fnmatchcase(node, name) for name in self.oracle_nodes)
 
     async def _pass(self, door: Door, site: tuple[Span, Role], is_async: bool, *made: Any) -> Any:
         """The phases of one call.
@@ -143,7 +152,7 @@ class Passing:
                 if self.trunk is not None:
                     self.trunk.fork_at(site[0], call)
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
-                mutant = self._mutant_of(site[0], call)
+                mutant = self._mutant_of(site, call)
                 if mutant is None:
                     reply = await self._perform(door, call, is_async)
                     result = reply.payload
@@ -172,10 +181,10 @@ class Passing:
         except StopIteration as error:
             raise Carried(error) from None
 
-    def _mutant_of(self, span: Span, call: Call) -> Activation | None:
+    def _mutant_of(self, site: tuple[Span, Role], call: Call) -> Activation | None:
         """The mutant whose site and command it is."""
         for activation in self.activations:
-            if activation.is_here(span, call.operation.target) and activation.fits(call):
+            if activation.is_here(site, call.operation.target) and activation.fits(call):
                 return activation
         return None
 

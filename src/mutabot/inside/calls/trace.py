@@ -34,7 +34,7 @@ class Recorder:
     truncated: bool = False
     sites: list[SiteSeen] = field(default_factory=list)
     on_hit: Callable[[int, Any, Any, Any], None] | None = None
-    _indexes: dict[tuple[Span, str, str | None], int] = field(default_factory=dict)
+    _indexes: dict[SiteSeen, int] = field(default_factory=dict)
 
     def start(self) -> None:
         """A new test begins."""
@@ -65,7 +65,7 @@ class Recorder:
 
     def index_of(self, seen: SiteSeen) -> int:
         """The index of a site that was reached here or, under another index, in another process."""
-        key = (seen.span, seen.operation, seen.pattern)
+        key = replace(seen, index=-1)
         index = self._indexes.get(key)
         if index is None:
             index = self._indexes[key] = len(self._indexes)
