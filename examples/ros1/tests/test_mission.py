@@ -6,11 +6,13 @@ import subprocess
 import sys
 
 import pytest
-import rospy
-from expected import HOME, ON_CONVEYOR, TARGETS, is_within
-from sensors import box_end_position, box_start_position, robot_home_position
 
-from conftest import ROOT
+rospy = pytest.importorskip("rospy", reason="no rospy: install Debian's python3-rospy, see README.md")
+
+from expected import HOME, ON_CONVEYOR, TARGETS, is_within  # noqa: E402
+from sensors import box_end_position, box_start_position, robot_home_position  # noqa: E402
+
+from conftest import ROOT  # noqa: E402
 
 MISSION = 60.0
 """How long the mission may take, s."""
