@@ -277,6 +277,9 @@ def goals() -> list[int]:
         rospy.sleep(0.05)  # a client that is answered at once misses it: it does not know yet what it sent
         server.publish_feedback(messages.TestFeedback(goal.goal))
         rospy.sleep(0.05)  # nor does feedback come before the result by itself
+        if goal.goal == -13:
+            server.set_aborted()
+            return
         while not goal.goal:
             if server.is_preempt_requested():
                 server.set_preempted()
@@ -351,6 +354,40 @@ def test_cancelling_is_a_site(make: Making, turning: list[int]) -> None:
     _, _, state = stage.run(stage.session(), "run", 0)
     assert state == 2
     assert ("cancel /cell/turn", "client.cancel_goal()") in places(stage)
+
+
+def test_a_goal_that_is_aborted_is_refused_if_the_vocabulary_says_so(
+    make: Making, turning: list[int]
+) -> None:
+    vocabulary = ACTION.replace("goal.goal", 'refused = ["ABORTED"]\n    goal.goal')
+    program = TURN.replace("read.append(result.result)", "pass").replace("client.get_result().result", "0")
+    program = program.replace("run(angle=30)", "run(angle=13)")  # the server turns no 13 degrees back
+    (_, _, state), activation = make(program, vocabulary).mutated("reverse", "goal", index=1)
+    assert (turning, state) == ([13, -13], 4)
+    assert activation.evidence.said == "/cell/turn: ABORTED"
+
+
+def test_a_message_that_follows_says_that_a_command_is_refused(make: Making) -> None:
+    vocabulary = GOAL.replace(
+        "fields.", 'refused = { topic = "/cell/ended", path = "data", values = [5] }\n    fields.'
+    )
+    program = """
+    def run():
+        heard = []
+        ended = rospy.Publisher("ended", Int32, queue_size=10)
+        listener = rospy.Subscriber("/cell/ended", Int32, heard.append)
+        server = rospy.Subscriber("goal", Twist, lambda m: ended.publish(5 if m.linear.y < 0 else 3))
+        goal = rospy.Publisher("goal", Twist, queue_size=10)
+        until(lambda: goal.get_num_connections() and ended.get_num_connections())
+        goal.publish(Twist(linear=Vector3(0.1, 0.2, 0.3)))
+        until(lambda: heard)
+        for one in (ended, listener, server, goal):
+            one.unregister()
+        return heard[0].data
+    """
+    end, activation = make(program, vocabulary).mutated("reverse", "linear.y", index=1)
+    assert end == 5
+    assert activation.evidence.said == "/cell/ended: data 5"
 
 
 PARAMETER = """

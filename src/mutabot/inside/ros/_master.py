@@ -13,9 +13,10 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-from mutabot.model import Operation, Vocabulary
+from mutabot.border.job import Job
 
 #: environment variables by which nodes find it
 URI, ADDRESS, LOGS, HOME = "ROS_MASTER_URI", "ROS_IP", "ROS_LOG_DIR", "ROS_HOME"
@@ -23,6 +24,8 @@ URI, ADDRESS, LOGS, HOME = "ROS_MASTER_URI", "ROS_IP", "ROS_LOG_DIR", "ROS_HOME"
 _PATIENCE = 20.0
 _PAUSE = 0.005
 _TRIES = 5
+#: how many files are looked into
+_FILES = 500
 _LOCAL = "127.0.0.1"
 _PROGRAM = """
 import ctypes, os, signal, sys
@@ -31,7 +34,6 @@ if os.getppid() == int(sys.argv[1]):
     import rosmaster
     rosmaster.rosmaster_main(["rosmaster", "--core", "-p", sys.argv[2]])
 """
-_MODULES = ("rospy", "actionlib")
 
 
 class MasterError(Exception):
@@ -56,15 +58,39 @@ class Master:
         self.process.wait()
 
 
-def is_wanted(vocabulary: Vocabulary) -> bool:
-    """Whether programs of this vocabulary use ROS 1, and it is installed."""
-    if not any(_is_ours(operation) for operation in vocabulary.operations):
+def is_wanted(job: Job) -> bool:
+    """Whether the program uses ROS 1, as far as its vocabulary and files tell, and it is installed."""
+    operations = job.vocabulary.operations
+    modules = {operation.target.partition(":")[0].partition(".")[0] for operation in operations}
+    is_named = any(operation.named is not None for operation in operations)
+    if not is_named and not modules & {"rospy", "actionlib"}:
         return False
-    return all(importlib.util.find_spec(name) is not None for name in ("rospy", "rosmaster"))
+    if not _is_installed("rospy") or not _is_installed("rosmaster"):
+        return False
+    return not _is_installed("rclpy") or any(map(_speaks_of_rospy, _files(job.root)))
 
 
-def _is_ours(operation: Operation) -> bool:
-    return operation.named is not None or operation.target.partition(":")[0].partition(".")[0] in _MODULES
+def _is_installed(module: str) -> bool:
+    return importlib.util.find_spec(module) is not None
+
+
+def _files(root: str) -> Iterator[str]:
+    """The first program files below a folder."""
+    found = 0
+    for folder, folders, files in os.walk(root):
+        folders[:] = sorted(name for name in folders if not name.startswith((".", "__")))
+        for name in sorted(files):
+            if name.endswith(".py") and found < _FILES:
+                found += 1
+                yield os.path.join(folder, name)
+
+
+def _speaks_of_rospy(file: str) -> bool:
+    try:
+        with open(file, "rb") as opened:
+            return b"rospy" in opened.read()
+    except OSError:
+        return False
 
 
 def start(home: str) -> Master:

@@ -85,7 +85,7 @@ class _Topics:
             given.change(name=name, queue_size=depth, latch=latch)
             original(*given.args, **given.kwargs)
 
-        settings = given.settings(name="name", depth="queue_size", latch="latch")
+        settings = {"latch": False} | given.settings(name="name", depth="queue_size", latch="latch")
         handler(advertise, publisher, (), settings, node.where())
 
     def _subscribe(self, original: Any, subscriber: Any, *args: Any, **kwargs: Any) -> None:
@@ -120,6 +120,7 @@ class _Topics:
         made = node.message_of(publisher.data_class, args, kwargs)
 
         def publish(message: Any) -> Any:
+            self._messages.heard(name, message)
             return original(publisher, message)
 
         return handler(publish, publisher, (made,), {}, node.where())
@@ -128,6 +129,7 @@ class _Topics:
         if is_under_way():  # a latched message, in the midst of setting the subscription up
             Context().run(self._receive, original, topic, message, callback, more)
             return
+        self._messages.heard(topic.resolved_name, message)
         is_ours = isinstance(getattr(callback, "__self__", None), _waiter())
         handler = None
         if not is_ours and topic.resolved_name not in _OWN:

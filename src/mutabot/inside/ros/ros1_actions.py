@@ -21,6 +21,9 @@ from ._patches import Patches, code_of
 
 MODULE = "actionlib"
 
+#: how a goal ends that is not reached, by the status of actionlib_msgs/GoalStatus
+_ENDINGS = {2: "CANCELED", 4: "ABORTED", 5: "REJECTED", 8: "CANCELED"}
+
 
 def hook(messages: Messages) -> Callable[[], None]:
     """Let the goals of this process pass by; returns what takes the hooks away."""
@@ -30,6 +33,7 @@ def hook(messages: Messages) -> Callable[[], None]:
     patches.put(client, "__init__", simple.make)
     patches.put(client, "send_goal", simple.send)
     patches.put(client, "get_result", simple.result)
+    patches.put(client, "_handle_transition", simple.note_end)
     patches.put(client, "cancel_goal", simple.cancel)
     patches.put(client, "cancel_all_goals", simple.cancel)
     return patches.undo
@@ -92,6 +96,16 @@ class _Simple:
         if handler is None:
             return original(client)
         return handler(lambda: original(client), client, (), {}, node.where(lost=_nothing))
+
+    def note_end(self, original: Any, client: Any, handle: Any) -> Any:
+        """The state of a goal has changed."""
+        ended: Any = sys.modules["actionlib.action_client"].CommState.DONE
+        if handle == client.gh and handle.get_comm_state() == ended:
+            name, status = _name(client), handle.get_goal_status()
+            self._messages.heard(name, handle.get_result())
+            if status in _ENDINGS:
+                self._messages.heard(name, _ENDINGS[status])
+        return original(client, handle)
 
     def cancel(self, original: Any, client: Any) -> Any:
         """The program cancels its goal, or all goals."""

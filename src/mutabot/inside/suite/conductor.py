@@ -28,6 +28,7 @@ from mutabot.inside.pipe import Held, Pipe
 from mutabot.inside.processes.host import Host
 from mutabot.inside.processes.member import watch_forks
 from mutabot.inside.processes.members import Members
+from mutabot.inside.ros._environment import prepare
 from mutabot.inside.session import Session
 from mutabot.inside.stacks import say_where_on_signal
 from mutabot.inside.text.returns import Returns
@@ -111,6 +112,7 @@ class Conductor:
             die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
+        prepare(self.job, home)
         host = Host(home, self.job)
         host.open()
         self.running.members = Members(host, self.session)

@@ -1,0 +1,20 @@
+"""What the nodes of one worker need around them, so that workers do not meet."""
+
+from __future__ import annotations
+
+from mutabot.border.job import Job
+
+from . import _master
+
+
+def prepare(job: Job, home: str) -> None:
+    """Set up, before anything of the program's runs, what its nodes will find in the environment.
+
+    Args:
+        job: the job at hand.
+        home: the worker's folder.
+
+    Raises ``_master.MasterError`` if there is to be a master and none comes up.
+    """
+    if _master.is_wanted(job):
+        _master.start(home)
