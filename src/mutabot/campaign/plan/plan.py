@@ -15,7 +15,7 @@ from mutabot.campaign.baseline.places import Place
 from mutabot.errors import OperatorError
 from mutabot.families import USUAL
 from mutabot.journal.records import Drawing
-from mutabot.model import Call, Kind, LeftOut, Middleware, Mutant, Operation, Reply, Role, Vocabulary
+from mutabot.model import Call, Kind, LeftOut, Middleware, Mutant, Operation, Reply, Role, Site, Vocabulary
 from mutabot.model.values.quantity import is_reading_of
 from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.operator import with_operation
@@ -221,14 +221,21 @@ def _calls(hits: int) -> str:
 
 def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen, *, is_shared: bool) -> str:
     """What the mutant does, in one line; ``is_shared``: whether the site reaches several operations."""
-    operation = subject.operation
-    what = place.site.text
-    if not _names(what, operation.qualname, is_shared=is_shared):
-        what = f"{what} ({operation.name})"
+    what = _what(subject.operation, place.site, is_shared=is_shared)
     if subject.pattern is not None:
         name = subject.pattern.name
         what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
     return f"{what}: {rule.describe(subject, seen.before, seen.after)}"
+
+
+def _what(operation: Operation, site: Site, *, is_shared: bool) -> str:
+    """The call in words: its text, or the name of what is done on a middleware, and who hears it."""
+    if operation.named is not None:
+        is_callback = site.text == "lambda" or site.text.startswith("def ")
+        return f"{site.text}, {operation.target}" if is_callback else operation.target
+    if _names(site.text, operation.qualname, is_shared=is_shared):
+        return site.text
+    return f"{site.text} ({operation.name})"
 
 
 def _names(text: str, qualname: str, *, is_shared: bool) -> bool:

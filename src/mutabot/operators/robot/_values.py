@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -11,6 +12,7 @@ from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Quantit
 from mutabot.model.values.quantity import Value, same
 from mutabot.operators.operator import Operator, Subject
 
+_NAMES = re.compile(r"[._]")
 #: why an operator stays away from a call without a value
 NOT_GIVEN = "the call gives no such value"
 #: why an operator that asks where the robot is stays away
@@ -103,7 +105,7 @@ def quantity_of(subject: Subject) -> Quantity:
 def label(quantity: Quantity) -> str:
     """How descriptions call a quantity: its axis where it has one, and its name."""
     name = quantity.name.lstrip(".")
-    if quantity.axis is None or name == quantity.axis or quantity.axis in name.split("_"):
+    if quantity.axis is None or quantity.axis in _NAMES.split(name):
         return name
     return f"{name} ({quantity.axis})"
 
