@@ -62,9 +62,6 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             mutant = _mutant(len(mutants) + 1, rule, subject, place)
             mutant = _distinct(mutant, taken)
             seen, reason = _foresee(rule, subject, hits)
-            if mutant.id in taken:  # a file that nodes of the program share with those of the oracle
-                reason = "its calls in nodes of the other role have mutants of the same id"
-            taken.add(mutant.id)
             if rule.needs_where(subject) and not _is_told(subject, vocabulary):
                 reason = f"{subject.current or 'no reading'} does not tell where it is"
             mutant = replace(
@@ -116,9 +113,13 @@ def _mutant(number: int, rule: Operator, subject: Subject, place: Place) -> Muta
 
 
 def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
-    """Two operations at one site (the object decides) may have quantities of the same name."""
+    """Two operations at one site (the object decides) may have quantities of the same name.
+
+    So may one operation whose site nodes of the program share with those of the oracle.
+    """
     if mutant.id in taken:
         mutant = replace(mutant, variant=with_operation(mutant.variant, mutant.operation))
+    taken.add(mutant.id)
     return mutant
 
 
