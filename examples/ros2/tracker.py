@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import rclpy
 from geometry_msgs.msg import Point, PointStamped
 from kinova import LATCHED
@@ -45,6 +47,11 @@ def _measured(what: str) -> Point:
     """Ask for a measurement, which is made after all that was asked for before, and wait for it."""
     node = _connected()
     client = _clients[what]
+    end = time.monotonic() + PATIENCE
+    while not client.service_is_ready():
+        if time.monotonic() > end:
+            raise TimeoutError(f"{client.srv_name}: nobody offers it")
+        time.sleep(0.002)
     future = client.call_async(Trigger.Request())
     rclpy.spin_until_future_complete(node, future, timeout_sec=PATIENCE)
     if not future.done():

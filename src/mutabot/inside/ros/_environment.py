@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mutabot.border.job import Job
 
-from . import _master
+from . import _domain, _master
 
 
 def prepare(job: Job, home: str) -> None:
@@ -16,5 +16,7 @@ def prepare(job: Job, home: str) -> None:
 
     Raises ``_master.MasterError`` if there is to be a master and none comes up.
     """
+    if _domain.is_wanted(job):
+        _domain.take(home)
     if _master.is_wanted(job):
         _master.start(home)

@@ -1,0 +1,73 @@
+"""A domain of ROS 2 for the nodes of one worker, so that workers do not meet and nothing of theirs is left.
+
+It is on this machine alone, with logs in the worker's home and no shared memory. Discovery speaks up ten times a
+second: nodes of tests come and go, and would else wait for the next of its rounds, up to 3 s.
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+
+from mutabot.border.job import Job
+from mutabot.model import Operation
+
+DOMAIN, RANGE, LOGS = "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOG_DIR"
+TRANSPORTS = "FASTDDS_BUILTIN_TRANSPORTS"
+PROFILES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
+#: domains whose ports are free on any system
+DOMAINS = range(1, 102)
+_PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
+<dds xmlns="http://www.eprosima.com"><profiles>
+<participant profile_name="mutabot" is_default_profile="true"><rtps><builtin><discovery_config>
+<leaseDuration><sec>20</sec></leaseDuration>
+<leaseAnnouncement><sec>0</sec><nanosec>100000000</nanosec></leaseAnnouncement>
+<initialAnnouncements><count>10</count><period><sec>0</sec><nanosec>20000000</nanosec></period>
+</initialAnnouncements>
+</discovery_config></builtin></rtps></participant>
+</profiles></dds>
+"""
+#: holds the domain of this process as long as it lives; nothing of it is on disk
+_held: list[socket.socket] = []
+
+
+def is_wanted(job: Job) -> bool:
+    """Whether the job's vocabulary speaks of nodes, which may be those of ROS 2."""
+    return any(_is_of_nodes(operation) for operation in job.vocabulary.operations)
+
+
+def take(home: str) -> None:
+    """Give this process, and all that it starts, a domain of its own."""
+    domain = _claim(os.environ.get(DOMAIN))
+    if domain is not None:
+        os.environ[DOMAIN] = str(domain)
+    os.environ[RANGE] = "LOCALHOST"
+    os.environ[LOGS] = os.path.join(home, "ros")
+    os.environ.setdefault(TRANSPORTS, "UDPv4")
+    if not any(name in os.environ for name in PROFILES):
+        file = os.path.join(home, "discovery.xml")
+        with open(file, "w", encoding="utf-8") as stream:
+            stream.write(_PROFILE)
+        os.environ[PROFILES[0]] = file
+
+
+def _is_of_nodes(operation: Operation) -> bool:
+    return operation.named is not None or operation.target.startswith(("rclpy:", "rclpy."))
+
+
+def _claim(theirs: str | None) -> int | None:
+    """A domain that no other worker has, nor the user's own nodes; None if there is none left."""
+    while _held:  # of a process that this one was forked from
+        _held.pop().close()
+    for domain in DOMAINS:
+        if str(domain) == theirs:
+            continue
+        held = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        try:
+            held.bind(f"\0mutabot-ros-domain-{domain}")
+        except OSError:
+            held.close()
+            continue
+        _held.append(held)
+        return domain
+    return None
