@@ -164,7 +164,10 @@ class Passing:
                 # 5. Whatever came of it is noted.
                 self._note(site, call, reply)
         finally:
-            _under_way.reset(token)
+            try:
+                _under_way.reset(token)
+            except ValueError:  # a coroutine that was given up is closed from elsewhere
+                pass
 
     async def _leave_alone(
         self,

@@ -1,7 +1,7 @@
 """A domain of ROS 2 for the nodes of one worker, so that workers do not meet and nothing of theirs is left.
 
-It is on this machine alone, with logs in the worker's home and no shared memory. Discovery speaks up ten times a
-second: nodes of tests come and go, and would else wait for the next of its rounds, up to 3 s.
+It is on this machine alone, with logs in the worker's home and no shared memory. Discovery speaks up ten
+times a second: nodes of tests come and go, and would else wait for the next of its rounds, up to 3 s.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ _NAME, _NODE = "_mutabot_name", "_mutabot_node"
 
 
 class _Now(threading.local):
-    """What this thread is doing: making a node, or something of a node."""
+    """What this thread is doing: making something of rclpy's own, or something of a node."""
 
     making = 0
     node: Any = None
@@ -37,16 +37,23 @@ def hook(patches: Patches, messages: Messages) -> None:
 
 
 def _made(original: Any, node: Any, *args: Any, **kwargs: Any) -> None:
-    _now.making += 1
-    try:
+    with own():
         original(node, *args, **kwargs)
-    finally:
-        _now.making -= 1
     note_node(node.get_fully_qualified_name())
 
 
+@contextmanager
+def own() -> Iterator[None]:
+    """What is made in the block is rclpy's own."""
+    _now.making += 1
+    try:
+        yield
+    finally:
+        _now.making -= 1
+
+
 def is_own() -> bool:
-    """Whether a node is being made: what it does now is rclpy's own."""
+    """Whether what is made now is rclpy's own: parts of a node, or of a wait."""
     return _now.making > 0
 
 

@@ -145,7 +145,8 @@ class _Topics:
 
         def waited() -> Any:
             left = -1 if end is None else max(0.0, end - time.monotonic())
-            found, message = original(msg_type, node, topic, **kwargs, time_to_wait=left)
+            with _nodes.own():
+                found, message = original(msg_type, node, topic, **kwargs, time_to_wait=left)
             if not found:
                 raise _Nothing
             self._messages.heard(name, message)
