@@ -164,7 +164,7 @@ class Passing:
                 # 5. Whatever came of it is noted.
                 self._note(site, call, reply)
         finally:
-            try:
+            try:  # noqa: SIM105  # quicker than a context manager, at every call
                 _under_way.reset(token)
             except ValueError:  # a coroutine that was given up is closed from elsewhere
                 pass

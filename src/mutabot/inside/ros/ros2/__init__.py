@@ -13,19 +13,25 @@ from mutabot.inside.targets.messages import Messages
 from mutabot.inside.targets.target import Finding
 from mutabot.model import Operation
 
-from . import _actions, _clock, _nodes, _parameters, _services, _times, _topics
+from ._actions import hook as hook_actions
+from ._clock import hook as hook_clock
+from ._nodes import hook as hook_nodes
+from ._parameters import hook as hook_parameters
+from ._services import hook as hook_services
+from ._times import hook as hook_times
+from ._topics import hook as hook_topics
 from ._types import look_at, seen
 
 MODULE = "rclpy"
 
-_PARTS = (_nodes, _topics, _services, _actions, _parameters, _times, _clock)
+_HOOKS = (hook_nodes, hook_topics, hook_services, hook_actions, hook_parameters, hook_times, hook_clock)
 
 
 def hook(messages: Messages) -> Callable[[], None]:
     """Let what nodes of this process do pass by; returns what takes the hooks away."""
     patches = Patches()
-    for part in _PARTS:
-        part.hook(patches, messages)
+    for put in _HOOKS:
+        put(patches, messages)
     patches.then(seen.clear)
     return patches.undo
 
