@@ -60,7 +60,9 @@ def test_settings_that_would_stay_the_same_are_left_out_with_the_reason() -> Non
     assert kinds(plan) == ["wrong-name=misspelt", "wrong-reliability", "wrong-deadline=tight"]
     assert reasons(plan, "wrong-name") == ["would change nothing in the call: its name is a global one"]
     assert reasons(plan, "short-queue") == ["would change nothing in the call: the value would stay the same"]
-    assert reasons(plan, "flip-latch") == ["would change nothing in the call: the call gives no such value"]
+    assert reasons(plan, "flip-latch") == [
+        "would change nothing in the call: its middleware has no such setting, or chooses it itself"
+    ]
     assert reasons(plan, "wrong-deadline") == ["would change nothing in the call: it has none"]
 
 

@@ -215,7 +215,7 @@ def test_one_setting_is_another(
 def test_a_setting_that_the_middleware_does_not_have_stays_away(tmp_path: Path) -> None:
     stage = ClientStage(tmp_path, (ADVERTISE,))
     _, _, activation = stage.mutated(SET_UP, "wrong-durability", "", "durability")
-    assert activation.evidence.away == {"the call gives no such value": 1}
+    assert activation.evidence.away == {"its middleware has no such setting, or chooses it itself": 1}
 
 
 @pytest.mark.parametrize(("default", "expected"), [(1, 1), (5, 5)])

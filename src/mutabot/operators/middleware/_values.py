@@ -13,6 +13,8 @@ from mutabot.model.values.quantity import Value, same
 from mutabot.operators.operator import Operator, Subject
 
 NOT_GIVEN = "the call gives no such value"
+#: why an operator stays away from what it would set up: a middleware need not have all that others have
+NOT_SET = "its middleware has no such setting, or chooses it itself"
 _SAME = "the value would stay the same"
 
 
@@ -71,7 +73,7 @@ class ValueOperator(Operator):
     def _changed(self, subject: Subject, values: Any) -> Value:
         quantity = quantity_of(subject)
         if quantity.name not in values:
-            raise Away(NOT_GIVEN)
+            raise Away(NOT_SET if quantity.kind is Kind.SETTING else NOT_GIVEN)
         value = self.change(subject, values[quantity.name])
         if same(value, values[quantity.name]):
             raise Away(_SAME)

@@ -25,7 +25,9 @@ class FlipLatch(SettingOperator):
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(ADVERTISE, quantity=_LATCH), {"latch": True}, performed=({"latch": False},)),
         Example(Subject(ADVERTISE, quantity=_LATCH), {"latch": False}, performed=({"latch": True},)),
-        Example(Subject(ADVERTISE, quantity=_LATCH), {"name": "target"}, away="the call gives no such value"),
+        Example(
+            Subject(ADVERTISE, quantity=_LATCH), {"name": "target"}, away="its middleware latches nothing"
+        ),
     )
 
     def change(self, subject: Subject, value: Value) -> Value:
