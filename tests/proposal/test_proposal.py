@@ -613,3 +613,37 @@ def test_an_argument_is_guessed_from_its_name(name: str, words: str, expected: d
 )
 def test_a_reading_is_guessed_from_its_name(name: str, setting: Setting, expected: dict[str, Any]) -> None:
     assert guess_reading(name, setting).table == expected
+
+
+def test_programs_that_the_tests_start_as_processes_are_watched_there(tmp_path: Path) -> None:
+    files = {
+        "robot.py": """
+            class Arm:
+                def move_by(self, x=0.0):
+                    print(x)
+        """,
+        "mission.py": """
+            from robot import Arm
+
+            arm = Arm()
+            for _ in range(3):
+                arm.move_by(x=0.5)
+        """,
+        "tests/test_mission.py": """
+            import subprocess
+            import sys
+
+            def test_mission():
+                subprocess.run([sys.executable, "mission.py"], check=True)
+
+            def test_ended():
+                code = "import signal, mission; signal.pause()"
+                process = subprocess.Popen([sys.executable, "-uc", code], stdout=subprocess.PIPE)
+                process.stdout.readline()
+                process.terminate()
+        """,
+    }
+    told = "\n".join(propose(write(tmp_path, files)))
+    assert "calls 1 callables" in told
+    (found,) = operations(tmp_path).values()
+    assert (found.target, [one.name for one in found.arguments]) == ("robot:Arm.move_by", ["x"])

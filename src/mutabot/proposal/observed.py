@@ -9,7 +9,7 @@ import os
 import re
 import signal
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -138,7 +138,7 @@ def _run(layout: Layout, extra: list[str], limit: float) -> Observed:
         folder = Path(name)
         order, output, log = folder / "watch.json", folder / "seen.json", folder / "log.txt"
         order.write_text(json.dumps(_order(layout, output)), encoding="utf-8")
-        own = ["-p", "mutabot.inside.watching.watch", "--assert=plain"]
+        own = ["-p", "mutabot.inside.watching.plugin", "--assert=plain"]
         words = [*command([*layout.arguments, *extra], folder), *own]
         overdue = _wait(words, layout.root, order, log, limit)
         said = log.read_text(encoding="utf-8", errors="replace")
@@ -185,7 +185,21 @@ def _read(output: Path) -> Observed:
         data = json.loads(output.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return Observed()
-    return Observed([_call(raw) for raw in data["calls"]], data["outcomes"], data["problems"])
+    calls = [_call(raw) for raw in _together(data["calls"])]
+    return Observed(calls, data["outcomes"], data["problems"])
+
+
+def _together(calls: Sequence[dict[str, Any]]) -> Iterable[dict[str, Any]]:
+    """One entry for what several processes saw of a callable: the first one's values, all sites."""
+    found: dict[tuple[str, bool], dict[str, Any]] = {}
+    for raw in calls:
+        first = found.setdefault((raw["target"], raw["of_tests"]), raw)
+        if first is not raw:
+            counts = {(file, line): count for file, line, count in first["sites"]}
+            for file, line, count in raw["sites"]:
+                counts[file, line] = counts.get((file, line), 0) + count
+            first["sites"] = [[file, line, count] for (file, line), count in counts.items()]
+    return found.values()
 
 
 def _call(raw: dict[str, Any]) -> SeenCall:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import builtins
 import sys
 from dataclasses import dataclass
@@ -14,7 +15,8 @@ import pytest
 
 from mutabot.inside.watching.described import Leaves
 from mutabot.inside.watching.watch import Watch
-from mutabot.inside.watching.watched_text import METHOD, NAME, READ, watched_code
+from mutabot.inside.watching.watched_text import METHOD, NAME, READ
+from mutabot.inside.watching.watched_text import watch as watch_tree
 
 ORDINARY = Path(__file__).parents[2] / "classical" / "ordinary.py"
 
@@ -27,7 +29,9 @@ def run(source: str, name: str, monkeypatch: pytest.MonkeyPatch) -> tuple[Module
     module = ModuleType(Path(name).stem)
     module.__dict__["__file__"] = name
     monkeypatch.setitem(sys.modules, module.__name__, module)
-    exec(watched_code(source.encode(), name, lambda line: watch._place(name, line)), vars(module))
+    tree = ast.parse(source, name)
+    watch_tree(tree, lambda line: watch._place(name, line))
+    exec(compile(tree, name, "exec"), vars(module))
     return module, watch
 
 

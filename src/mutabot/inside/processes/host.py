@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from importlib.util import find_spec
 
 from mutabot.border.job import Job
-from mutabot.border.processes import FOLDER, SUFFIX, WAKE, Entry, entry_of
+from mutabot.border.processes import FOLDER, SUFFIX, Entry, entry_of
 
 from .carried import carry
 from .exits import Exits
 from .now import Now
+from .wake import write_wake
 
+#: what processes of interest load
+_JOIN = "mutabot.inside.processes.member"
 #: modules of middlewares, which nodes import, where the vocabulary names anything on one
 _MIDDLEWARES = ("rclpy", "rospy", "actionlib", "tf2_ros")
 
@@ -89,21 +91,8 @@ class Host:
         files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]
         for path in (*job.program, *job.oracle):
             names.update(part.removesuffix(".py") for part in path.split("/") if part not in (".", "..", ""))
-        lines = [
-            *(f"path {folder}" for folder in _own_folders()),
-            *(f"name {name}" for name in sorted(names)),
-            *(f"file {file}" for file in files),
-        ]
-        with open(os.path.join(self.folder, WAKE), "w", encoding="utf-8") as file:
-            file.write("".join(f"{line}\n" for line in lines))
+        write_wake(self.folder, _JOIN, names, files)
 
 
 def _top(target: str) -> str:
     return target.partition(":")[0].partition(".")[0]
-
-
-def _own_folders() -> list[str]:
-    """Where another interpreter finds what the inside needs."""
-    found = (find_spec(name) for name in ("mutabot", "wrapt"))
-    places = [spec.submodule_search_locations for spec in found if spec is not None]
-    return list(dict.fromkeys(os.path.dirname(place) for several in places if several for place in several))

@@ -1,7 +1,6 @@
-"""Watching one plain run of the suite for ``mutabot init``: which calls the program makes, with which values.
+"""What one process sees of the calls in some files: which callables, with which values.
 
-A pytest plug-in of its own: ``-p mutabot.inside.watching.watch``, told by the environment what to look at. It
-changes nothing that the program can see; what it found is written to a file as JSON.
+It changes nothing that the program can see.
 """
 
 from __future__ import annotations
@@ -9,17 +8,11 @@ from __future__ import annotations
 import builtins
 import functools
 import inspect
-import json
-import os
 import sys
-import time
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-import pytest
-
-from mutabot.border.watch import WATCH_VARIABLE
 from mutabot.model.class_name import class_name
 
 from .callee import Callee, facts, function_of, method_of
@@ -29,8 +22,6 @@ from .watched_text import METHOD, NAME, READ, watch_imports
 
 #: calls of one callable whose values are looked at; more are only counted
 MOST_CALLS = 300
-#: least seconds between two writings of what was found so far
-_PAUSE = 2.0
 #: packages that talk to no robot
 _NO_ROBOTS = frozenset(
     {
@@ -233,63 +224,3 @@ class Watch:
             "raised": self._raised(seen.callee.target),
             "told_apart": seen.told_apart.data(),
         }
-
-
-class _Plugin:
-    """Pytest's hooks: when to write down what was found, and what became of the tests."""
-
-    def __init__(self, watch: Watch, output: str) -> None:
-        self._watch, self._output = watch, output
-        self._outcomes: dict[str, str] = {}
-        self._problems: list[str] = []
-        self._written = time.monotonic()
-
-    def pytest_collectreport(self, report: Any) -> None:
-        """A file that cannot be collected."""
-        if report.failed:
-            self._problems.append(f"{report.nodeid}: {_last_line(report.longreprtext)}")
-
-    def pytest_runtest_logreport(self, report: Any) -> None:
-        """A phase of a test is over."""
-        if report.failed:
-            self._problems.append(f"{report.nodeid}: {_last_line(report.longreprtext)}")
-        if report.when == "call" or report.outcome != "passed":
-            self._outcomes[report.nodeid] = report.outcome
-
-    def pytest_runtest_logfinish(self) -> None:
-        """A test is over: the run may be cut short in the next one."""
-        if time.monotonic() - self._written > _PAUSE:
-            self._write()
-
-    def pytest_sessionfinish(self) -> None:
-        """All tests are over."""
-        self._write()
-
-    def _write(self) -> None:
-        outcomes = list(self._outcomes.values())
-        counts = {one: outcomes.count(one) for one in dict.fromkeys(outcomes)}
-        found = {"calls": self._watch.data(), "outcomes": counts, "problems": self._problems[:20]}
-        with open(f"{self._output}.new", "w", encoding="utf-8") as file:
-            json.dump(found, file, default=str)
-        os.replace(f"{self._output}.new", self._output)
-        self._written = time.monotonic()
-
-
-def _last_line(text: str) -> str:
-    """The line of a traceback that says what went wrong."""
-    lines = [line.strip().removeprefix("E").strip() for line in text.splitlines() if line.startswith("E ")]
-    plain = [line.strip() for line in text.splitlines() if line.strip()]
-    return (lines or plain[-1:] or ["no message"])[-1][:300]
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_load_initial_conftests(early_config: Any) -> None:
-    """Before any of the user's code is imported."""
-    path = os.environ.pop(WATCH_VARIABLE, None)
-    if path is None:
-        return
-    with open(path, encoding="utf-8") as file:
-        order = json.load(file)
-    watch = Watch(order["program"], order["tests"])
-    watch.install()
-    early_config.pluginmanager.register(_Plugin(watch, order["output"]), "mutabot-watch")

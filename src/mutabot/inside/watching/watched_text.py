@@ -9,14 +9,12 @@ from __future__ import annotations
 import ast
 import os
 from collections.abc import Callable, Mapping
-from importlib.machinery import SourceFileLoader
-from types import CodeType
-from typing import cast
+
+from mutabot.inside.text import loading, scripts
 
 METHOD, NAME, READ = "__mutabot_method__", "__mutabot_name__", "__mutabot_read__"
 #: these look at the frame that calls them
 _BOUND_TO_FRAME = frozenset({"super", "locals", "globals", "vars", "dir", "eval", "exec", "breakpoint"})
-_GetCode = Callable[[SourceFileLoader, str], CodeType | None]
 
 
 def watch_imports(files: Mapping[str, str], new_place: Callable[[str, int], int]) -> None:
@@ -24,22 +22,32 @@ def watch_imports(files: Mapping[str, str], new_place: Callable[[str, int], int]
 
     ``new_place`` numbers a file and line.
     """
-    original = cast(_GetCode, SourceFileLoader.get_code)
-
-    def get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
-        path = self.get_filename(fullname)
-        name = files.get(os.path.realpath(path))
-        if name is None:
-            return original(self, fullname)
-        return watched_code(self.get_data(path), path, lambda line: new_place(name, line))
-
-    SourceFileLoader.get_code = get_code  # type: ignore[method-assign, assignment]
+    loading.add(_Watched(files, new_place))
+    scripts.hook_runpy()
 
 
-def watched_code(source: bytes, path: str, place: Callable[[int], int]) -> CodeType:
-    """Compiled text in which calls are watched. Raises SyntaxError for text that is no Python."""
-    tree = ast.fix_missing_locations(_Watcher(place).visit(ast.parse(source, path)))
-    return compile(tree, path, "exec", dont_inherit=True)
+class _Watched:
+    """Puts the watch into files while they are compiled. See ``loading.Step``."""
+
+    def __init__(self, files: Mapping[str, str], new_place: Callable[[str, int], int]) -> None:
+        self._files, self._new_place = files, new_place
+
+    def wants(self, path: str) -> bool:
+        """Whether the file is to be watched."""
+        return os.path.realpath(path) in self._files
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Let every call and every attribute that is read ask the watch first."""
+        name = self._files[os.path.realpath(path)]
+        watch(tree, lambda line: self._new_place(name, line))
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """What cannot be compiled says so itself."""
+
+
+def watch(tree: ast.Module, place: Callable[[int], int]) -> None:
+    """Put the watch into a tree."""
+    ast.fix_missing_locations(_Watcher(place).visit(tree))
 
 
 class _Watcher(ast.NodeTransformer):

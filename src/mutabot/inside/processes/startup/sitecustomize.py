@@ -6,7 +6,8 @@ loaded by itself. A process is of interest as soon as it runs or imports a file 
 module that the vocabulary names. Only then the rest of mutabot is loaded.
 
 The file ``wake`` of the folder that the environment names says what is of interest, a line each:
-``path FOLDER`` where packages of ours can be found, ``name MODULE``, ``file PATH`` of a file or folder.
+``join MODULE`` with a function of that name, which is then called with the folder, ``path FOLDER`` where
+packages of ours can be found, ``name MODULE``, ``file PATH`` of a file or folder.
 """
 
 import os
@@ -25,8 +26,8 @@ _NEWEST_TOO_OLD = (3, 10)
 class _Finder:
     """Wakes the process when a module of interest is asked for; finds none itself."""
 
-    def __init__(self, folder: str, names: "frozenset[str]", files: "Sequence[str]") -> None:
-        self.folder, self.names, self.files = folder, names, files
+    def __init__(self, folder: str, join: str, names: "frozenset[str]", files: "Sequence[str]") -> None:
+        self.folder, self.join, self.names, self.files = folder, join, names, files
 
     def find_spec(
         self, name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None
@@ -69,11 +70,11 @@ def _wake(finder: _Finder) -> None:
         _tell_unable(finder.folder, "Python %d.%d is older than 3.11" % sys.version_info[:2])
         return
     try:
-        from mutabot.inside.processes.member import join
+        module = __import__(finder.join, fromlist=["join"])
     except Exception as error:
         _tell_unable(finder.folder, "mutabot cannot be loaded: %r" % (error,))
     else:
-        join(finder.folder)
+        module.join(finder.folder)
 
 
 def _tell_unable(folder: str, why: str) -> None:
@@ -102,10 +103,10 @@ def enter(command: "str | None" = None) -> None:
             lines = [line.rstrip("\n").partition(" ") for line in file]
     except OSError:  # the campaign is over
         return
-    told: "dict[str, list[str]]" = {"path": [], "name": [], "file": []}
+    told: "dict[str, list[str]]" = {"join": [""], "path": [], "name": [], "file": []}
     for key, _, value in lines:
         told[key].append(value)
-    finder = _Finder(folder, frozenset(told["name"]), told["file"])
+    finder = _Finder(folder, told["join"][-1], frozenset(told["name"]), told["file"])
     sys.meta_path.append(_Ours(told["path"]))
     sys.meta_path.insert(0, finder)
     script = command if command is not None else getattr(sys, "argv", [""])[0]

@@ -1,0 +1,35 @@
+"""What wakes a process that the tests start: the file that its start-up module reads."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from importlib.util import find_spec
+
+from mutabot.border.processes import WAKE
+
+
+def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str]) -> None:
+    """Say what is of interest.
+
+    Args:
+        folder: the folder of the campaign's processes.
+        join: the module whose ``join`` is called, with this folder, in a process of interest.
+        names: top-level names of modules.
+        files: real paths of files and folders.
+    """
+    lines = [
+        f"join {join}",
+        *(f"path {place}" for place in _own_folders()),
+        *(f"name {name}" for name in sorted(set(names))),
+        *(f"file {file}" for file in files),
+    ]
+    with open(os.path.join(folder, WAKE), "w", encoding="utf-8") as file:
+        file.write("".join(f"{line}\n" for line in lines))
+
+
+def _own_folders() -> list[str]:
+    """Where another interpreter finds what the inside needs."""
+    found = (find_spec(name) for name in ("mutabot", "wrapt"))
+    places = [spec.submodule_search_locations for spec in found if spec is not None]
+    return list(dict.fromkeys(os.path.dirname(place) for several in places if several for place in several))

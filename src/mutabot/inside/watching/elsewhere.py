@@ -1,0 +1,76 @@
+"""Watching goes on in the processes that the tests start; each writes what it saw when it ends."""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import signal
+import sys
+from collections.abc import Mapping
+from types import FrameType
+from typing import Any
+
+from mutabot.border.processes import FOLDER
+from mutabot.inside.processes.carried import carry
+from mutabot.inside.processes.wake import write_wake
+from mutabot.inside.text.scripts import hook_script
+
+from .watch import Watch
+
+_ORDER = "order.json"
+_SEEN = ".seen.json"
+
+
+def watch_elsewhere(path: str, order: Mapping[str, Any]) -> str:
+    """Watch processes that are started from now on; ``path`` is that of the order.
+
+    Returns the folder in which they write.
+    """
+    folder = os.path.join(os.path.dirname(path), FOLDER)
+    os.mkdir(folder)
+    with open(os.path.join(folder, _ORDER), "w", encoding="utf-8") as file:
+        json.dump(order, file)
+    names = {name.rpartition("/")[2].removesuffix(".py") for name in order["program"].values()}
+    folders = {part for name in order["program"].values() for part in name.split("/")[:-1]}
+    write_wake(folder, __name__, names | folders, order["program"])
+    carry(folder)
+    return folder
+
+
+def join(folder: str) -> None:
+    """Watch this process, which turned out to be of interest."""
+    with open(os.path.join(folder, _ORDER), encoding="utf-8") as file:
+        order = json.load(file)
+    watch = Watch(order["program"], order["tests"])
+    watch.install()
+    hook_script()
+    leave = os._exit
+
+    def write() -> None:
+        name = os.path.join(folder, f"{os.getpid()}{_SEEN}")
+        with open(f"{name}.new", "w", encoding="utf-8") as file:
+            json.dump(watch.data(), file, default=str)
+        os.replace(f"{name}.new", name)
+
+    def leave_at_once(status: int) -> None:
+        write()
+        leave(status)
+
+    def end(number: int, frame: FrameType | None) -> None:
+        sys.exit(128 + number)
+
+    atexit.register(write)
+    os._exit = leave_at_once  # type: ignore[assignment]
+    if signal.getsignal(signal.SIGTERM) is signal.SIG_DFL:
+        signal.signal(signal.SIGTERM, end)  # else nothing would be written
+
+
+def seen_elsewhere(folder: str) -> list[dict[str, Any]]:
+    """What processes that have ended saw, as ``Watch.data`` gives it."""
+    found: list[dict[str, Any]] = []
+    for name in sorted(os.listdir(folder)):
+        if name.endswith(_SEEN):
+            with open(os.path.join(folder, name), encoding="utf-8") as file:
+                found += json.load(file)
+    return found
