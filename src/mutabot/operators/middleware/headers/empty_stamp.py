@@ -7,7 +7,7 @@ from typing import ClassVar
 from mutabot.model import Kind, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.operators.middleware._examples import HEAR_STAMP, HEARD_STAMP, SEND_STAMP, STAMP
-from mutabot.operators.middleware._values import Away, ValueOperator
+from mutabot.operators.middleware._values import Away, ValueOperator, quantity_of
 from mutabot.operators.operator import Example, Subject
 
 
@@ -39,3 +39,6 @@ class EmptyStamp(ValueOperator):
         if not value:
             raise Away("the stamp is empty already")
         return 0.0
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        return f"{quantity_of(subject).name} is empty"

@@ -7,7 +7,7 @@ from typing import ClassVar
 from mutabot.model import Kind, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.operators.middleware._examples import HEAR_STAMP, HEARD_STAMP, SEND_STAMP, STAMP
-from mutabot.operators.middleware._values import Away, ValueOperator
+from mutabot.operators.middleware._values import Away, ValueOperator, quantity_of
 from mutabot.operators.operator import Example, Subject
 
 #: seconds: more than programs that check the age of a message put up with. Less than 2 s is no difference
@@ -54,3 +54,8 @@ class ShiftStamp(ValueOperator):
         if shifted < 0:
             raise Away("no stamp is before zero")
         return shifted
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        shift = _SHIFTS[subject.variant]
+        when = "past" if shift < 0 else "future"
+        return f"{quantity_of(subject).name} lies {abs(shift):g} s in the {when}"
