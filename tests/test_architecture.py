@@ -106,6 +106,16 @@ def test_the_sleeping_plugin_loads_neither_operators_nor_wrapt() -> None:
     assert done.stdout.strip() == "[]"
 
 
+def test_processes_below_the_tests_need_no_pytest() -> None:
+    code = (
+        "import sys, mutabot.inside.processes.member, mutabot.inside.watching.elsewhere\n"
+        "heavy = {'pytest', '_pytest', 'pydantic', 'rich', 'typer', 'mujoco', 'numpy', 'libcst'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
 _CHANGES = {"add", "append", "clear", "discard", "extend", "insert", "pop", "remove", "setdefault", "update"}
 
 

@@ -7,10 +7,12 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from time import monotonic  # before a simulation takes over the clock
-
-import pytest
+from typing import TYPE_CHECKING
 
 from mutabot.border.lines import Watched
+
+if TYPE_CHECKING:
+    import pytest  # processes below the tests need none
 
 
 @contextmanager
