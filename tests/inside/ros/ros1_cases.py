@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 
 from mutabot.border.lines import Problem
 from mutabot.inside.ros import _master
+from mutabot.model.values.answer import keep, restore
 from tests.inside.stage import Make, Stage
 
 rospy = pytest.importorskip("rospy")
@@ -158,6 +160,16 @@ def test_a_request_is_mutated_however_it_is_given(make: Making, closing: list[bo
         ("client /cell/gripper/close", 'close = rospy.ServiceProxy("gripper/close", SetBool)'),
         ("call /cell/gripper/close", f"return close({asked}).success"),
     }
+
+
+def test_messages_of_ros_1_that_were_answered_come_back() -> None:
+    geometry = pytest.importorskip("geometry_msgs.msg")
+    message = geometry.PointStamped(point=geometry.Point(1.0, 2.0, 3.0))
+    message.header.stamp = rospy.Time(5, 6)
+    back = restore(json.loads(json.dumps(keep(message, {}))), {})
+    assert back == message
+    assert type(back.header.stamp) is rospy.Time
+    assert back.point is not message.point
 
 
 def test_the_response_of_a_service_is_read(make: Making, closing: list[bool]) -> None:

@@ -154,16 +154,6 @@ def test_slots_come_back_private_ones_too() -> None:
     assert (found.x, found.hidden) == (1, [2])
 
 
-def test_messages_of_ros_1_come_back() -> None:
-    geometry, genpy = pytest.importorskip("geometry_msgs.msg"), pytest.importorskip("genpy")
-    message = geometry.PointStamped(point=geometry.Point(1.0, 2.0, 3.0))
-    message.header.stamp = genpy.Time(5, 6)
-    back = restore(json.loads(json.dumps(keep(message, {}))), {})
-    assert back == message
-    assert type(back.header.stamp) is genpy.Time
-    assert back.point is not message.point
-
-
 def test_the_instance_and_arguments_are_themselves() -> None:
     here = {"self": Arm(), "target": [1]}
     there = {"self": Arm(), "target": [1]}
