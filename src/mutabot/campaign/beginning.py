@@ -26,6 +26,9 @@ from . import executors
 from .campaign import Campaign
 from .request import Progress, Request
 
+#: remarks that are told where there are no mutants
+_REMARKS = 8
+
 
 def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
     """What runs the tasks of a campaign."""
@@ -87,5 +90,8 @@ def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
         return f"no mutants: all {len(plan.left_out)} are left out, {count} of them because {reason}"
     if not baseline.hits:
         files = ", ".join((*request.configuration.program, *request.configuration.oracle))
-        return f"no mutants: no test reaches a call of the vocabulary's operations in {files}"
+        lines = [f"no mutants: no test reaches a call of the vocabulary's operations in {files}"]
+        shown = [str(remark) for remark in baseline.remarks[:_REMARKS]]
+        more = len(baseline.remarks) - len(shown)
+        return "\n".join([*lines, *shown, *([f"… and {more} more"] if more > 0 else [])])
     return f"no mutants: all {len(plan.left_out)} would change nothing"

@@ -10,6 +10,7 @@ from mutabot.campaign.engines.choice import try_controls
 from mutabot.campaign.engines.engine import Remainder
 from mutabot.campaign.plan.plan import Plan, make_plan
 from mutabot.model import Mutant, Vocabulary
+from mutabot.model.named import MAIN
 from mutabot.vocabulary.load import shipped
 
 from .beginning import at_it, begin, selected
@@ -49,7 +50,7 @@ def _report(
         f"restless  {test} in round {round + 1}: equal runs differ in values"
         for round, test in sorted(baseline.restless)
     ]
-    lines += _unused(request.vocabulary, never)
+    lines += _unused(request.vocabulary, _worth_telling(request.vocabulary, never, baseline))
     clock = request.vocabulary.clock
     if clock is not None and all(end.simulated is None for end in baseline.ends.values()):
         lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
@@ -88,6 +89,19 @@ def _unused(vocabulary: Vocabulary, never: Sequence[str]) -> Iterator[str]:
         there = sum(other == name for other in of.values())
         unused = sum(of[target] == name for target in never)
         yield f"unused    {unused} of {there} operations of the vocabulary {name!r}, which no test reaches"
+
+
+def _worth_telling(vocabulary: Vocabulary, never: Sequence[str], baseline: Baseline) -> list[str]:
+    """Of names on a middleware remarks tell more, and what goes with them goes without saying."""
+    told = {(remark.source, remark.key) for remark in baseline.remarks}
+    operations = {operation.target: operation for operation in vocabulary.operations}
+    found = []
+    for target in never:
+        operation = operations[target]
+        named = operation.named
+        if named is None or (named.form in MAIN and (operation.source, named.form) not in told):
+            found.append(target)
+    return found
 
 
 def _never_called(vocabulary: Vocabulary, baseline: Baseline) -> list[str]:

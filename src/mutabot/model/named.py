@@ -51,6 +51,17 @@ class Form(StrEnum):
 
 #: forms whose argument holds all that is written, and its name
 WRITTEN = {Form.PUBLISH: "message", Form.CALL: "request", Form.GOAL: "goal"}
+#: forms that entries of a vocabulary speak of; all others go with them
+MAIN = frozenset(
+    {
+        *WRITTEN,
+        Form.RECEIVE,
+        Form.PARAMETER,
+        Form.TICK,
+        Form.SLEEP,
+        Form.TRANSFORM,
+    }
+)
 #: forms of what comes by itself and is given to a callback, or waited for: it may come late, twice or never
 COMING = frozenset({Form.RECEIVE, Form.FEEDBACK, Form.TICK})
 #: forms for whose answer the program waits, or which it is told later
@@ -118,6 +129,11 @@ class Named:
         if form is not self.form or not fnmatchcase(name, self.name):
             return False
         return self.node is None or (node is not None and fnmatchcase(node, self.node))
+
+
+def named_of(target: str) -> Named | None:
+    """What a target says; None for one that is no name on a middleware."""
+    return Named.of(target) if target.partition(" ")[0] in tuple(Form) and " " in target else None
 
 
 #: the words by which the goal of an action ends without having been reached

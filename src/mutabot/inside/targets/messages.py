@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import pkgutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -32,9 +32,10 @@ from typing import Any
 import wrapt
 
 from mutabot.model import Operation
-from mutabot.model.named import Form, Named
+from mutabot.model.named import Form, Named, named_of
 
 from .target import Finding, Handler, Targets, Tell
+from .unused import unused
 
 #: the rooms in which middlewares are: each file says in ``MODULE`` which module it is about, and has ``hook``
 _MIDDLEWARES = "mutabot.inside.ros"
@@ -44,7 +45,7 @@ class Messages(Targets):
     """The handlers of all operations that have a name.
 
     Attributes:
-        names: the names under which something was done in this process, with their forms.
+        used: what was done under which names, in this process and those below the tests.
     """
 
     def __init__(self, tell: Tell) -> None:
@@ -53,7 +54,8 @@ class Messages(Targets):
         self._found: dict[tuple[Form, str, str | None], Handler | None] = {}
         self._undo: list[Callable[[], None]] = []
         self._removed = False
-        self.names: set[tuple[Form, str]] = set()
+        self._here: set[str] = set()
+        self.used: set[Named] = set()
         _when_imported(self._hook)
 
     def wrap(self, target: str, handler: Handler, overrides: object = None) -> None:
@@ -70,7 +72,7 @@ class Messages(Targets):
         try:
             return self._found[key]
         except KeyError:
-            self.names.add((form, name))
+            self._note(Named(form, name, node))
             fitting = (handler for named, handler in self._handlers if named.fits(form, name, node))
             found = self._found[key] = None if self._removed else next(fitting, None)
             return found
@@ -96,13 +98,28 @@ class Messages(Targets):
             self._undo.pop()()
 
     def seek(self) -> Iterator[tuple[str, Finding]]:
-        """Names come and go with the nodes: there is nothing to import."""
-        return iter(())
+        """Names come and go with the nodes: what was never used is all that can be said."""
+        return unused([named for named, _ in self._handlers], self.used)
+
+    def here(self) -> Iterable[str]:
+        """What was done under which names, and the targets that these are."""
+        return tuple(self._here)  # at once: another thread may come by under a new name
+
+    def found_elsewhere(self, targets: Iterable[str]) -> None:
+        """A process below the tests did this."""
+        self.used.update(named for target in targets if (named := named_of(target)) is not None)
 
     def check(self, operation: Operation) -> Iterator[Finding]:
         """What of an operation does not fit the installed definition of its type."""
         for middleware in _loaded():
             yield from middleware.check(operation)
+
+    def _note(self, used: Named) -> None:
+        self.used.add(used)
+        self._here.add(used.target)
+        for named, _ in self._handlers:
+            if named.fits(used.form, used.name, used.node):
+                self._here.add(named.target)
 
     def _hook(self, middleware: ModuleType) -> None:
         if not self._removed:
