@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 
+from mutabot import vocabulary as package
 from mutabot.border.codec import from_data, to_data
 from mutabot.errors import ConfigurationError
 from mutabot.model import Mode, Operation, Vocabulary
@@ -13,6 +16,7 @@ from mutabot.model.named import Form, Named, settings_of
 from mutabot.operators.operator import with_operation
 from mutabot.vocabulary import load
 
+PAGE = Path(package.__file__).parents[3] / "docs" / "vocabulary.md"
 X = '{ kind = "translation", axis = "x", unit = "m", mode = "to" }'
 GOAL = 'topic = "/arm/goal"\ndirection = "publish"\n'
 
@@ -170,6 +174,7 @@ def test_two_operations_of_one_site_are_told_apart_by_name() -> None:
         ('topic = "/a"\ndirection = "receive"\nmessage = "data"', [":4", "sends nothing", "message"]),
         (f'{GOAL}patterns = [ {{ text = "up" }} ]', [":4", 'message = "…"']),
         ('tf = "base"', [":2", "no two frames", "base -> tool"]),
+        ('service = "/a"\nopposite = "call /b"', [":3", "cannot be the opposite", "patterns"]),
         ('service = "/a"\nrefusals = ["Refused"]', [":3", "no colon"]),
         ('service = "/a"\n[[operation]]\nservice = "/a"\ncommand = false', [":3", "call /a is described"]),
     ],
@@ -177,6 +182,16 @@ def test_two_operations_of_one_site_are_told_apart_by_name() -> None:
 def test_a_wrong_entry_is_refused_with_place_and_remedy(text: str, words: list[str], tmp_path: Path) -> None:
     message = refused(tmp_path, text)
     assert [word for word in words if word not in message] == [], message
+
+
+@pytest.mark.parametrize("first", ['topic = "/arm/goal"', 'call = "cell:Robot.send"'])
+def test_the_examples_of_the_page_load(first: str, tmp_path: Path) -> None:
+    page = PAGE.read_text("utf-8")
+    start = page.index(f"    [[operation]]\n    {first}")
+    example = re.split(r"\n\n(?=\S)", page[start:])[0]
+    reading = 'call = "cell:Robot.where"\nresult = { kind = "position", axis = "x", unit = "m" }\n'
+    vocabulary = loaded(tmp_path, f"{dedent(example)}\n[[operation]]\n{reading}")
+    assert len(vocabulary.operations) > 1
 
 
 def test_a_quaternion_of_a_message_has_its_parts_by_name(tmp_path: Path) -> None:

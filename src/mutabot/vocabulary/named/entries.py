@@ -138,6 +138,12 @@ def _check_keys(check: Check, table: NamedTable, key: str, form: Form, place: Ke
             check.error((*place, other), f"{what} has no {other}{instead}")
     if key != "topic" and table.direction is not None:
         check.error((*place, "direction"), f"{what} has no direction, only a topic has")
+    if table.opposite is not None and form in WRITTEN:
+        check.error(
+            (*place, "opposite"),
+            "another name cannot be the opposite: give a text command its opposite in patterns, "
+            "or a field the values of which one is the opposite of the other",
+        )
     if form not in WRITTEN:
         for other in _OF_COMMANDS:
             if getattr(table, other) not in (None, []) and not (other == "command" and not table.command):
