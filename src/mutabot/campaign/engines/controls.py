@@ -91,8 +91,12 @@ class Control:
         )
 
 
-def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[ControlEnd]:
+def run_controls(
+    campaign: Campaign, mutants: Iterable[Mutant], *, warm: bool = False
+) -> Iterator[ControlEnd]:
     """Run by replay the controls for these mutants; tells the baseline which tests need the whole suite.
+
+    ``warm``: whether their processes may begin warm.
 
     Raises ControlError for a control that ends wrongly, after it was yielded.
     """
@@ -101,7 +105,7 @@ def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[Cont
     identities = _identities_by_selection(baseline, mutants)
     progress.stage("controls", len(identities) + len(_fatals(baseline, mutants)))
     together: list[Control] = []
-    for control, outcome in _replayed(campaign, identities):
+    for control, outcome in _replayed(campaign, identities, warm=warm):
         end = end_of(campaign, control, outcome)
         ended = "survives, as it must" if end.ok else end.detail
         progress.advance(f"{control.name}, {control.subject}: {ended}")
@@ -119,7 +123,7 @@ def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[Cont
         replace(fatal, tests=baseline.selection(fatal.round, fatal.place))
         for fatal in _fatals(baseline, mutants)
     ]
-    for control, outcome in _replayed(campaign, [*together, *fatals]):
+    for control, outcome in _replayed(campaign, [*together, *fatals], warm=warm):
         end = end_of(campaign, control, outcome)
         progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
         yield end
@@ -163,8 +167,11 @@ def end_of(campaign: Campaign, control: Control, outcome: Outcome) -> ControlEnd
     return second
 
 
-def _replayed(campaign: Campaign, controls: Iterable[Control]) -> Iterator[tuple[Control, Outcome]]:
-    for result in campaign.executor.run(control.task(campaign) for control in controls):
+def _replayed(
+    campaign: Campaign, controls: Iterable[Control], *, warm: bool = False
+) -> Iterator[tuple[Control, Outcome]]:
+    tasks = (replace(control.task(campaign), begins_warm=warm) for control in controls)
+    for result in campaign.executor.run(tasks):
         control: Control = result.task.key
         yield control, judge(campaign, run_of(result, campaign.sources))
 

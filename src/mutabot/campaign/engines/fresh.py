@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.observed import observation, places_of
@@ -15,18 +16,21 @@ from mutabot.model import Mutant, Outcome, Verdict
 from .engine import Trial
 from .judge import Death, Run, judge
 
+#: the engine that is the reference
+REPLAY = "replay"
 #: how many times its baseline's wall clock a test may take before the safety net ends it
 WALL_FACTOR = 10.0
 
 
-def replay(campaign: Campaign, trials: Iterable[Trial]) -> Iterator[Outcome]:
-    """Outcomes of mutants in rounds, as they come."""
+def replay(campaign: Campaign, trials: Iterable[Trial], engine: str = REPLAY) -> Iterator[Outcome]:
+    """Outcomes of mutants in rounds, as they come; any ``engine`` but replay begins its processes warm."""
     baseline = campaign.baseline
     uncovered: list[Outcome] = []
     widened: list[Trial] = []
-    for result in campaign.executor.run(_tasks(campaign, trials, uncovered)):
+    tasks = _tasks(campaign, trials, uncovered)
+    for result in campaign.executor.run(replace(one, begins_warm=engine != REPLAY) for one in tasks):
         yield from _drain(uncovered)
-        run = run_of(result, campaign.sources)
+        run = replace(run_of(result, campaign.sources), engine=engine)
         outcome = judge(campaign, run)
         if outcome.verdict is Verdict.SURVIVED and baseline.must_widen(run.mutant, run.round, run.ends):
             widened.append((run.mutant, run.round))
@@ -34,7 +38,7 @@ def replay(campaign: Campaign, trials: Iterable[Trial]) -> Iterator[Outcome]:
             yield outcome
     yield from _drain(uncovered)
     if widened:
-        yield from replay(campaign, widened)
+        yield from replay(campaign, widened, engine)
 
 
 def _drain(outcomes: list[Outcome]) -> Iterator[Outcome]:

@@ -21,6 +21,8 @@ from typing import Any
 from mutabot.border.codec import to_data
 from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE, Job
 from mutabot.border.lines import Line, line_from_data
+from mutabot.border.processes import FOLDER
+from mutabot.border.starter import Starter
 
 _LOG_BYTES = 4000
 #: bytes that must be free on the disk for a process to print what it prints
@@ -49,6 +51,11 @@ class Home:
     def log_file(self) -> Path:
         """Where the process's output goes."""
         return self.folder / "log.txt"
+
+    @property
+    def processes(self) -> Path:
+        """The folder that processes below it know it by."""
+        return self.folder / FOLDER
 
     def log_text(self) -> str:
         """The last of what the process printed."""
@@ -80,7 +87,7 @@ def refuse_full_disk(folder: Path) -> None:
 
 
 class Spawned:
-    """A fresh process, the leader of a process group of its own.
+    """A fresh process, the leader of a process group of its own; ``starter``: what may begin it warm.
 
     Attributes:
         pid: its number.
@@ -97,8 +104,10 @@ class Spawned:
         home: Home,
         writing: int,
         descriptors: tuple[int, ...] = (),
+        starter: Starter | None = None,
     ) -> None:
-        with home.log_file.open("wb") as log:
+        warm = starter.at_work() if starter is not None else contextlib.nullcontext()
+        with home.log_file.open("wb") as log, warm:
             self._process = subprocess.Popen(
                 command(arguments, home.folder),
                 cwd=root,
@@ -177,7 +186,12 @@ def command(arguments: Iterable[str], home: Path) -> list[str]:
 
 
 def environment(job_file: Path, pipe: int) -> dict[str, str]:
-    """The environment of a worker.
+    """The environment of a worker."""
+    return {**usual_environment(), JOB_VARIABLE: str(job_file), PIPE_VARIABLE: str(pipe)}
+
+
+def usual_environment() -> dict[str, str]:
+    """What the environments of all workers have in common.
 
     Nothing is written beside the user's sources, and hashing and numeric libraries behave the same in
     every worker. Settings of the user's own take precedence.
@@ -188,6 +202,4 @@ def environment(job_file: Path, pipe: int) -> dict[str, str]:
         **settings,
         **os.environ,
         "PYTHONDONTWRITEBYTECODE": "1",
-        JOB_VARIABLE: str(job_file),
-        PIPE_VARIABLE: str(pipe),
     }

@@ -18,14 +18,17 @@ from types import TracebackType
 from mutabot.border import stack
 from mutabot.border.lines import Line, TestStart
 from mutabot.border.processes import acted_in
+from mutabot.border.starter import is_supported
 from mutabot.border.test_end import TestEnd
 from mutabot.errors import JournalError
 
 from .forkserver import Copy, ForkServer
 from .interruption import interruptible
-from .processes import Home, LineReader, Spawned, refuse_full_disk
+from .processes import Home, LineReader, Spawned, refuse_full_disk, usual_environment
+from .remains import end_left_over
 from .task import Result, Task
 from .token_pool import TokenPool
+from .warm import WarmServer
 
 
 class Workers:
@@ -35,7 +38,8 @@ class Workers:
         root: the project's root; workers start there.
         arguments: pytest arguments of the project.
         jobs: how many run side by side.
-        on_unshared: told why tasks that might begin as copies of a fork server do not, once that is known.
+        on_unshared: told why tasks that might begin as copies of a fork server, or warm, do not, once that is
+            known.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
@@ -58,6 +62,8 @@ class Workers:
         self._servers: list[ForkServer] = []
         self._on_unshared = on_unshared
         self._may_share = True
+        self._warm: WarmServer | None = None
+        self._may_begin_warm = True
         self.pool = TokenPool(self._jobs)
         home = root / ".mutabot"
         try:
@@ -81,6 +87,8 @@ class Workers:
         self._workers.clear()
         for server in list(self._servers):
             self._end_server(server)
+        if self._warm is not None:
+            self._warm.close()
         self._selector.close()
         self.pool.close()
         self._folder.cleanup()
@@ -141,7 +149,26 @@ class Workers:
         if copy is not None:
             return copy
         descriptors = self.pool.descriptors if task.is_trunk else ()
-        return Spawned(self._root, self._arguments, home, writing, descriptors)
+        warm = self._warm_server(task) if task.begins_warm else None
+        starter = warm.starter if warm is not None else None
+        process = Spawned(self._root, self._arguments, home, writing, descriptors, starter)
+        if warm is not None and self._may_begin_warm and (reason := warm.why_not()) is not None:
+            self._may_begin_warm = False
+            self._on_unshared(reason)
+        return process
+
+    def _warm_server(self, task: Task) -> WarmServer | None:
+        """What begins such a task warm; None if nothing can."""
+        if self._warm is None and self._may_begin_warm:
+            reason = is_supported()
+            if reason is not None:
+                self._may_begin_warm = False
+                self._on_unshared(reason)
+            else:
+                own = [str(self._root / path) for path in (*task.job.program, *task.job.oracle)]
+                folder = Path(self._folder.name) / "warm"
+                self._warm = WarmServer(folder, self._root, usual_environment(), own)
+        return self._warm if self._may_begin_warm else None
 
     def _server_for(self, task: Task) -> ForkServer | None:
         """The fork server for such a task; None if there can be none."""
@@ -257,7 +284,7 @@ class _Worker:
 
     def finish(self, selector: selectors.BaseSelector) -> tuple[list[Line], Result]:
         """Collect the rest of a process that has ended: its last lines, and what became of it."""
-        self.result.exit_code = self._process.end()
+        self.result.exit_code = self._end()
         lines = self.read()
         self.result.find_overdue(time.monotonic())
         if self.result.end is None:
@@ -272,6 +299,12 @@ class _Worker:
         if self._process.pidfd is not None:
             selector.unregister(self._process.pidfd)
         os.close(self.pipe)
-        self._process.end()
+        self._end()
         self._process.release()
         self._home.remove()
+
+    def _end(self) -> int:
+        """End it and all that was started below it; returns its exit code."""
+        code = self._process.end()
+        end_left_over(self._home.processes)
+        return code
