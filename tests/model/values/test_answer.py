@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import array
 import enum
 import json
 import math
@@ -93,7 +94,7 @@ VALUES = [
     None, True, 3, 0.1, "grün", b"\x00\xff", bytearray(b"ab"), (), (1, (2.5, "a")), [[1], []], {1, 2},
     frozenset({"a"}), deque([1, 2]), {"a": [1], 2: None, (1, 2): "b"}, OrderedDict(b=1, a=2),
     Stamped(0.5, Pose(1.0)), Colour.RED, [Pose(1.0, 2.0)], Small(3.0), Made(), Point(4.0),
-    SimpleNamespace(x=[1]),
+    SimpleNamespace(x=[1]), array.array("d", [0.5, -1.0]), array.array("B"),
 ]  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import base64
 import importlib
 import sys
+from array import array
 from collections import OrderedDict, deque
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import is_dataclass
@@ -128,6 +129,9 @@ class _Keeper:
             return {kind.__name__: base64.b64encode(value).decode()}
         if is_of_numpy(value):
             return self._numpy(value)
+        if kind is array and value.typecode != "u":
+            self._spend(len(value) * value.itemsize * 4 // 3)
+            return {"numbers": [value.typecode, base64.b64encode(value.tobytes()).decode()]}
         if isinstance(value, Enum):
             return {"member": [_name_of(kind), value.name]}
         if isinstance(value, tuple) and hasattr(kind, "_fields"):
@@ -253,5 +257,6 @@ _LEAVES: dict[str, Callable[[Any], Any]] = {
     "bytes": base64.b64decode,
     "bytearray": lambda content: bytearray(base64.b64decode(content)),
     "array": lambda content: _array(*content),
+    "numbers": lambda content: array(content[0], base64.b64decode(content[1])),
     "scalar": lambda content: _array(*content)[()],
 }

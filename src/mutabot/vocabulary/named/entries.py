@@ -142,7 +142,7 @@ def _check_keys(check: Check, table: NamedTable, key: str, form: Form, place: Ke
         check.error(
             (*place, "opposite"),
             "another name cannot be the opposite: give a text command its opposite in patterns, "
-            "or a field the values of which one is the opposite of the other",
+            "or describe a field with two values",
         )
     if form not in WRITTEN:
         for other in _OF_COMMANDS:
