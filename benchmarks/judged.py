@@ -14,6 +14,7 @@ import argparse
 import sys
 import time
 from collections import Counter
+from importlib.util import find_spec
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -28,7 +29,11 @@ EXAMPLES = {
     "paper": {"classical": 40},
     "scales": {"classical": 15, "text": 45},
     "pick_and_place": {"robot": 40, "classical": 40},
+    "ros1": {"robot": 25, "middleware": 35, "classical": 10},
+    "ros2": {"robot": 25, "middleware": 35, "classical": 10},
 }
+#: examples that need a package which their own environment has: see the Makefile
+NEEDED = {"ros1": "rospy", "ros2": "rclpy"}
 
 
 def main() -> int:
@@ -41,6 +46,10 @@ def main() -> int:
     parser.add_argument("--classical", type=int, default=CLASSICAL, help="text mutants of each project")
     parser.add_argument("--cache", type=Path, help="folder that keeps what plain pytest said")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--rounds", type=int, default=1, help="rounds of each campaign")
+    parser.add_argument(
+        "--sample", type=int, help="mutants of each family of an example, instead of its own numbers"
+    )
     parser.add_argument("--unwritable", action="store_true", help="list what the judge cannot write")
     given = parser.parse_args()
     projects = {folder.name: folder for folder in corpus()}
@@ -50,16 +59,21 @@ def main() -> int:
     every: list[Found] = []
     for name in given.names or [*projects, *EXAMPLES]:
         began = time.monotonic()
+        if name in NEEDED and find_spec(NEEDED[name]) is None:
+            print(f"{name}: not judged, since this Python has no {NEEDED[name]}")
+            continue
         if name in projects:
             families = ("robot", "classical") if given.classical else ("robot",)
             only = {"classical": given.classical} if given.classical else None
             folder, limit = projects[name], 30.0
         else:
             families, only, limit = ("robot", *sorted({*EXAMPLES[name]} - {"robot"})), EXAMPLES[name], 180.0
+            if given.sample:
+                only = dict.fromkeys(families, given.sample)
             folder = ROOT / "examples" / name
         found = compare(
             folder, families=families, only=only, engines=given.engines, jobs=given.jobs, cache=given.cache,
-            limit=limit,
+            limit=limit, rounds=given.rounds,
         )  # fmt: skip
         every.append(found)
         print(line(found, time.monotonic() - began), flush=True)

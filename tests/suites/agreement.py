@@ -23,7 +23,7 @@ from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 from .editor import Facts
-from .judge import IGNORED, MORE_DRAWS, Judge, Judgement
+from .judge import IGNORED, MORE_DRAWS, Judge, Judgement, is_drawn
 
 ENGINES = ("branch", "replay")
 PROJECTS = Path(__file__).resolve().parent / "projects"
@@ -56,7 +56,7 @@ class Silent:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What one engine says about one mutant, and what plain pytest says."""
+    """What one engine says about one mutant in one round, and what plain pytest says."""
 
     project: str
     engine: str
@@ -67,6 +67,7 @@ class Verdict:
     test: str | None
     message: str
     plain: Judgement
+    round: int = 1
 
     @property
     def compared(self) -> bool:
@@ -100,7 +101,8 @@ class Verdict:
         tests = ", ".join(self.plain.tests[:3])
         plain = f"{self.plain.state} ({tests})" if tests else self.plain.state
         return (
-            f"{self.project} [{self.engine}] #{self.number} {self.mutant}: {self.description}\n"
+            f"{self.project} [{self.engine}, round {self.round}] #{self.number} {self.mutant}: "
+            f"{self.description}\n"
             f"    ours: {self.ours} by {self.test}: {self.message[:110]!r}; plain pytest: {plain}"
         )
 
@@ -126,7 +128,19 @@ class Found:
     @property
     def disagreements(self) -> list[str]:
         """Everything that is not as it must be, one text each."""
-        return [*self.failed, *(one.line for one in self.compared if not one.agrees)]
+        return [*self.failed, *self.differing, *(one.line for one in self.compared if not one.agrees)]
+
+    @property
+    def differing(self) -> list[str]:
+        """Mutants of which two campaigns say different things in the same round."""
+        ends: dict[tuple[str, int], dict[str, str]] = {}
+        for one in self.verdicts:
+            ends.setdefault((one.mutant, one.round), {})[one.engine] = one.ours
+        return [
+            f"{self.project} [round {which}] {mutant}: {said}"
+            for (mutant, which), said in ends.items()
+            if len(set(said.values())) > 1
+        ]
 
 
 def compare(
@@ -138,6 +152,7 @@ def compare(
     jobs: int = 2,
     cache: Path | None = None,
     limit: float = 30.0,
+    rounds: int = 1,
 ) -> Found:
     """Run a copy of the project by each engine, and hold every verdict against plain pytest.
 
@@ -149,6 +164,7 @@ def compare(
         jobs: processes at a time.
         cache: folder that keeps what plain pytest said, or None.
         limit: seconds after which a plain run counts as hanging.
+        rounds: rounds of the campaign; each is held against plain pytest with its own seeds.
     """
     found = Found(folder.name)
     results: dict[str, dict[str, Any]] = {}
@@ -158,7 +174,8 @@ def compare(
             copy = Path(name).resolve() / engine / folder.name
             shutil.copytree(folder, copy, ignore=IGNORED)
             try:
-                wanted = request_for(copy, engine, families, jobs, Facts.of(folder).hints.get("plugins", ()))
+                plugins = Facts.of(folder).hints.get("plugins", ())
+                wanted = request_for(copy, engine, families, jobs, plugins, rounds)
                 if only and selection is None:
                     selection = Path(name) / "selection.txt"
                     selection.write_text("\n".join(chosen(wanted, only)) + "\n", encoding="utf-8")
@@ -169,31 +186,39 @@ def compare(
         for data in results.values():
             data["mutants"] += list(left_out(data))
     mutants = {one["id"]: one for data in results.values() for one in data["mutants"]}
-    judge = Judge(folder, limit, seeds_of(results), cache)
-    original = judge.original()
-    if original.state != "passes":
-        found.failed.append(f"{folder.name}: plain pytest {original.state} on the original\n{original.text}")
-        return found
     refusals = Facts.of(folder).refusals
-    refused = {
-        one.id for data in results.values() for one in _ended(data) if one.is_or_could_be_refused(refusals)
-    }
+    for which in range(1, rounds + 1):
+        ends = [(engine, one) for engine, data in results.items() for one in _ended(data, which)]
+        judge = Judge(folder, limit, seeds_of(results, which), cache)
+        original = judge.original()
+        if original.state != "passes":
+            found.failed.append(
+                f"{folder.name}: plain pytest {original.state} on the original\n{original.text}"
+            )
+            return found
+        refused = {one.id for _, one in ends if one.is_or_could_be_refused(refusals)}
+        plain = _judged(judge, mutants, refused, jobs)
+        for _, one in ends:
+            # what few draws say may be chance
+            explained = ("unwritable", *EXPECTED.get(one.verdict, ()))
+            if is_drawn(mutants[one.id]) and plain[one.id].state not in explained:
+                plain[one.id] = judge.mutant(mutants[one.id], draws=MORE_DRAWS)
+        found.verdicts += [
+            verdict(folder.name, engine, mutants[one.id], one, plain[one.id], which) for engine, one in ends
+        ]
+    return found
+
+
+def _judged(
+    judge: Judge, mutants: Mapping[str, Mapping[str, Any]], refused: set[str], jobs: int
+) -> dict[str, Judgement]:
+    """What plain pytest says of each mutant; ``refused`` are those of which an engine speaks of refusals."""
 
     def judged(mutant: Mapping[str, Any]) -> Judgement:
         return judge.mutant(mutant, look_for_refusals=mutant["id"] in refused)
 
     with ThreadPoolExecutor(jobs) as pool:
-        plain = dict(zip(mutants, pool.map(judged, mutants.values()), strict=True))
-    for one in (end for data in results.values() for end in _ended(data)):
-        # what few draws of noise say may be chance
-        explained = ("unwritable", *EXPECTED.get(one.verdict, ()))
-        if mutants[one.id]["operator"] == "noise" and plain[one.id].state not in explained:
-            plain[one.id] = judge.mutant(mutants[one.id], draws=MORE_DRAWS)
-    for engine, data in results.items():
-        found.verdicts += [
-            verdict(folder.name, engine, mutants[one.id], one, plain[one.id]) for one in _ended(data)
-        ]
-    return found
+        return dict(zip(mutants, pool.map(judged, mutants.values()), strict=True))
 
 
 def left_out(data: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
@@ -227,7 +252,9 @@ def left_out(data: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
             }
 
 
-def verdict(project: str, engine: str, mutant: Mapping[str, Any], end: _End, plain: Judgement) -> Verdict:
+def verdict(
+    project: str, engine: str, mutant: Mapping[str, Any], end: _End, plain: Judgement, which: int
+) -> Verdict:
     """What an engine and plain pytest say about a mutant."""
     return Verdict(
         project,
@@ -239,6 +266,7 @@ def verdict(project: str, engine: str, mutant: Mapping[str, Any], end: _End, pla
         end.test,
         end.message,
         plain,
+        which,
     )
 
 
@@ -256,29 +284,30 @@ class _End:
         return self.verdict == "refused" or (self.verdict == "killed" and could_be)
 
 
-def _ended(data: Mapping[str, Any]) -> Iterator[_End]:
+def _ended(data: Mapping[str, Any], which: int) -> Iterator[_End]:
     for mutant in data["mutants"]:
-        first = mutant["rounds"][0]
+        # what the plan leaves out, it leaves out of all rounds
+        end = mutant["rounds"][min(which, len(mutant["rounds"])) - 1]
         yield _End(
             mutant["id"],
-            str(first["verdict"]),
-            first.get("test"),
-            first.get("exception") or "",
-            first.get("message") or "",
+            str(end["verdict"]),
+            end.get("test"),
+            end.get("exception") or "",
+            end.get("message") or "",
         )
 
 
 def request_for(
-    folder: Path, engine: str, families: Sequence[str], jobs: int, needed: Sequence[str] = ()
+    folder: Path, engine: str, families: Sequence[str], jobs: int, needed: Sequence[str] = (), rounds: int = 1
 ) -> Request:
-    """The request of a campaign of one round, without pytest plug-ins that the project does not need."""
+    """The request of a campaign, without pytest plug-ins that the project does not need."""
     configuration = load_configuration(folder)
     off = [f"no:{entry.name}" for entry in entry_points(group="pytest11")
            if entry.name not in ("mutabot", *needed)]  # fmt: skip
     more = [word for name in off for word in ("-p", name)]
     configuration = configuration.model_copy(update={"pytest_args": (*configuration.pytest_args, *more)})
     return Request(
-        configuration, load(configuration.vocabulary, configuration.root), 1, configuration.seed, jobs,
+        configuration, load(configuration.vocabulary, configuration.root), rounds, configuration.seed, jobs,
         fresh=True, families=tuple(families), engine="auto" if engine == "branch" else engine,
     )  # fmt: skip
 
@@ -302,10 +331,10 @@ def chosen(request: Request, only: Mapping[str, int]) -> list[str]:
     ]
 
 
-def seeds_of(results: Mapping[str, Mapping[str, Any]]) -> dict[str, int]:
-    """What the fixture ``mutabot_seed`` gives in the first round, by test."""
+def seeds_of(results: Mapping[str, Mapping[str, Any]], which: int = 1) -> dict[str, int]:
+    """What the fixture ``mutabot_seed`` gives in a round, counted from 1, by test."""
     return {
-        one["test"]: derive(data["meta"]["seed"], 0, one["test"])
+        one["test"]: derive(data["meta"]["seed"], which - 1, one["test"])
         for data in results.values()
         for one in data["baseline"]
     }

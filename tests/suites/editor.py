@@ -78,7 +78,7 @@ class Facts:
     def operation(self, target: str) -> dict[str, Any]:
         """The operation of this name."""
         for one in self.operations:
-            if one["call"] == target:
+            if one.get("call") == target:
                 return one
         raise CannotWriteError(f"no operation {target}")
 

@@ -19,9 +19,12 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from .editor import CannotWriteError, Edit, Facts, edits_for
+from .editor import CannotWriteError, Edit, Facts
+from .message_editor import edits_of, is_named, noting_refusals
 
 HERE = Path(__file__).resolve().parent
+#: what stands beside a copy, with an underscore before its name
+PLANTED = (HERE / "planted.py", HERE / "planted_messages.py")
 IGNORED = shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache", "judge.toml")
 SEEDS = """
 import json, os, pytest
@@ -99,14 +102,16 @@ class Judge:
     ) -> Judgement:
         """One mutant; with noise, only if several draws say the same."""
         try:
-            edits = edits_for(Facts.of(self.folder), mutant)
+            edits = edits_of(Facts.of(self.folder), mutant)
         except CannotWriteError as error:
             return Judgement("unwritable", text=str(error))
-        if mutant["operator"] == "noise":
+        if is_drawn(mutant):
             drawn = [self._run(edits, noise=draw) for draw in range(1, draws + 1)]
             if len({one.state for one in drawn}) > 1:
-                return Judgement("unwritable", text="draws of noise end differently")
+                return Judgement("unwritable", text="draws end differently")
             return drawn[0]
+        if refusals := noting_refusals(Facts.of(self.folder)):
+            return self._run([*edits, *refusals], place="site" if is_named(mutant) else "anywhere")
         found = self._run(edits)
         if not look_for_refusals:
             return found
@@ -145,13 +150,16 @@ class Judge:
             self._pytest(copy, {"JUDGE_NOTES": str(notes), "JUDGE_PLACE": place})
             return notes.read_text().count("refused")
 
-    def _run(self, edits: Sequence[Edit], noise: int = 1) -> Judgement:
+    def _run(self, edits: Sequence[Edit], noise: int = 1, place: str = "") -> Judgement:
         kept = self._kept(edits, noise)
         if kept is not None and kept.is_file():
             data = json.loads(kept.read_text())
             return Judgement(data["state"], tuple(data["tests"]), data["refused"], data["text"])
         with tempfile.TemporaryDirectory() as name:
-            found = self._pytest(self._copied(Path(name), edits), {"JUDGE_NOISE": str(noise)})
+            notes = Path(name) / "notes"
+            told = {"JUDGE_NOISE": str(noise), "JUDGE_NOTES": str(notes), "JUDGE_PLACE": place}
+            found = self._pytest(self._copied(Path(name), edits), told)
+            found = replace(found, refused=notes.exists())
         if kept is not None:
             kept.parent.mkdir(parents=True, exist_ok=True)
             kept.write_text(json.dumps(asdict(found)))
@@ -163,9 +171,10 @@ class Judge:
         shutil.copytree(self.folder, copy, ignore=IGNORED)
         (place / "planted").mkdir()
         (place / "tmp").mkdir()
-        shutil.copy(HERE / "planted.py", place / "planted" / "_planted.py")
+        for file in PLANTED:
+            shutil.copy(file, place / "planted" / f"_{file.name}")
         (place / "planted" / "_judge_seeds.py").write_text(SEEDS)
-        for edit in edits:
+        for edit in sorted(edits, key=lambda edit: edit.start, reverse=True):
             file = copy / edit.file
             file.write_bytes(edit.applied(file.read_bytes()))
         return copy
@@ -212,12 +221,17 @@ class Judge:
         if self.cache is None:
             return None
         digest = hashlib.sha256()
-        files = [*self.folder.rglob("*"), HERE / "planted.py", HERE / "judge.py"]
+        files = [*self.folder.rglob("*"), *PLANTED, HERE / "judge.py"]
         for file in sorted(files):
             if file.is_file() and not {".mutabot", "__pycache__", ".pytest_cache"} & set(file.parts):
                 digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
         digest.update(repr((edits, noise, dict(self.seeds or {}))).encode())
         return self.cache / f"{digest.hexdigest()}.json"
+
+
+def is_drawn(mutant: Mapping[str, Any]) -> bool:
+    """Whether a mutant rests on chance."""
+    return mutant["operator"] == "noise" or "%" in mutant["variant"]
 
 
 def main() -> int:
