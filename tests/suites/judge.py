@@ -15,9 +15,12 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
+
+from ros2_domain import domain
 
 from .editor import CannotWriteError, Edit, Facts
 from .message_editor import edits_of, is_named, noting_refusals
@@ -203,6 +206,12 @@ class Judge:
             *settings.get("pytest_args", []),
             *settings.get("tests", ["tests"]),
         ]
+        with domain() if facts.hints.get("ros2") else nullcontext() as number:
+            if number is not None:
+                environment["ROS_DOMAIN_ID"] = str(number)
+            return self._ended(words, copy, environment)
+
+    def _ended(self, words: Sequence[str], copy: Path, environment: Mapping[str, str]) -> Judgement:
         process = subprocess.Popen(
             words, cwd=copy, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True,

@@ -46,7 +46,7 @@ class MessageEditor:
         target = mutant["operation"].partition(" of ")[0]
         self.form, _, self.name = target.partition(" ")
         self.target = target
-        self.variant = mutant["variant"].partition("+")[0]
+        self.variant = mutant["variant"].removesuffix(f"+{target}")
 
     def edits(self) -> list[Edit]:
         """The edits.
@@ -67,7 +67,7 @@ class MessageEditor:
         if file is None:
             return [self._replaced(self.source, call.func, f'{MESSAGES}.armed("site", {wrapper}(', "))")]
         raw = Source(self.facts.folder / file, file)
-        found = [node for node in raw.nodes(ast.Call) if raw.text(node) == text]
+        found = [node for node in raw.nodes(ast.Call) if " ".join(raw.text(node).split()) == text]
         if not found:
             raise CannotWriteError(f"{file} does not say {text}")
         below = f'{MESSAGES}.only_below("site", '
@@ -138,10 +138,8 @@ class MessageEditor:
 
     def _delay(self) -> str:
         clock = self.facts.hints.get("clock")
-        told = f"lambda: {clock}" if clock else "None"
-        if self.form == "receive":
-            return f"{MESSAGES}.with_reply({MESSAGES}.after({self.variant}, {told}))"
-        return f"{MESSAGES}.late({self.variant}, {told}, goes_on={self.form == 'publish'})"
+        kind = {"publish": "sent", "receive": "come"}.get(self.form, "asked")
+        return f"{MESSAGES}.{kind}_late({self.variant}, {f'lambda: {clock}' if clock else 'None'})"
 
     def _reorder(self) -> str:
         if self.form == "receive":
@@ -164,12 +162,19 @@ class MessageEditor:
         return f"{MESSAGES}.misspelt({place}, {word!r})"
 
     def _short_queue(self) -> str:
-        if self._is_ros2():
-            raise CannotWriteError("a quality of ROS 2")
-        return f"{MESSAGES}.with_settings(queue_size=1)"
+        return f"{MESSAGES}.{'quality(depth=1)' if self._is_ros2() else 'with_settings(queue_size=1)'}"
 
     def _flip_latch(self) -> str:
         return f"{MESSAGES}.with_settings(latch=True)"
+
+    def _wrong_reliability(self) -> str:
+        return f"{MESSAGES}.other_quality('reliability', 'RELIABLE', 'BEST_EFFORT')"
+
+    def _wrong_durability(self) -> str:
+        return f"{MESSAGES}.other_quality('durability', 'VOLATILE', 'TRANSIENT_LOCAL')"
+
+    def _wrong_deadline(self) -> str:
+        return f"{MESSAGES}.other_deadline(0.001)"
 
     # what they are made of
 
@@ -198,7 +203,7 @@ class MessageEditor:
 def noting_refusals(facts: Facts) -> list[Edit]:
     """Edits that note where the robot refuses by data, as ``judge.toml`` tells under ``[refused]``."""
     edits = []
-    for file, (text, condition) in facts.hints.get("refused", {}).items():
+    for file, text, condition in facts.hints.get("refused", []):
         source = Source(facts.folder / file, file)
         for node in source.nodes(ast.stmt):
             if source.text(node) == text:

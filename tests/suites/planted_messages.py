@@ -24,6 +24,8 @@ from _planted import changed  # type: ignore[import-not-found]
 
 Change = Callable[[Any], Any]
 Wrapper = Callable[[Any], Any]
+#: a node's clock, in s; none is that of the wall
+Clock = Callable[[], float] | None
 
 _RANDOM = random.Random(int(os.environ.get("JUDGE_NOISE", "1")))
 #: which sites are being called now
@@ -95,16 +97,6 @@ def stale(which: str) -> Change:
     return old
 
 
-def after(seconds: float, clock: Callable[[], float] | None) -> Change:
-    """The message that comes, so much later."""
-
-    def waited(message: Any) -> Any:
-        _sleep(seconds, clock)
-        return message
-
-    return waited
-
-
 # whether it is said
 
 
@@ -141,22 +133,60 @@ def unanswered(performed: bool) -> Wrapper:
     return wrapped
 
 
-def late(seconds: float, clock: Callable[[], float] | None, *, goes_on: bool) -> Wrapper:
-    """Called so much later by a clock in seconds; the program goes on at once, or waits."""
+def sent_late(seconds: float, clock: Clock) -> Wrapper:
+    """Called so much later by a clock; the program goes on at once."""
 
     def wrapped(function: Any) -> Any:
-        def called(*given: Any, **named: Any) -> Any:
-            if not goes_on:
-                _sleep(seconds, clock)
-                return function(*given, **named)
+        def called(*given: Any, **named: Any) -> None:
             kept = copy.deepcopy(given)
 
             def later() -> None:
-                _sleep(seconds, clock)
-                function(*kept, **named)
+                if _sleep(seconds, clock):
+                    function(*kept, **named)
 
             threading.Thread(target=later, daemon=True).start()
-            return None
+
+        return called
+
+    return wrapped
+
+
+def asked_late(seconds: float, clock: Clock) -> Wrapper:
+    """A service that is asked so much later; who waits for the answer waits longer."""
+
+    def wrapped(function: Any) -> Any:
+        def called(*given: Any, **named: Any) -> Any:
+            _sleep(seconds, clock)
+            return function(*given, **named)
+
+        def called_async(*given: Any, **named: Any) -> Any:
+            answer = sys.modules["rclpy.task"].Future()
+
+            def later() -> None:
+                if _sleep(seconds, clock):
+                    asked = function(*given, **named)
+                    asked.add_done_callback(lambda done: answer.set_result(done.result()))
+
+            threading.Thread(target=later, daemon=True).start()
+            return answer
+
+        return called_async if getattr(function, "__name__", "") == "call_async" else called
+
+    return wrapped
+
+
+def come_late(seconds: float, clock: Clock) -> Wrapper:
+    """``wait_for_message`` that gets its message so much later, if it still waits then."""
+
+    def wrapped(function: Any) -> Any:
+        word = "timeout" if "rospy" in sys.modules else "time_to_wait"
+
+        def called(*given: Any, **named: Any) -> Any:
+            patience = named.pop(word) if word in named else given[2]
+            given = given if word == "time_to_wait" else given[:2]
+            began = time.monotonic()
+            _sleep(seconds, clock, patience)
+            return function(*given, **named, **{word: max(0.0, patience - (time.monotonic() - began))})
 
         return called
 
@@ -299,6 +329,53 @@ def with_settings(**settings: Any) -> Wrapper:
     return set_up(lambda given, named: named.update(settings))
 
 
+def quality(**qualities: Any) -> Wrapper:
+    """With these qualities of ROS 2."""
+    return _with_qualities(lambda profile: qualities)
+
+
+def other_quality(name: str, one: str, another: str) -> Wrapper:
+    """With the other of two qualities of ROS 2."""
+
+    def change(profile: Any) -> dict[str, Any]:
+        now = getattr(profile, name)
+        return {name: type(now)[another if now.name == one else one]}
+
+    return _with_qualities(change)
+
+
+def other_deadline(seconds: float) -> Wrapper:
+    """With a deadline where there is none, without one where there is."""
+    duration: Any = sys.modules["rclpy.duration"]
+
+    def change(profile: Any) -> dict[str, Any]:
+        has_none = profile.deadline.nanoseconds in (0, duration.Infinite.nanoseconds)
+        return {"deadline": duration.Duration(seconds=seconds) if has_none else duration.Infinite}
+
+    return _with_qualities(change)
+
+
+def done(answer: Any) -> Any:
+    """What a service of ROS 2 gives that has answered already."""
+    future = sys.modules["rclpy.task"].Future()
+    future.set_result(answer)
+    return future
+
+
+def _with_qualities(change: Callable[[Any], dict[str, Any]]) -> Wrapper:
+    kind = sys.modules["rclpy.qos"].QoSProfile
+
+    def changed_in(given: list[Any], named: dict[str, Any]) -> None:
+        where: Any = named if "qos_profile" in named else given
+        key: Any = "qos_profile" if "qos_profile" in named else 3 if callable(given[2]) else 2
+        profile = where[key] if isinstance(where[key], kind) else kind(depth=where[key])
+        where[key] = copy.copy(profile)
+        for name, value in change(profile).items():
+            setattr(where[key], name, value)
+
+    return set_up(changed_in)
+
+
 # the process
 
 
@@ -335,10 +412,13 @@ def _message(function: Any, given: tuple[Any, ...], named: dict[str, Any]) -> An
     return kind(*given, **named)
 
 
-def _sleep(seconds: float, clock: Callable[[], float] | None) -> None:
-    if clock is None:
-        time.sleep(seconds)
-        return
-    end = clock() + seconds
-    while clock() < end:
+def _sleep(seconds: float, clock: Clock, patience: float = 1e6) -> bool:
+    """Wait by a clock, or by the wall's; whether the time has passed before patience is over."""
+    until = time.monotonic() + patience
+    told = clock or time.monotonic
+    end = told() + seconds
+    while told() < end:
+        if time.monotonic() > until:
+            return False
         time.sleep(0.001)
+    return True
