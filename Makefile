@@ -70,14 +70,18 @@ stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) benchmarks/kill_and_resume.py --kills 30
 	$(RUN) benchmarks/differential.py
 	$(RUN) benchmarks/judged.py
+	$(ROS1)/bin/python benchmarks/judged.py ros1
+	$(ROS2)/bin/python benchmarks/judged.py ros2
 	$(RUN) benchmarks/ten_thousand.py
 	$(RUN) benchmarks/campaigns_in_a_row.py --count 200
 	$(RUN) benchmarks/flaky_campaigns.py
 
 ## slow: every verdict on the corpus of tests/suites and on mutants of the examples, by both engines, against plain
 ## pytest on program text that was edited
-judged: $(READY)
+judged: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) benchmarks/judged.py
+	$(ROS1)/bin/python benchmarks/judged.py ros1
+	$(ROS2)/bin/python benchmarks/judged.py ros2
 
 ## compare the shipped vocabularies with the packages they describe, which get a virtual environment of their own
 shipped: $(VENV)-shipped/.ready

@@ -6,6 +6,7 @@ and mutants of the examples, drawn by a fixed seed, by both engines.
 
 Use: ``python benchmarks/judged.py [NAME …] [--engines branch replay] [--cache FOLDER]``. Without a name all
 projects and all examples run. The exit code is 1 if one verdict disagrees, or if there is nothing to compare.
+The examples of ROS are judged by the Pythons that see it.
 """
 
 from __future__ import annotations
@@ -86,6 +87,8 @@ def main() -> int:
             for text in sorted({f"  {one.mutant}: {one.plain.text}" for one in found.verdicts
                                 if one.plain.state == "unwritable"}):  # fmt: skip
                 print(text, flush=True)
+    if not every:
+        return 0
     print(total(every))
     return 0 if any(one.compared for one in every) and not any(one.disagreements for one in every) else 1
 
