@@ -169,6 +169,14 @@ CASES = (
            "print(json.__spec__, json.decoder.__name__, 'json.decoder' in sys.modules, logging.getLogger())\n"
            "import importlib.util\nprint(importlib.util.find_spec('http.server').origin)\n"
            "import http.server\nprint(http.server.__spec__.loader.__class__, http.client.__file__)"),
+    *(
+        script(f"a package that means something else by a module's name, {time}", "import sys\n"
+               "class Seeing:\n    def find_spec(self, name, *more):\n        seen.append(name)\n"
+               "seen = []\nsys.meta_path.insert(0, Seeing())\nimport pytest_bdd, tomllib, mutabot.operators\n"
+               "print(pytest_bdd.scenario, pytest_bdd.given, sys.modules['pytest_bdd.scenario'])\n"
+               "print([one for one in seen if one.startswith('pytest_bdd')], len(seen) > 50)")
+        for time in ("once", "again")
+    ),
     script("imports what lies beside it", "import beside\nprint(beside.__file__, __file__)\nprint(beside.x)"),
     Case("has a module of a library's name", {"it.py": "import json\nprint(json.__file__)", "json.py": "x = 1"},
          ("{python}", "it.py"), is_warm=False),

@@ -123,8 +123,20 @@ class Shelf:
             self._bring_at_once(name)
             return
         for other in self._imports.get(name, ()):
-            if other in self._modules and other not in sys.modules:
-                importlib.import_module(other)
+            parts = other.split(".")
+            for count in range(1, len(parts) + 1):
+                self._bring_one(".".join(parts[:count]))
+
+    def _bring_one(self, name: str) -> None:
+        """Import a module; its package goes on to mean what it has meant by the module's name."""
+        if name not in self._modules or name in sys.modules:
+            return
+        above, _, own = name.rpartition(".")
+        names = getattr(self._modules.get(above), "__dict__", {})
+        meant = names.get(own, self)
+        importlib.import_module(name)
+        if meant is not self and names.get(own) is not meant:
+            names[own] = meant
 
     def _bring_at_once(self, name: str) -> None:
         for one in self._brought(name):
