@@ -173,7 +173,7 @@ class Client:
         def later(seconds: float, action: Callable[[], object]) -> None:
             heapq.heappush(self._due, (self.now + seconds, len(self._due), action))
 
-        return Means(sleep=sleep, later=later, lost=lost, cancel=cancel, jump=jump)
+        return Means(sleep, later, lost, cancel, jump, goes_out=later)
 
 
 @dataclass

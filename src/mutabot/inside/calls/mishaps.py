@@ -57,7 +57,7 @@ def timed(call: Call, perform: Callable[[], Any]) -> Callable[[], Any]:
     """``perform``, or what has it done later: what goes out without an answer is not waited for."""
     if Mishap.LATE not in call.mishaps or _is_answered(call):
         return perform
-    return lambda: _means(call).later(call.mishaps[Mishap.LATE], partial(_quietly, perform))
+    return lambda: _means(call).goes_out(call.mishaps[Mishap.LATE], partial(_quietly, perform))
 
 
 async def after(call: Call, result: Any) -> None:

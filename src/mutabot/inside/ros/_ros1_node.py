@@ -93,7 +93,7 @@ def where(
     cancel: Callable[[Any], Awaitable[None]] | None = None,
 ) -> Where:
     """Where a call is, and what can befall it."""
-    return Where(code, name(), Means(_sleep, _later, lost, cancel, clock.jump))
+    return Where(code, name(), Means(_sleep, _later, lost, cancel, clock.jump, _later))
 
 
 async def _sleep(seconds: float) -> None:

@@ -28,7 +28,8 @@ class Means:
     Attributes:
         sleep: waits for so many seconds. Around a plain call it must not suspend: it blocks. Around a
             coroutine function it may await whatever that may await.
-        later: has an action done after so many seconds, and returns at once.
+        later: has a callback called after so many seconds, as the node calls others, and returns at once.
+        goes_out: has a message go out after so many seconds, whatever the node does meanwhile.
         lost: what the program meets when the answer it waits for never comes: raises what the middleware
             raises, or waits as long as it would; None for what has no answer.
         cancel: cancels what the call has begun, given what it returned; None for what cannot be cancelled.
@@ -40,3 +41,4 @@ class Means:
     lost: Callable[[], Awaitable[Any]] | None = None
     cancel: Callable[[Any], Awaitable[None]] | None = None
     jump: Callable[[float], None] | None = None
+    goes_out: Callable[[float, Callable[[], object]], None] = _later

@@ -85,6 +85,19 @@ def later(node: Any) -> Callable[[float, Callable[[], object]], None]:
     return done_later
 
 
+def goes_out(node: Any) -> Callable[[float, Callable[[], object]], None]:
+    """How a message of a node goes out later, also while nobody spins it."""
+
+    def go_out(seconds: float, action: Callable[[], object]) -> None:
+        def wait() -> None:
+            _wait(node, seconds)
+            action()
+
+        threading.Thread(target=wait, daemon=True).start()
+
+    return go_out
+
+
 def _wait(node: Any, seconds: float) -> None:
     clock = node.get_clock() if node is not None else None
     if clock is None or not getattr(clock, "ros_time_is_active", False):

@@ -115,7 +115,6 @@ def where(
         is_async: whether the call is a coroutine's.
         lost, cancel: as in ``Means``.
     """
-    means = Means(
-        _clock.pause(node) if is_async else _clock.sleep(node), _clock.later(node), lost, cancel, _clock.jump
-    )
+    sleep = _clock.pause(node) if is_async else _clock.sleep(node)
+    means = Means(sleep, _clock.later(node), lost, cancel, _clock.jump, _clock.goes_out(node))
     return Where(code, name_of(node), means)
