@@ -424,6 +424,30 @@ def test_a_parameter_that_is_not_set_has_its_default(make: Making) -> None:
     assert stage.run(stage.session()) == 7.0
 
 
+def test_a_transform_is_read(make: Making) -> None:
+    pytest.importorskip("tf2_ros", reason="no tf2_ros: install Debian's python3-tf2-ros")
+    vocabulary = """
+    [[operation]]
+    tf = "base -> tool"
+    fields."transform.translation.x" = { kind = "position", axis = "x", unit = "m" }
+    """
+    program = """
+    import tf2_ros
+    from geometry_msgs.msg import Quaternion, TransformStamped
+
+    def run():
+        told = TransformStamped(child_frame_id="tool")
+        told.header.frame_id = "base"
+        told.transform.translation.x = 0.5
+        told.transform.rotation = Quaternion(0, 0, 0, 1)
+        buffer = tf2_ros.Buffer(debug=False)
+        buffer.set_transform_static(told, "case")
+        return buffer.lookup_transform("base", "tool", rospy.Time()).transform.translation.x
+    """
+    read, _ = make(program, vocabulary).mutated("negate", "transform.translation.x")
+    assert read == -0.5
+
+
 def test_timers_and_rates_are_sites(make: Making) -> None:
     vocabulary = """
     [[operation]]
