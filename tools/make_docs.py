@@ -44,6 +44,7 @@ and nothing else has to be edited. What it needs it declares on the class:
 | attribute | what it gets or promises |
 |---|---|
 | `asks_where = True` | `call.current` tells where the robot is; used only where the vocabulary says |
+| `needs_where(subject)` | the same for some subjects alone |
 | `asks_idle = True` | `call.idle` is what to answer while the robot does nothing; used only where known |
 | `does_nothing = True` | no call reaches the robot: one that would is an error, never a verdict |
 | `remembers = True` | one middleware for all calls of a test, and copies of what they write and read |

@@ -87,7 +87,8 @@ class Settings(BaseModel):
     """
     oracle_nodes: Annotated[tuple[_NodeName, ...], Field(strict=False)] = ()
     """Nodes of the tests' own, by resolved names in which `*` stands for any text. What is done under a name
-    in such a node (a topic received, a service called) has the role `oracle`, in whatever file it stands.
+    in such a node (a topic received, a service called) has the role `oracle`, in whichever of the files above
+    it stands.
 
         oracle_nodes = ["/checker*"]
     """
