@@ -14,6 +14,8 @@ from typing import Any
 #: libraries whose loading means that a graphics context may exist, which does not survive a fork
 _GRAPHICS = ("libEGL", "libGL.", "libGLX", "libOSMesa", "libvulkan")
 _SELF = "/proc/self"
+#: what threads of LTTng, which comes with ROS 2, wait at
+_TRACER = "/dev/shm/lttng-ust-wait"
 #: how often, and for how many seconds each, to wait for threads that are about to end
 _TRIES, _PAUSE = 10, 0.002
 
@@ -36,21 +38,45 @@ def why_not(own_children: Iterable[int], known: frozenset[int]) -> str | None:
 
 
 def _threads() -> str | None:
-    count = _count_threads()
+    count = count_threads()
     threading = sys.modules.get("threading")
     names = [thread.name for thread in threading.enumerate()[1:]] if threading is not None else []
     tries = 0 if names else _TRIES
     while count > 1 and tries > 0:  # one that was joined may take a moment to leave
         select.select([], [], [], _PAUSE)  # a simulation may have taken over time.sleep
-        count, tries = _count_threads(), tries - 1
+        count, tries = count_threads(), tries - 1
     if count == 1:
         return None
     named = f", such as {names[0]}" if names else ", started by native code"
     return f"{count - 1} more {'thread' if count == 2 else 'threads'}{named}"
 
 
-def _count_threads() -> int:
-    return len(os.listdir(f"{_SELF}/task"))
+def count_threads() -> int:
+    """How many threads there are, bar those that wait for a tracer."""
+    threads = os.listdir(f"{_SELF}/task")
+    if len(threads) == 1:
+        return 1
+    waiting = _tracer_areas()
+    return sum(not _waits_in(thread, waiting) for thread in threads) if waiting else len(threads)
+
+
+def _tracer_areas() -> list[tuple[int, int]]:
+    """Where threads of a tracer wait to be asked. They do nothing until then, and a fork does without them."""
+    with open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
+        areas = [line.split(maxsplit=1)[0].split("-") for line in file if _TRACER in line]
+    return [(int(start, 16), int(end, 16)) for start, end in areas]
+
+
+def _waits_in(thread: str, areas: list[tuple[int, int]]) -> bool:
+    try:
+        with open(f"{_SELF}/task/{thread}/syscall", encoding="ascii") as file:
+            words = file.read().split()
+    except OSError:  # it has just ended, or the kernel does not tell
+        return False
+    if len(words) < 2 or not words[1].startswith("0x"):
+        return False
+    place = int(words[1], 16)
+    return any(start <= place < end for start, end in areas)
 
 
 def _event_loop() -> str | None:
