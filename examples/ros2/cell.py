@@ -29,7 +29,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float64, Header, Int32
 from std_srvs.srv import SetBool, Trigger
 
-from mutabot.cells import Cell, CellError, Pose, Position
+from mutabot.cells import Cell, CellError, MotionRefused, Pose, Position
 
 #: how often `/clock` speaks while time passes, in simulated seconds
 CLOCK_PERIOD = 0.5
@@ -55,8 +55,11 @@ class Driver(Node):
     def _move_by(self, goal: Twist) -> None:
         lengths = (goal.linear.x, goal.linear.y, goal.linear.z)
         angles = (math.degrees(angle) for angle in (goal.angular.x, goal.angular.y, goal.angular.z))
-        is_done, _ = self._done(lambda: self._cell.arm.move_by(*lengths, *angles))
-        status = GoalStatus(status=GoalStatus.STATUS_SUCCEEDED if is_done else GoalStatus.STATUS_ABORTED)
+        error = self._try(lambda: self._cell.arm.move_by(*lengths, *angles))
+        status = GoalStatus(status=GoalStatus.STATUS_SUCCEEDED)
+        if error is not None:
+            is_refused = isinstance(error, MotionRefused)
+            status.status = GoalStatus.STATUS_CANCELED if is_refused else GoalStatus.STATUS_ABORTED
         status.goal_info.stamp = stamp(self._cell)
         self._status.publish(status)
 
@@ -70,17 +73,22 @@ class Driver(Node):
         return response
 
     def _wait(self, duration: Float64) -> None:
-        self._done(lambda: self._cell.wait(duration.data))
+        self._try(lambda: self._cell.wait(duration.data))
 
     def _done(self, command: Callable[[], None]) -> tuple[bool, str]:
         """Carry out a command; says whether the robot did, and if not, why."""
+        error = self._try(command)
+        return error is None, str(error or "")
+
+    def _try(self, command: Callable[[], None]) -> CellError | None:
+        """Carry out a command, and say what the world is like then; gives what the robot has against it."""
         try:
             command()
         except CellError as error:
-            return False, str(error)
+            return error
         finally:
             self._tell()
-        return True, ""
+        return None
 
     def _tick(self) -> None:
         if self._cell.time >= self._clock_told + CLOCK_PERIOD:

@@ -3,7 +3,7 @@
 | what | name | type |
 |---|---|---|
 | a straight-line move, relative | topic `/arm/move_by` | `geometry_msgs/Twist`, m and rad |
-| how it ended | topic `/arm/status` | `action_msgs/GoalStatus`: 4 succeeded, 6 aborted |
+| how it ended | topic `/arm/status` | `action_msgs/GoalStatus`: 4 done, 5 refused, 6 stopped half-way |
 | a joint move home | service `/arm/home` | `std_srvs/Trigger` |
 | the gripper | service `/gripper/close` | `std_srvs/SetBool` |
 | the colour | topic `/color_sensor/number`, latched | `std_msgs/Int32` |

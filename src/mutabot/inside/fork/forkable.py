@@ -61,7 +61,7 @@ def count_threads() -> int:
 
 
 def _tracer_areas() -> list[tuple[int, int]]:
-    """Where threads of a tracer wait to be asked. They do nothing until then, and a fork does without them."""
+    """Where threads of a tracer wait to be asked. They do nothing until then, so a fork does without."""
     with open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
         areas = [line.split(maxsplit=1)[0].split("-") for line in file if _TRACER in line]
     return [(int(start, 16), int(end, 16)) for start, end in areas]
