@@ -115,6 +115,11 @@ class Activation:
         if self.watched:
             self.refused_as(heard(self.watched, name, message))
 
+    def passed_by(self, call: Call) -> None:
+        """Another call is made: if it is of the same command, what is refused from now on is that one."""
+        if self.watched and call.operation.target == self.operation.target:
+            self.watched = ()
+
     def refused_as(self, said: str | None) -> None:
         """How the robot refused a mutated call by data, in words; None if it did not."""
         if said is not None and self.evidence.said is None:

@@ -154,6 +154,8 @@ class Passing:
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
                 mutant = self._mutant_of(site, call)
                 if mutant is None:
+                    for activation in self.activations:
+                        activation.passed_by(call)
                     reply = await self._perform(door, call, is_async)
                     result = reply.payload
                 else:

@@ -21,6 +21,7 @@ from contextlib import contextmanager, suppress
 from typing import Any, Protocol
 
 from mutabot.border.start import Start
+from mutabot.inside.fork.forkable import count_threads
 
 from .become import UnfitError
 from .shelf import Shelf
@@ -297,7 +298,7 @@ def _is_library(folder: str) -> bool:
 def _traces(output: int) -> tuple[object, ...]:
     """What an import must not change."""
     return (
-        len(os.listdir("/proc/self/task")),
+        count_threads(),
         sorted(os.listdir("/proc/self/fd")),
         os.fstat(output).st_size,
         dict(os.environ),
