@@ -49,6 +49,7 @@ class Driver(Node):
         self.create_subscription(Float64, "/cell/wait", self._wait, 10)
         self.create_service(Trigger, "/arm/home", self._home)
         self.create_service(SetBool, "/gripper/close", self._close)
+        self.create_service(Trigger, "/cell/done", self._say_done)
         cell.simulation.before_tick.append(self._tick)
         self._tell()
 
@@ -70,6 +71,10 @@ class Driver(Node):
     def _close(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         command = float(request.data)
         response.success, response.message = self._done(lambda: self._cell.gripper.command(command))
+        return response
+
+    def _say_done(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.success = True
         return response
 
     def _wait(self, duration: Float64) -> None:

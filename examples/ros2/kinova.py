@@ -7,6 +7,7 @@
 | a joint move home | service `/arm/home` | `std_srvs/Trigger` |
 | the gripper | service `/gripper/close` | `std_srvs/SetBool` |
 | the colour | topic `/color_sensor/number`, latched | `std_msgs/Int32` |
+| whether all that was asked for is done | service `/cell/done` | `std_srvs/Trigger` |
 | let time pass | topic `/cell/wait` | `std_msgs/Float64`, s; `/clock` says when it has |
 """
 
@@ -31,8 +32,10 @@ from std_srvs.srv import SetBool, Trigger
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 #: the same, for what must not get lost: one answer after the other
 ANSWERS = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-#: wall-clock seconds after which nobody will answer any more; a move takes 0.02
-PATIENCE = 5.0
+#: wall-clock seconds after which one may ask whether an answer is still to come; a move takes 0.02
+PATIENCE = 1.0
+#: the same for a cell that is not there
+LONG_PATIENCE = 60.0
 
 _node: Node | None = None
 
@@ -42,7 +45,7 @@ class Refused(Exception):  # noqa: N818  (says what happened)
 
 
 class NoAnswer(Exception):  # noqa: N818  (as above)
-    """Nobody has answered within `PATIENCE`."""
+    """No answer will come any more."""
 
 
 @contextmanager
@@ -66,12 +69,33 @@ def _connected() -> Node:
 
 
 def _until(is_so: Callable[[], Any], what: str) -> None:
-    """Spin the node until something is so."""
-    end = time.monotonic() + PATIENCE
+    """Spin the node until something is so.
+
+    The cell does one thing after the other. So if it answers a question that came later, and not this one, it
+    has never heard of it; how busy the machine is does not matter.
+    """
+    if not _spin(is_so, PATIENCE):
+        future = _cell_is_done(what)
+        if not _spin(future.done, LONG_PATIENCE) or not _spin(is_so, PATIENCE):
+            raise NoAnswer(f"{what}: no answer")
+
+
+def _cell_is_done(what: str) -> Any:
+    """Ask for an answer that comes when all that was asked for before is done."""
+    client = _connected().create_client(Trigger, "/cell/done")
+    if not _spin(client.service_is_ready, LONG_PATIENCE):
+        raise NoAnswer(f"{what}: no cell is there")
+    return client.call_async(Trigger.Request())
+
+
+def _spin(is_so: Callable[[], Any], seconds: float) -> bool:
+    """Spin the node until something is so; false if it is not in so many wall-clock seconds."""
+    end = time.monotonic() + seconds
     while not is_so():
         if time.monotonic() > end:
-            raise NoAnswer(f"{what}: no answer in {PATIENCE} s")
+            return False
         rclpy.spin_once(_connected(), timeout_sec=0.005)
+    return True
 
 
 def _asked(client: Any, request: Any) -> None:
@@ -134,10 +158,10 @@ class ColorSensor:
     def read(self) -> int:
         """A whole number from 1 to 10: even means the red box, odd the blue one."""
         found, message = wait_for_message(
-            Int32, _connected(), "/color_sensor/number", qos_profile=LATCHED, time_to_wait=PATIENCE
+            Int32, _connected(), "/color_sensor/number", qos_profile=LATCHED, time_to_wait=LONG_PATIENCE
         )
         if not found:
-            raise NoAnswer(f"/color_sensor/number: nothing in {PATIENCE} s")
+            raise NoAnswer(f"/color_sensor/number: nothing in {LONG_PATIENCE} s")
         return int(message.data)
 
 
