@@ -53,3 +53,18 @@ def test_the_examples_own_suite_passes_with_a_master_of_its_own(project: Path) -
 def test_mutants_in_the_mission_node_end_as_they_must(project: Path) -> None:
     found = run(project, rounds=1, baseline=1, only=tuple(EXPECTED))
     assert {mutant: outcome.verdict for mutant, outcome in found.items()} == EXPECTED
+
+
+def test_a_mission_in_the_tests_own_process_ends_alike(project: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "here"
+    shutil.copytree(project, copy, ignore=shutil.ignore_patterns(".*", "__pycache__"))
+    tests = copy / "tests" / "test_mission.py"
+    before, began, rest = tests.read_text(encoding="utf-8").partition("    mission = subprocess.run(")
+    _, ended, after = rest.partition("assert mission.returncode == 0\n")
+    assert began
+    assert ended
+    imported = before.replace("from expected", "import kinova\nimport mission\nfrom expected")
+    tests.write_text(f"{imported}    kinova.connect()\n    mission.run()\n{after}", encoding="utf-8")
+    mutant = "mission.py:run:gripper.close#2:call:skip"
+    found = run(copy, rounds=1, baseline=1, only=(mutant,))
+    assert found[mutant].verdict is EXPECTED[mutant]
