@@ -215,6 +215,7 @@ class ClientStage:
         locator = Locator(job.root, job.program, job.oracle)
         session = Session(job, self.pipe, locator.locate, locator.locate_definition)  # type: ignore[arg-type]
         session.install()
+        self.sessions.append(session)
         session.start_test("test")
         messages = session.interception.of("messages")
         assert isinstance(messages, Messages)

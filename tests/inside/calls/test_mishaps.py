@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -77,8 +78,6 @@ def heard(stage: ClientStage, operator: str, variant: str = "") -> list[Any]:
 
 def waited(stage: ClientStage, operator: str, variant: str = "") -> Any:
     """What a program gets that waits for two messages of four."""
-    from types import SimpleNamespace  # noqa: PLC0415
-
     coming = [SimpleNamespace(gap=gap) for gap in (0.1, 0.2, 0.3, 0.4)]
     return stage.mutated(WAIT, operator, variant, coming=coming)[0]
 
@@ -95,6 +94,15 @@ def test_every_third_is_dropped(stage: ClientStage) -> None:
 
 def test_who_waits_for_a_message_that_is_lost_waits_for_the_next(stage: ClientStage) -> None:
     assert isinstance(waited(stage, "drop"), TimeoutError)
+
+
+def test_waiting_on_is_one_call_however_many_messages_are_lost(tmp_path: Path) -> None:
+    coming = [SimpleNamespace(gap=0.1)] * 4
+    stage = ClientStage(tmp_path, (RECEIVE,))
+    result, _, activation = stage.mutated(WAIT, "drop", coming=coming)
+    assert isinstance(result, TimeoutError)
+    assert activation.evidence.hits == 5
+    assert stage.sessions[-1].meter.operations == 1
 
 
 def test_a_request_that_is_lost_is_never_answered(stage: ClientStage) -> None:

@@ -103,7 +103,8 @@ class Passing:
                 self._instances.used(instance)
             if _under_way.get():
                 return wrapped(*args, **kwargs)
-            self.meter.count()
+            if where is None or not where.is_again:
+                self.meter.count()
             site = self._site(sys._getframe(1), where)
             if site is None:
                 return wrapped(*args, **kwargs)

@@ -8,14 +8,18 @@ program's is called, ``wait_for`` where the program waits.
 from __future__ import annotations
 
 import inspect
+import time
 from collections import deque
 from collections.abc import Awaitable, Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
 from .means import Means
 from .target import Handler, Where
+
+#: seconds of wall clock: a topic that keeps its last message gives it at once to who asks again and again
+_PAUSE = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +79,8 @@ class Waiting:
                     _done(_means(where).sleep(late))
             if self.held:
                 return self.held.popleft()
+            where = replace(where, is_again=True)
+            time.sleep(_PAUSE)
 
 
 def _means(where: Where) -> Means:

@@ -32,11 +32,13 @@ class Where:
             is the nearest call of the program's, as everywhere else.
         node: resolved name of the node.
         means: what can befall the call beside other values; None if nothing can.
+        is_again: whether the same call of the program's goes on: it still waits for a message.
     """
 
     code: CodeType | None = None
     node: str | None = None
     means: Means | None = None
+    is_again: bool = False
 
 
 #: ``handler(wrapped, instance, args, kwargs, where=None)``, as wrapt calls it, with a ``Where`` behind it if
