@@ -55,6 +55,7 @@ comparison: $(READY)
 ## measure: the cost of an intercepted call, start-up, simulation speed, 200 seeds of each example
 bench: $(READY)
 	$(RUN) benchmarks/interception.py
+	$(RUN) benchmarks/process_starts.py
 	$(RUN) benchmarks/instrumentation.py
 	$(RUN) benchmarks/cell_speed.py
 	$(RUN) benchmarks/paper_seeds.py
@@ -65,7 +66,7 @@ bench: $(READY)
 
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the
 ## examples; both engines against plain pytest; ten thousand mutants; 200 campaigns in a row;
-## 400 campaigns with a test that fails at random
+## 20 whose tests start processes, on each example with some; 400 campaigns with a test that fails at random
 stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) benchmarks/kill_and_resume.py --kills 30
 	$(RUN) benchmarks/differential.py
@@ -74,6 +75,10 @@ stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	$(ROS2)/bin/python benchmarks/judged.py ros2
 	$(RUN) benchmarks/ten_thousand.py
 	$(RUN) benchmarks/campaigns_in_a_row.py --count 200
+	$(RUN) benchmarks/processes_in_a_row.py --examples scales
+	for ros in $(ROS1) $(ROS2); do \
+	    test ! -x $$ros/bin/python || $$ros/bin/python benchmarks/processes_in_a_row.py --examples ros1 ros2 || exit; \
+	done
 	$(RUN) benchmarks/flaky_campaigns.py
 
 ## slow: every verdict on the corpus of tests/suites and on mutants of the examples, by both engines, against plain

@@ -29,7 +29,7 @@ from .shelf import Shelf
 #: variables that C code reads where nobody sees it, or that Python reads before all else
 _SILENT = (
     "PYTHON", "LD_", "OMP_", "OPENBLAS_", "MKL_", "NUMEXPR_", "GOTO_", "BLIS_", "KMP_", "MALLOC_", "GLIBC_",
-    "LC_", "COV_CORE_", "COVERAGE_", "MUJOCO_",
+    "LC_", "RMW_", "RCUTILS_", "AMENT_", "COV_CORE_", "COVERAGE_", "MUJOCO_",
 )  # fmt: skip
 _SILENT_NAMES = {"LANG", "LANGUAGE", "TZ"}
 #: of those, what a process may have otherwise: it is read again
