@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import os
 import socket
+from collections.abc import Iterator
+from contextlib import suppress
 
 from mutabot.border.job import Job
 from mutabot.model import Operation
@@ -56,11 +58,12 @@ def _is_of_nodes(operation: Operation) -> bool:
 
 
 def _claim(theirs: str | None) -> int | None:
-    """A domain that no other worker has, nor the user's own nodes; None if there is none left."""
+    """A domain that no other worker has, nor any node that is running; None if there is none left."""
     while _held:  # of a process that this one was forked from
         _held.pop().close()
+    taken = {theirs, *_running()}
     for domain in DOMAINS:
-        if str(domain) == theirs:
+        if str(domain) in taken:
             continue
         held = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         try:
@@ -71,3 +74,17 @@ def _claim(theirs: str | None) -> int | None:
         _held.append(held)
         return domain
     return None
+
+
+def _running() -> Iterator[str]:
+    """Domains that running processes were started with.
+
+    Of a campaign that was killed nodes may be left, which nobody holds a domain for any more.
+    """
+    mark = f"{DOMAIN}=".encode()
+    for name in os.listdir("/proc") if os.path.isdir("/proc") else ():
+        if name.isdigit():
+            with suppress(OSError), open(f"/proc/{name}/environ", "rb") as stream:
+                for one in stream.read().split(b"\0"):
+                    if one.startswith(mark):
+                        yield one.removeprefix(mark).decode(errors="replace")
