@@ -113,8 +113,8 @@ class Judge:
             if len({one.state for one in drawn}) > 1:
                 return Judgement("unwritable", text="draws end differently")
             return drawn[0]
-        if refusals := noting_refusals(Facts.of(self.folder)):
-            return self._run([*edits, *refusals], place="site" if is_named(mutant) else "anywhere")
+        if is_named(mutant):
+            return self._run([*edits, *noting_refusals(Facts.of(self.folder))])
         found = self._run(edits)
         if not look_for_refusals:
             return found
@@ -153,14 +153,14 @@ class Judge:
             self._pytest(copy, {"JUDGE_NOTES": str(notes), "JUDGE_PLACE": place})
             return notes.read_text().count("refused")
 
-    def _run(self, edits: Sequence[Edit], noise: int = 1, place: str = "") -> Judgement:
+    def _run(self, edits: Sequence[Edit], noise: int = 1) -> Judgement:
         kept = self._kept(edits, noise)
         if kept is not None and kept.is_file():
             data = json.loads(kept.read_text())
             return Judgement(data["state"], tuple(data["tests"]), data["refused"], data["text"])
         with tempfile.TemporaryDirectory() as name:
             notes = Path(name) / "notes"
-            told = {"JUDGE_NOISE": str(noise), "JUDGE_NOTES": str(notes), "JUDGE_PLACE": place}
+            told = {"JUDGE_NOISE": str(noise), "JUDGE_NOTES": str(notes)}
             found = self._pytest(self._copied(Path(name), edits), told)
             found = replace(found, refused=notes.exists())
         if kept is not None:

@@ -201,12 +201,12 @@ class MessageEditor:
 
 
 def noting_refusals(facts: Facts) -> list[Edit]:
-    """Edits that note where the robot refuses by data, as ``judge.toml`` tells under ``[refused]``."""
+    """Edits that note where the client hears that the robot refuses, as ``judge.toml`` tells it."""
     edits = []
     for file, text, condition in facts.hints.get("refused", []):
         source = Source(facts.folder / file, file)
-        for node in source.nodes(ast.stmt):
+        for node in source.nodes(ast.expr):
             if source.text(node) == text:
-                start, _ = source.range(node)
-                edits.append(Edit(file, start, start, f"{MESSAGES}.refused({condition}); "))
+                told = f"{MESSAGES}.hearing({text}, lambda message: {condition})"
+                edits.append(Edit(file, *source.range(node), told))
     return edits

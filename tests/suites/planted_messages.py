@@ -30,6 +30,8 @@ Clock = Callable[[], float] | None
 _RANDOM = random.Random(int(os.environ.get("JUDGE_NOISE", "1")))
 #: which sites are being called now
 _armed: list[str] = []
+#: the site, if its command was the last of its kind
+_watched: list[str] = []
 #: calls of the mutated site until now, what they were given or brought, and what is held back
 _count = itertools.count(1)
 _earlier: list[Any] = []
@@ -50,15 +52,27 @@ def armed(site: str, function: Any) -> Any:
 
 
 def only_below(site: str, function: Any, wrapper: Wrapper) -> Any:
-    """``function`` as ``wrapper`` makes it if a call of the site is under way, else as it is."""
-    return wrapper(function) if site in _armed else function
+    """``function`` as ``wrapper`` makes it if a call of the site is under way, else as it is.
+
+    What is refused from now on is the mutated command, until the next one of the kind.
+    """
+    _watched.clear()
+    if site not in _armed:
+        return function
+    _watched.append(site)
+    return wrapper(function)
 
 
-def refused(is_so: bool) -> None:
-    """Note that the robot refuses a command: below the mutated site, or anywhere if there is none."""
-    if is_so and (_armed or os.environ["JUDGE_PLACE"] == "anywhere"):
-        with Path(os.environ["JUDGE_NOTES"]).open("a") as notes:
-            notes.write("refused\n")
+def hearing(callback: Any, is_refused: Callable[[Any], bool]) -> Any:
+    """A callback that notes when a message says that the robot refuses the mutated command."""
+
+    def called(message: Any) -> Any:
+        if _watched and is_refused(message):
+            with Path(os.environ["JUDGE_NOTES"]).open("a") as notes:
+                notes.write("refused\n")
+        return callback(message)
+
+    return called
 
 
 # what is said

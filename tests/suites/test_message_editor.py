@@ -21,10 +21,9 @@ FILES = {
     "client.py": """
         class Arm:
             def move(self, x):
+                subscribe("/arm/ended", self.ends.append)
                 message = Twist(x)
                 self.publisher.publish(message)
-                if self.end.status == 5:
-                    raise Refused(self.end.text)
     """,
     "mutabot.toml": 'program = ["mission.py"]\nvocabulary = ["robot.toml"]',
     "robot.toml": """
@@ -39,7 +38,7 @@ FILES = {
         fields.data = { kind = "label", values = [1, 2, 3] }
     """,
     "judge.toml": """
-        refused = [["client.py", "raise Refused(self.end.text)", "self.end.status == 5"]]
+        refused = [["client.py", "self.ends.append", "message.status == 5"]]
         [raw]
         "publish /arm/move" = ["client.py", "self.publisher.publish(message)"]
     """,
@@ -97,7 +96,7 @@ def test_a_call_of_the_client_library_in_the_program_is_edited_there(facts: Fact
 def test_a_refusal_is_noted_where_the_client_hears_of_it(facts: Facts) -> None:
     (edit,) = noting_refusals(facts)
     told = edit.applied((facts.folder / "client.py").read_bytes()).decode()
-    assert f"{M}.refused(self.end.status == 5); raise Refused(self.end.text)" in told
+    assert f'("/arm/ended", {M}.hearing(self.ends.append, lambda message: message.status == 5))' in told
 
 
 @pytest.mark.parametrize("operator", ["cancel-goal", "reverse"])
@@ -136,3 +135,22 @@ def test_only_calls_below_the_site_are_mutated(planted: ModuleType) -> None:
         return planted.only_below("site", int, planted.with_message(lambda x: -x))(value)  # type: ignore[no-any-return]
 
     assert (publish(3), planted.armed("site", publish)(3), publish(3)) == (3, -3, 3)
+
+
+def test_a_refusal_is_the_mutated_commands_until_the_next_one(
+    planted: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("JUDGE_NOTES", str(tmp_path / "notes"))
+    hear = planted.hearing(lambda message: None, lambda message: message == "refused")
+
+    def publish() -> None:
+        planted.only_below("site", int, lambda function: function)()
+
+    noted = []
+    for command in (publish, planted.armed("site", publish), publish):
+        command()
+        hear("done")
+        hear("refused")
+        noted.append((tmp_path / "notes").exists())
+        (tmp_path / "notes").unlink(missing_ok=True)
+    assert noted == [False, True, False]
