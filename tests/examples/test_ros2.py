@@ -1,4 +1,4 @@
-"""The example ``ros2``: its own suite, in real processes over a real middleware."""
+"""The example ``ros2``: its own suite, and the end of a few of the published mutants in its nodes."""
 
 from __future__ import annotations
 
@@ -10,11 +10,25 @@ from pathlib import Path
 
 import pytest
 
+from campaign.project import run
+from mutabot.model import Verdict
 from ros2_domain import domain
 
 pytest.importorskip("rclpy", reason="no ROS 2 in this environment (requirements-ros2.lock)")
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "ros2"
+
+#: verdict, with the reason why it must be this one
+EXPECTED = {
+    # The fingers stay open, so the box stays on the conveyor.
+    "mission.py:run:gripper.command#2:call:skip": Verdict.KILLED,
+    # Closing closed fingers does nothing more.
+    "mission.py:run:gripper.command#2:call:repeat": Verdict.SURVIVED,
+    # 0.29 m up instead of down is beyond the arm's reach: the driver refuses it.
+    "mission.py:run:arm.move_by#3:linear.z:reverse": Verdict.REFUSED,
+    # On the other side it may move, but cannot make its next move: that one's refusal is a failure.
+    "mission.py:run:arm.move_by#4:angular.z:reverse": Verdict.KILLED,
+}
 
 
 @pytest.fixture
@@ -52,3 +66,9 @@ def test_a_move_in_the_wrong_direction_is_noticed(example: Path) -> None:
         done = run_suite(example, number, 0)
     assert done.returncode == 1, done.stdout
     assert "1 failed" in done.stdout
+
+
+@pytest.mark.usefixtures("plugins")
+def test_mutants_in_the_mission_node_end_as_they_must(example: Path) -> None:
+    found = run(example, rounds=1, baseline=1, only=tuple(EXPECTED))
+    assert {mutant: outcome.verdict for mutant, outcome in found.items()} == EXPECTED

@@ -12,11 +12,10 @@ from processes import FOLDER, start, stop
 from rclpy.node import Node
 
 # nobody else's nodes: of other machines, or of other tests that run beside these
-os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
 os.environ.setdefault("ROS_DOMAIN_ID", str(os.getpid() % 101 + 1))
-# and these find each other at once, and leave nothing in shared memory
-os.environ.setdefault("FASTDDS_DEFAULT_PROFILES_FILE", str(FOLDER / "discovery.xml"))
-os.environ.setdefault("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")
+if "FASTDDS_DEFAULT_PROFILES_FILE" not in os.environ:
+    os.environ["FASTDDS_DEFAULT_PROFILES_FILE"] = str(FOLDER / "discovery.xml")
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SYSTEM_DEFAULT"  # as the file says
 
 
 @pytest.fixture

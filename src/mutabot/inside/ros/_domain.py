@@ -1,7 +1,8 @@
 """A domain of ROS 2 for the nodes of one worker, so that workers do not meet and nothing of theirs is left.
 
-It is on this machine alone, with logs in the worker's home and no shared memory. Discovery speaks up ten
-times a second: nodes of tests come and go, and would else wait for the next of its rounds, up to 3 s.
+It is on this machine alone, with logs in the worker's home. Fast DDS speaks over the loopback device and
+leaves nothing in shared memory. Its nodes say ten times a second that they are there: nodes of tests come and
+go, and would else wait for the next of its rounds, up to 3 s.
 """
 
 from __future__ import annotations
@@ -15,18 +16,27 @@ from mutabot.border.job import Job
 from mutabot.model import Operation
 
 DOMAIN, RANGE, LOGS = "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOG_DIR"
-TRANSPORTS = "FASTDDS_BUILTIN_TRANSPORTS"
 PROFILES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
+#: says which middleware is below; Fast DDS is if nothing does
+BELOW, FAST = "RMW_IMPLEMENTATION", "rmw_fastrtps_cpp"
 #: domains whose ports are free on any system
 DOMAINS = range(1, 102)
 _PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
 <dds xmlns="http://www.eprosima.com"><profiles>
-<participant profile_name="mutabot" is_default_profile="true"><rtps><builtin><discovery_config>
+<transport_descriptors><transport_descriptor>
+<transport_id>loopback</transport_id><type>UDPv4</type><maxInitialPeersRange>32</maxInitialPeersRange>
+<interfaceWhiteList><address>127.0.0.1</address></interfaceWhiteList>
+</transport_descriptor></transport_descriptors>
+<participant profile_name="mutabot" is_default_profile="true"><rtps>
+<userTransports><transport_id>loopback</transport_id></userTransports>
+<useBuiltinTransports>false</useBuiltinTransports>
+<builtin><discovery_config>
 <leaseDuration><sec>20</sec></leaseDuration>
 <leaseAnnouncement><sec>0</sec><nanosec>100000000</nanosec></leaseAnnouncement>
 <initialAnnouncements><count>10</count><period><sec>0</sec><nanosec>20000000</nanosec></period>
-</initialAnnouncements>
-</discovery_config></builtin></rtps></participant>
+</initialAnnouncements></discovery_config>
+<initialPeersList><locator><udpv4><address>127.0.0.1</address></udpv4></locator></initialPeersList>
+</builtin></rtps></participant>
 </profiles></dds>
 """
 #: holds the domain of this process as long as it lives; nothing of it is on disk
@@ -43,14 +53,17 @@ def take(home: str) -> None:
     domain = _claim(os.environ.get(DOMAIN))
     if domain is not None:
         os.environ[DOMAIN] = str(domain)
-    os.environ[RANGE] = "LOCALHOST"
     os.environ[LOGS] = os.path.join(home, "ros")
-    os.environ.setdefault(TRANSPORTS, "UDPv4")
-    if not any(name in os.environ for name in PROFILES):
-        file = os.path.join(home, "discovery.xml")
-        with open(file, "w", encoding="utf-8") as stream:
-            stream.write(_PROFILE)
-        os.environ[PROFILES[0]] = file
+    if any(name in os.environ for name in PROFILES) or os.environ.get(BELOW, FAST) != FAST:
+        os.environ[RANGE] = "LOCALHOST"
+        return
+    # a range of ROS' own would put shared memory in the place of what the profile says
+    os.environ[RANGE] = "SYSTEM_DEFAULT"
+    os.environ.pop("ROS_LOCALHOST_ONLY", None)
+    file = os.path.join(home, "discovery.xml")
+    with open(file, "w", encoding="utf-8") as stream:
+        stream.write(_PROFILE)
+    os.environ.update(dict.fromkeys(PROFILES, file))
 
 
 def _is_of_nodes(operation: Operation) -> bool:
