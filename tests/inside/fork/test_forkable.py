@@ -43,19 +43,6 @@ def test_what_a_fork_would_share_is_named(code: str, reason: str) -> None:
     assert reason in asked(code)
 
 
-def test_threads_that_wait_for_a_tracer_are_no_reason() -> None:
-    pytest.importorskip("rclpy", reason="no ROS 2: pip install -r requirements-ros2.lock")
-    code = "import os, rclpy, std_msgs.msg; assert len(os.listdir('/proc/self/task')) > 1"
-    result = subprocess.run(
-        [sys.executable, "-c", ASK.format(code)],
-        capture_output=True,
-        text=True,
-        check=True,
-        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
-    )
-    assert result.stdout.strip() == "None"
-
-
 def test_graphics_library_is_noticed_however_it_was_loaded() -> None:
     library = next(filter(None, map(ctypes.util.find_library, ("EGL", "GL", "OSMesa"))), None)
     if library is None:
