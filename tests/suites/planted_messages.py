@@ -427,11 +427,11 @@ def _message(function: Any, given: tuple[Any, ...], named: dict[str, Any]) -> An
 
 
 def _sleep(seconds: float, clock: Clock, patience: float = 1e6) -> bool:
-    """Wait by a clock, or by the wall's; whether the time has passed before patience is over."""
-    until = time.monotonic() + patience
+    """Wait by a clock, or by the wall's where it stands still; whether patience lasts as long."""
+    until, wall = time.monotonic() + patience, time.monotonic() + seconds
     told = clock or time.monotonic
     end = told() + seconds
-    while told() < end:
+    while told() < end and time.monotonic() < wall:
         if time.monotonic() > until:
             return False
         time.sleep(0.001)
