@@ -396,7 +396,7 @@ def test_the_shell_completes_commands_and_names(project: Path) -> None:
         return done.stdout.split()
 
     assert completed("mutabot re") == ["replay", "results"]
-    assert completed("mutabot run --engine ") == ["auto", "branch", "replay"]
+    assert completed("mutabot run --engine ") == ["auto", "branch", "replay", "warm"]
     assert completed("mutabot run --family cl") == ["classical"]
 
 

@@ -10,13 +10,18 @@ from __future__ import annotations
 import os
 import select
 import signal
+import time
 from contextlib import suppress
 from pathlib import Path
 
 from mutabot.border.processes import VARIABLE
 
 #: looks, each after the last one's finds were killed, until nothing is found
-_LOOKS = 20
+_LOOKS = 100
+#: seconds between two looks at a process that is being started
+_PAUSE = 0.005
+#: the flag of the kernel's own threads, <linux/sched.h>
+_KERNEL = 0x00200000
 #: milliseconds that killed processes may take to be gone
 _PATIENCE = 5000
 _PROC = Path("/proc")
@@ -27,10 +32,16 @@ def end_left_over(folder: Path) -> int:
     entry = os.fsencode(f"{VARIABLE}={folder}")
     ended = 0
     for _ in range(_LOOKS):
-        found = [pid for pid in _processes() if _has(pid, entry)]
-        if not found:
-            break
+        environments = {pid: _environment(pid) for pid in _processes()}
+        found = [pid for pid, environment in environments.items() if entry in environment]
         ended += sum(_end(pid, entry) for pid in found)
+        if not found:
+            # for a moment, a program that is being started has no environment yet
+            if not any(
+                environment == [b""] and _is_starting(pid) for pid, environment in environments.items()
+            ):
+                break
+            time.sleep(_PAUSE)
     return ended
 
 
@@ -38,10 +49,18 @@ def _processes() -> list[int]:
     return [int(name) for name in os.listdir(_PROC) if name.isdigit()]  # noqa: PTH208  # three times as fast
 
 
-def _has(pid: int, entry: bytes) -> bool:
-    """Whether a process began with this in its environment, and is still there."""
+def _environment(pid: int) -> list[bytes]:
+    """What a process began with; empty if it is gone or somebody else's."""
     with suppress(OSError), open(f"/proc/{pid}/environ", "rb") as file:  # noqa: PTH123  # likewise
-        return entry in file.read().split(b"\0")
+        return file.read().split(b"\0")
+    return []
+
+
+def _is_starting(pid: int) -> bool:
+    """Whether a process without an environment may get one: it is neither a dead one nor the kernel's own."""
+    with suppress(OSError):
+        fields = (_PROC / str(pid) / "stat").read_text("ascii", "replace").rpartition(")")[2].split()
+        return fields[0] not in "ZX" and not int(fields[6]) & _KERNEL
     return False
 
 
@@ -52,7 +71,7 @@ def _end(pid: int, entry: bytes) -> bool:
     except OSError:
         return False
     try:
-        if not _has(pid, entry):
+        if entry not in _environment(pid):
             return False
         with suppress(ProcessLookupError, PermissionError):
             signal.pidfd_send_signal(process, signal.SIGKILL)
