@@ -17,7 +17,7 @@ from pathlib import Path
 from mutabot.border.processes import VARIABLE
 
 #: looks, each after the last one's finds were killed, until nothing is found
-_LOOKS = 100
+_LOOKS = 20
 #: seconds between two looks at a process that is being started
 _PAUSE = 0.005
 #: the flag of the kernel's own threads, <linux/sched.h>
