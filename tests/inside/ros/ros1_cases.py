@@ -255,6 +255,23 @@ def test_waiting_for_a_message_is_a_site(make: Making) -> None:
     }
 
 
+def test_a_message_that_is_kept_and_was_lost_does_not_come_again(make: Making) -> None:
+    program = """
+    def run():
+        level = rospy.Publisher("/line/level", Float64, queue_size=10, latch=True)
+        level.publish(0.5)
+        try:
+            rospy.wait_for_message("level", Float64, 1.0)
+        except rospy.ROSException as error:
+            return str(error)
+        finally:
+            level.unregister()
+    """
+    told, activation = make(program, LEVEL).mutated("drop", None)
+    assert "timeout exceeded" in told
+    assert activation.evidence.acted == 1
+
+
 def test_waiting_in_vain_ends_as_it_does_without_us(make: Making) -> None:
     program = """
     def run():

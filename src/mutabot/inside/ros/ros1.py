@@ -16,7 +16,7 @@ from typing import Any
 
 from mutabot.inside.calls.passing import is_under_way
 from mutabot.inside.processes.member import note_node
-from mutabot.inside.targets.delivery import Waiting, deliver
+from mutabot.inside.targets.delivery import Waiting, anew, deliver
 from mutabot.inside.targets.messages import Messages
 from mutabot.inside.targets.target import Finding
 from mutabot.model import Operation
@@ -156,7 +156,7 @@ class _Topics:
             return original(topic, topic_type, None if end is None else max(0.0, end - time.monotonic()))
 
         waiting = self._waiting.setdefault((name, node.name()), Waiting())
-        return waiting.wait_for(handler, wait, node.where())
+        return waiting.wait_for(handler, anew(wait, _is_latched), node.where())
 
 
 class _Services:
@@ -290,6 +290,12 @@ class _Times:
     def _is_timers(self) -> bool:
         """Whether it is the rate inside a timer."""
         return sys._getframe(3).f_code is self._run
+
+
+def _is_latched(message: Any) -> bool:
+    """Whether the publisher keeps its last message for late subscribers."""
+    header = getattr(message, "_connection_header", None) or {}
+    return str(header.get("latching")) == "1"
 
 
 def _waiter() -> type:

@@ -83,6 +83,25 @@ class Waiting:
             time.sleep(_PAUSE)
 
 
+def anew(wait: Callable[[], Any], is_kept: Callable[[Any], bool]) -> Callable[[], Any]:
+    """Wait for a message that no wait before has brought.
+
+    Each wait subscribes anew, and so gets once more what is kept for late subscribers: a node that had lost
+    it would not. ``is_kept`` says whether a message is of that kind.
+    """
+    last: list[Any] = []
+
+    def wait_for_another() -> Any:
+        while True:
+            message = wait()
+            if not last or not is_kept(message) or message != last[0]:
+                last[:] = [message]
+                return message
+            time.sleep(_PAUSE)
+
+    return wait_for_another
+
+
 def _means(where: Where) -> Means:
     return where.means if where.means is not None else Means()
 

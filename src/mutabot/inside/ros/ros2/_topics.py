@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any
 
 from mutabot.inside.ros._patches import Patches, code_of
-from mutabot.inside.targets.delivery import Waiting, deliver
+from mutabot.inside.targets.delivery import Waiting, anew, deliver
 from mutabot.inside.targets.messages import Messages
 from mutabot.inside.targets.target import Handler
 from mutabot.model.named import Form
@@ -156,14 +156,21 @@ class _Topics:
             if handler is None:
                 return True, waited()
             waiting = self._waiting.setdefault((name, node_name), Waiting())
-            message = waited() if not waiting.held else None
-            return True, waiting.wait_for(handler, _first(message, waited), _nodes.where(node))
+            another = anew(waited, lambda message: _is_kept(kwargs.get("qos_profile")))
+            message = another() if not waiting.held else None
+            return True, waiting.wait_for(handler, _first(message, another), _nodes.where(node))
         except _Nothing:
             return False, None
 
 
 class _Nothing(Exception):  # noqa: N818  (no error: there is no message)
     """No message came in time."""
+
+
+def _is_kept(qos_profile: Any) -> bool:
+    """Whether what is received may be what the publisher keeps for late subscribers."""
+    durability = getattr(qos_profile, "durability", None)
+    return getattr(durability, "name", None) == "TRANSIENT_LOCAL"
 
 
 def _first(message: Any, otherwise: Callable[[], Any]) -> Callable[[], Any]:
