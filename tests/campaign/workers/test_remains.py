@@ -13,7 +13,7 @@ import pytest
 
 from mutabot.border.processes import VARIABLE
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.remains import end_left_over
+from mutabot.campaign.workers.remains import end_abandoned, end_left_over
 from mutabot.model import Verdict
 from tests.campaign.project import Quiet, outcomes, request_for, write_project
 
@@ -77,6 +77,33 @@ def test_only_what_carries_the_mark_is_ended(tmp_path: Path) -> None:
     finally:
         there.kill()
         there.wait()
+
+
+def test_what_a_killed_controller_has_left_ends_with_the_next_campaign(tmp_path: Path) -> None:
+    def workers_of(controller: subprocess.Popen[bytes], name: str) -> Path:
+        folder = tmp_path / name
+        folder.mkdir()
+        began = Path(f"/proc/{controller.pid}/stat").read_text("ascii").rpartition(")")[2].split()[19]
+        (folder / "controller").write_text(f"{controller.pid} {began}", "ascii")
+        return folder
+
+    def node(folder: Path) -> subprocess.Popen[bytes]:
+        mark = str(folder / "home" / "processes")
+        return subprocess.Popen(["sleep", "600"], env={**os.environ, VARIABLE: mark}, start_new_session=True)
+
+    killed, alive = subprocess.Popen(["sleep", "600"]), subprocess.Popen(["sleep", "600"])
+    left, needed = node(workers_of(killed, "work-a")), node(workers_of(alive, "work-b"))
+    try:
+        killed.kill()
+        killed.wait()
+        assert end_abandoned(tmp_path) == 1
+        assert left.wait(10) == -signal.SIGKILL
+        assert needed.poll() is None
+        assert end_abandoned(tmp_path) == 0
+    finally:
+        for process in (alive, needed):
+            process.kill()
+            process.wait()
 
 
 def test_looking_takes_next_to_nothing(tmp_path: Path) -> None:

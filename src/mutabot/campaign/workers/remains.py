@@ -25,6 +25,8 @@ _KERNEL = 0x00200000
 #: milliseconds that killed processes may take to be gone
 _PATIENCE = 5000
 _PROC = Path("/proc")
+#: in the folder of workers: who their controller is, and when it began
+_OWNER = "controller"
 
 
 def end_left_over(folder: Path) -> int:
@@ -43,6 +45,40 @@ def end_left_over(folder: Path) -> int:
                 break
             time.sleep(_PAUSE)
     return ended
+
+
+def claim(folder: Path) -> None:
+    """Say that the folder of workers belongs to this process, as long as that lives."""
+    (folder / _OWNER).write_text(f"{os.getpid()} {_began(os.getpid())}", encoding="ascii")
+
+
+def end_abandoned(home: Path) -> int:
+    """End what is left below workers whose controller was killed; returns how many processes there were.
+
+    Args:
+        home: the folder in which the folders of workers are made.
+    """
+    ended = 0
+    for owner in home.glob(f"*/{_OWNER}"):
+        try:
+            pid, began = owner.read_text("ascii").split()
+        except (OSError, ValueError):  # another campaign is about to write it, or to remove it
+            continue
+        if _began(int(pid)) == began:
+            continue
+        marks = f"{VARIABLE}={owner.parent}/".encode()
+        for process in _processes():
+            entries = [entry for entry in _environment(process) if entry.startswith(marks)]
+            ended += sum(_end(process, entry) for entry in entries)
+        owner.unlink(missing_ok=True)
+    return ended
+
+
+def _began(pid: int) -> str:
+    """When a process began, in the kernel's words; empty if it is gone."""
+    with suppress(OSError):
+        return (_PROC / str(pid) / "stat").read_text("ascii", "replace").rpartition(")")[2].split()[19]
+    return ""
 
 
 def _processes() -> list[int]:

@@ -25,7 +25,7 @@ from mutabot.errors import JournalError
 from .forkserver import Copy, ForkServer
 from .interruption import interruptible
 from .processes import Home, LineReader, Spawned, refuse_full_disk, usual_environment
-from .remains import end_left_over
+from .remains import claim, end_abandoned, end_left_over
 from .task import Result, Task
 from .token_pool import TokenPool
 from .warm import WarmServer
@@ -71,7 +71,9 @@ class Workers:
             ignore = home / ".gitignore"
             if not ignore.exists():
                 ignore.write_text("*\n", encoding="utf-8")
+            end_abandoned(home)
             self._folder = tempfile.TemporaryDirectory(prefix="work-", dir=home)
+            claim(Path(self._folder.name))
         except OSError as error:
             raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
 
