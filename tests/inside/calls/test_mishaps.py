@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from mutabot.model.named import Form
+from mutabot.model.named import Form, Refused
 from mutabot.operators.middleware._examples import (
     ADVERTISE,
     CALL,
@@ -192,7 +193,7 @@ def check(event):
 
 
 SET_UP = """
-from mutabot.model.named import Form
+from mutabot.model.named import Form, Refused
 
 def run(client):
     client.set_up(Form.ADVERTISE, name="target", depth=10, reliability="reliable", deadline=0.0, latch=False)
@@ -260,3 +261,35 @@ def test_the_header_of_a_copy_is_wrong(
     (_, _, message) = client.log[0]
     stamp = message.header.stamp
     assert (message.header.frame_id, stamp.sec, pytest.approx(stamp.nanosec, abs=2)) == expected
+
+
+TOLD = f"""{POINT}
+runs = []
+
+def first(client):
+    client.publish("/arm/target", Point(x=1.0))
+    client.tell("/arm/status", Point(status=4))
+
+def second(client):
+    client.publish("/arm/target", Point(x=2.0))
+    client.tell("/arm/status", Point(status=6))
+
+def run(client):
+    runs.append(client)
+    for step in (first, second) if len(runs) > 1 else (second, first):  # the site that is found last is mutated
+        step(client)
+"""
+
+
+@pytest.mark.parametrize(
+    ("operator", "quantity", "said"),
+    [("repeat", None, "/arm/status: status 6"), ("reverse", "x", None), ("skip", None, None)],
+)
+def test_a_refusal_belongs_to_the_command_that_is_due(
+    tmp_path: Path, operator: str, quantity: str | None, said: str | None
+) -> None:
+    refusing = replace(PUBLISH, refused=(Refused(".status", (6,), "/arm/status"),))
+    stage = ClientStage(tmp_path, (refusing,))
+    _, _, activation = stage.mutated(TOLD, operator, quantity=quantity)
+    assert activation.evidence.acted == 1
+    assert activation.evidence.said == said

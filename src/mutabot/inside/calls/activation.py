@@ -25,7 +25,7 @@ from mutabot.operators.passage import Carried, Passage, passed
 from . import mishaps
 from .door import Door, here
 from .keeping import kept_call, kept_reply
-from .refusing import answered, heard, refused_of
+from .refusing import answered, heard, is_told_on, refused_of
 
 
 @dataclass(slots=True)
@@ -51,6 +51,10 @@ class Activation:
     evidence: Evidence = field(default_factory=Evidence)
     rule: Operator = field(init=False)
     watched: tuple[Refused, ...] = ()
+    _told_by: tuple[Refused, ...] = ()
+    _commands: int = 0
+    _told: int = 0
+    _is_passed: bool = False
     _middleware: Middleware | None = None
     _idle: Idle | None = None
     _test: tuple[int, str] = (0, "")
@@ -92,6 +96,7 @@ class Activation:
         self.evidence.hits += 1
         passage = Passage(kept_call(call) if self.rule.remembers else call)
         performer = _Performer(self, door, passage, is_async)
+        self._commands, self._told, self._is_passed = 0, 0, False
         try:
             if self._idle is not None:
                 passage.call = replace(passage.call, idle=self._answer(self._idle, door, call))
@@ -112,13 +117,29 @@ class Activation:
 
     def heard(self, name: str, message: Any) -> None:
         """A message came by, which may say that the robot refuses what it was told."""
+        if not is_told_on(self._told_by, name):
+            return
+        self._told += 1
         if self.watched:
             self.refused_as(heard(self.watched, name, message))
+            if self._is_passed and self._told >= self._commands:
+                self.watched = ()
 
     def passed_by(self, call: Call) -> None:
-        """Another call is made: if it is of the same command, what is refused from now on is that one."""
+        """Another call is made: if it is of the same command, what is refused from now on is that one.
+
+        Unless the mutated call was several commands, and the robot has told of some: it will tell of the
+        others first.
+        """
         if self.watched and call.operation.target == self.operation.target:
-            self.watched = ()
+            self._is_passed = True
+            if not 0 < self._told < self._commands:
+                self.watched = ()
+
+    def count(self, call: Call) -> None:
+        """The mutated call gives the robot one command more."""
+        self._told_by = refused_of(call)
+        self._commands += 1
 
     def refused_as(self, said: str | None) -> None:
         """How the robot refused a mutated call by data, in words; None if it did not."""
@@ -180,6 +201,7 @@ class _Performer:
             self.activation.evidence.failure = text
             raise OperatorError(text, operator=name)
         mutated = self.passage.changed_command
+        self.activation.count(call)
         if mutated:
             self.activation.on_call(True)
             self.activation.watched = refused_of(call)

@@ -44,6 +44,11 @@ def heard(refused: Iterable[Refused], name: str, message: Any) -> str | None:
     return None
 
 
+def is_told_on(refused: Iterable[Refused], name: str) -> bool:
+    """Whether messages under this name say how commands end."""
+    return any(one.topic is not None and fnmatchcase(name, one.topic) for one in refused)
+
+
 def _is_rejected(call: Call, result: Any) -> bool:
     named = call.operation.named
     return named is not None and named.form is Form.GOAL and getattr(result, "accepted", None) is False
