@@ -13,6 +13,7 @@ import os
 import socket
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -52,6 +53,7 @@ class Starter:
     _owner: int = field(default_factory=os.getpid)
     _lock: Any = field(default_factory=threading.Lock)
     _is_lost: bool = False
+    _adopted: set[int] = field(default_factory=set)
     _spaces: dict[str, str] = field(default_factory=lambda: dict(namespaces()))
 
     def fork_exec(self, plain: ForkExec, *arguments: Any) -> int:
@@ -72,8 +74,12 @@ class Starter:
             message = marshal.dumps(replace(start, may_start=self.may_start).data())
             if len(message) > _MOST_BYTES:
                 return None
-            with self._lock, _opened(changed) as spaces, _taking_orphans():
-                return self._ask(message, [*descriptors, *spaces])
+            with self._lock, _opened(changed) as spaces:
+                before = _children()
+                with _taking_orphans():
+                    started = self._ask(message, [*descriptors, *spaces])
+                self._adopted |= _children() - before - ({started} if started is not None else set())
+                return started
         finally:
             os.close(descriptors[0])
 
@@ -98,6 +104,22 @@ class Starter:
             with contextlib.suppress(ChildProcessError):
                 os.waitpid(int(number), 0)
         return None
+
+    def bury(self, seconds: float) -> None:
+        """Take note of the ends of processes that were orphaned while one was started, and so came to us.
+
+        Only for a process that starts nothing but by this; waits for so long at most.
+        """
+        until = time.monotonic() + seconds
+        while self._adopted:
+            for pid in list(self._adopted):
+                with contextlib.suppress(ChildProcessError):
+                    if os.waitpid(pid, os.WNOHANG)[0] == 0:
+                        continue
+                self._adopted.discard(pid)
+            if time.monotonic() > until:
+                return
+            time.sleep(0.005 if self._adopted else 0.0)
 
     def install(self) -> None:
         """Take over what ``subprocess`` and the spawn method of ``multiprocessing`` start here."""
@@ -152,6 +174,15 @@ def _opened(kinds: tuple[str, ...]) -> Iterator[list[int]]:
     finally:
         for descriptor in descriptors:
             os.close(descriptor)
+
+
+def _children() -> set[int]:
+    """The processes whose parent this one is."""
+    found: set[int] = set()
+    for task in os.listdir("/proc/self/task"):  # pathlib is slow to import
+        with contextlib.suppress(OSError), open(f"/proc/self/task/{task}/children", "rb") as file:
+            found.update(map(int, file.read().split()))
+    return found
 
 
 @contextmanager

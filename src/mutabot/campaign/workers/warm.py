@@ -98,3 +98,4 @@ class WarmServer:
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
+        self.starter.bury(_PATIENCE / 10)
