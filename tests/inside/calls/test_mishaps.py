@@ -276,7 +276,8 @@ def second(client):
 
 def run(client):
     runs.append(client)
-    for step in (first, second) if len(runs) > 1 else (second, first):  # the site that is found last is mutated
+    # the site that is found last is mutated
+    for step in (first, second) if len(runs) > 1 else (second, first):
         step(client)
 """
 
