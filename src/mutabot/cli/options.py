@@ -70,7 +70,7 @@ Rounds = Annotated[
     int | None, typer.Option("--rounds", metavar="N", min=1, help="Repetitions, each with its own seeds.")
 ]
 Seed = Annotated[int | None, typer.Option("--seed", metavar="N", min=0, help="The campaign's seed.")]
-Jobs = Annotated[int | None, typer.Option("-j", "--jobs", metavar="N", min=1, help="Processes at a time.")]
+Jobs = Annotated[int | None, typer.Option("-j", "--jobs", metavar="N", min=1, help="Runs at work at a time.")]
 Engine = Annotated[
     str,
     typer.Option(

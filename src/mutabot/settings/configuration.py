@@ -117,8 +117,9 @@ class Settings(BaseModel):
         seed = 42
     """
     jobs: Annotated[int, Field(ge=1)] | None = None
-    """Processes at a time. Without it, one per core that
-    may be used. `--jobs` goes before it.
+    """Runs at a time. Without it, one per core that
+    may be used. A run that only waits, as for a message that never comes, lends its place to another one;
+    with 1, there is never more than one. `--jobs` goes before it.
 
         jobs = 1
     """

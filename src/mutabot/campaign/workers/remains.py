@@ -31,7 +31,7 @@ _OWNER = "controller"
 
 def end_left_over(folder: Path) -> int:
     """End every process that was started below the worker of this folder; returns how many there were."""
-    entry = os.fsencode(f"{VARIABLE}={folder}")
+    entry = _mark(folder)
     ended = 0
     for _ in range(_LOOKS):
         environments = {pid: _environment(pid) for pid in _processes()}
@@ -45,6 +45,12 @@ def end_left_over(folder: Path) -> int:
                 break
             time.sleep(_PAUSE)
     return ended
+
+
+def started_below(folder: Path) -> list[int]:
+    """The processes that were started below the worker of this folder."""
+    entry = _mark(folder)
+    return [pid for pid in _processes() if entry in _environment(pid)]
 
 
 def claim(folder: Path) -> None:
@@ -72,6 +78,11 @@ def end_abandoned(home: Path) -> int:
             ended += sum(_end(process, entry) for entry in entries)
         owner.unlink(missing_ok=True)
     return ended
+
+
+def _mark(folder: Path) -> bytes:
+    """What the environment of a process says that was started below the worker of this folder."""
+    return os.fsencode(f"{VARIABLE}={folder}")
 
 
 def _began(pid: int) -> str:

@@ -28,16 +28,17 @@ from .processes import Home, LineReader, Spawned, refuse_full_disk, usual_enviro
 from .remains import claim, end_abandoned, end_left_over
 from .task import Result, Task
 from .token_pool import TokenPool
+from .waiting import PERIOD, Waiting
 from .warm import WarmServer
 
 
 class Workers:
-    """Runs tasks in up to ``jobs`` worker processes at a time.
+    """Runs tasks in up to ``jobs`` worker processes at a time, and more while some of them only wait.
 
     Args:
         root: the project's root; workers start there.
         arguments: pytest arguments of the project.
-        jobs: how many run side by side.
+        jobs: how many are at work side by side.
         on_unshared: told why tasks that might begin as copies of a fork server, or warm, do not, once that is
             known.
 
@@ -59,6 +60,7 @@ class Workers:
         self._jobs = max(1, jobs)
         self._selector = selectors.DefaultSelector()
         self._workers: list[_Worker] = []
+        self._waiting = Waiting(self._jobs)
         self._servers: list[ForkServer] = []
         self._on_unshared = on_unshared
         self._may_share = True
@@ -111,17 +113,19 @@ class Workers:
                 next_task = next(waiting, None)
             if not self._workers:
                 return
-            yield from self._wait(for_token=next_task is not None and next_task.is_trunk)
+            yield from self._wait(next_task)
 
     def apart(self) -> Workers:
         """One more worker process, which shares nothing with these."""
         return Workers(self._root, self._arguments, jobs=1)
 
     def _has_place(self, task: Task) -> bool:
-        if len(self._workers) >= self._jobs or (self._workers and self._is_alone(task)):
+        if self._workers and self._is_alone(task):
             return False
         if not task.is_trunk:
-            return True
+            return self._waiting.has_place(self._workers)
+        if len(self._workers) >= self._jobs:
+            return False
         if not self._workers:
             self.pool.refill()  # nobody is left who could hold one
         return self.pool.take()
@@ -197,10 +201,14 @@ class Workers:
         self._servers.remove(server)
         server.close()
 
-    def _wait(self, *, for_token: bool) -> Iterator[Result | tuple[Task, Line]]:
+    def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Line]]:
+        """Until something happens, or might: ``next_task`` has no place yet."""
         timeout = max(0.0, min(worker.until for worker in self._workers) - time.monotonic())
         if any(worker.has_ended for worker in self._workers):
             timeout = 0.0  # a fork server may have told so while it was asked for something else
+        if next_task is not None:
+            timeout = min(timeout, PERIOD)
+        for_token = next_task is not None and next_task.is_trunk
         if for_token and len(self._workers) < self._jobs:
             self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
         with interruptible():
@@ -243,6 +251,16 @@ class _Worker:
         self._home, self._process = home, process
         self._started = time.monotonic()
         self.until = self._started + task.startup
+
+    @property
+    def pid(self) -> int:
+        """The number of its process."""
+        return self._process.pid
+
+    @property
+    def processes(self) -> Path:
+        """The folder that processes below it know it by."""
+        return self._home.processes
 
     @property
     def has_ended(self) -> bool:

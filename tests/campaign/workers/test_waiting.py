@@ -1,0 +1,99 @@
+"""A mutant that only waits lends its place: others run meanwhile, unless there is but one place."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from mutabot.border.processes import VARIABLE
+from mutabot.campaign.run import run_campaign
+from mutabot.campaign.workers.waiting import PERIOD, Waiting
+from mutabot.model import Verdict
+from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+
+#: each of its moves is waited for; a mutated one never comes, and nothing is done meanwhile
+MISSION = """
+    import time
+
+    def run(arm):
+        arm.move_by(0.1)
+        wait_for(arm, 0.1)
+        arm.move_by(0.2)
+        wait_for(arm, 0.3)
+        arm.move_by(0.3)
+        wait_for(arm, 0.6)
+
+    def wait_for(arm, x):
+        while abs(arm.x - x) > 1e-9:
+            time.sleep(0.05)
+    """
+#: it starts a process, so that none of its mutants is a branch
+TESTS = """
+    import subprocess, sys
+    from mission import run
+    from robot import Arm
+
+    def test_run():
+        subprocess.run([sys.executable, "-c", "pass"], check=True)
+        run(Arm())
+    """
+SLEEP = "import time; time.sleep(60)"
+
+
+@dataclass
+class Process:
+    """A worker to look at."""
+
+    pid: int
+    processes: Path
+
+
+def test_mutants_that_only_wait_leave_their_places_to_others(tmp_path: Path) -> None:
+    limits = "timeout_seconds = 6\ntimeout_factor = 1000.0\n"
+    project = write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + limits)
+    request = request_for(project, jobs=2, rounds=1, only=("reverse", "skip"))
+    began = time.monotonic()
+    found = outcomes(run_campaign(request, Quiet()))
+    taken = time.monotonic() - began
+    assert [one.verdict for one in found] == [Verdict.TIMEOUT] * 6
+    assert sum(one.wall for one in found) / taken > request.jobs  # so many at a time, on average
+
+
+def test_where_one_runs_at_a_time_it_is_one(tmp_path: Path) -> None:
+    waiting = Waiting(1)
+    assert waiting.has_place([])
+    end = time.monotonic() + 5 * PERIOD
+    while time.monotonic() < end:
+        assert not waiting.has_place([Process(os.getpid(), tmp_path)])
+        time.sleep(PERIOD / 2)
+
+
+@pytest.mark.parametrize(("code", "waits"), [(SLEEP, True), ("while True: pass", False)])
+@pytest.mark.parametrize("is_below", [False, True])
+def test_what_works_below_a_worker_counts(tmp_path: Path, code: str, waits: bool, is_below: bool) -> None:
+    worker = subprocess.Popen([sys.executable, "-c", SLEEP])
+    mark = {VARIABLE: str(tmp_path)} if is_below else {}
+    other = subprocess.Popen([sys.executable, "-c", code], env=mark, start_new_session=True)
+    try:
+        waiting = Waiting(2)
+        both = [
+            Process(worker.pid if is_below else other.pid, tmp_path),
+            Process(other.pid, tmp_path / "none"),
+        ]
+        end = time.monotonic() + 5 * PERIOD
+        has_place = False
+        while not has_place and time.monotonic() < end:
+            has_place = waiting.has_place(both)
+            time.sleep(0.1)
+    finally:
+        worker.kill()
+        other.kill()
+        worker.wait()
+        other.wait()
+    assert has_place is waits
