@@ -14,7 +14,7 @@ from std_msgs.msg import Int32
 from std_srvs.srv import Trigger
 
 #: wall-clock seconds
-PATIENCE = 60.0
+PATIENCE = 10.0
 
 _node: Node | None = None
 _clients: dict[str, Client] = {}

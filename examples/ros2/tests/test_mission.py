@@ -67,7 +67,7 @@ def box_is_on_conveyor_in_z(threshold: float) -> None:
 @when("the program has finished")
 def program_has_finished(cell: Node) -> None:
     mission = start("mission.py", "--ros-args", "-p", "use_sim_time:=true")
-    assert mission.wait(120) == 0, "the program failed"
+    assert mission.wait(60) == 0, "the program failed"
 
 
 @then(parsers.parse("the box is at its target within {threshold:f} cm in x"))
