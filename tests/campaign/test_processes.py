@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+import signal
+import threading
 from pathlib import Path
 
 import pytest
@@ -69,32 +73,74 @@ def test_a_crash_of_the_process_is_noticed_by_the_test_that_looks_at_it(tmp_path
     assert (found.verdict, found.acted) == (Verdict.KILLED, 1)
 
 
+STAYS = """
+    import time
+
+    from robot import Arm
+
+    arm = Arm()
+    arm.move_by(0.5)
+    print(arm.x, flush=True)
+    if arm.x < 0:
+        time.sleep(60)
+"""
+
+
 def test_a_process_that_somebody_else_kills_says_nothing_about_its_mutant(tmp_path: Path) -> None:
     tests = """
+        import os
+        import subprocess
+        import sys
+        from pathlib import Path
+
+        def test_mission():
+            mission = subprocess.Popen([sys.executable, "mission.py"], stdout=subprocess.PIPE, text=True)
+            for line in mission.stdout:
+                if float(line) < 0:
+                    Path(os.environ["VICTIM"]).write_text(str(mission.pid))
+            assert mission.wait() == 0
+    """
+    victim = Path(f"/dev/shm/{tmp_path.name}-{id(tmp_path)}")  # a folder that no run keeps to itself
+    is_over = threading.Event()
+
+    def kill() -> None:
+        while not is_over.wait(0.05):
+            if victim.exists() and (pid := victim.read_text()):
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(int(pid), signal.SIGKILL)
+                victim.unlink()
+
+    killer = threading.Thread(target=kill)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("VICTIM", str(victim))
+        killer.start()
+        try:
+            found = ends_of(tmp_path, STAYS, tests)["<module>:arm.move_by#1:dx:reverse"]
+        finally:
+            is_over.set()
+            killer.join()
+            victim.unlink(missing_ok=True)
+    assert found.verdict is Verdict.ERROR
+    assert found.message == "the process mission.py was killed from outside, by signal 9"
+
+
+@pytest.mark.parametrize("command", ['["sh", "-c", f"kill -9 {mission.pid}"]', '["kill", str(mission.pid)]'])
+def test_a_process_that_the_test_ends_by_a_program_is_judged_by_the_test(
+    tmp_path: Path, command: str
+) -> None:
+    tests = f"""
         import subprocess
         import sys
 
         def test_mission():
             mission = subprocess.Popen([sys.executable, "mission.py"], stdout=subprocess.PIPE, text=True)
             for line in mission.stdout:
-                if float(line) < 0:  # a shell: nobody of the campaign's
-                    subprocess.run(["sh", "-c", f"kill -9 {mission.pid}"], check=True)
+                if float(line) < 0:
+                    subprocess.run({command}, check=True)
             assert mission.wait() == 0
     """
-    mission = """
-        import time
-
-        from robot import Arm
-
-        arm = Arm()
-        arm.move_by(0.5)
-        print(arm.x, flush=True)
-        if arm.x < 0:
-            time.sleep(60)
-    """
-    found = ends_of(tmp_path, mission, tests)["<module>:arm.move_by#1:dx:reverse"]
-    assert found.verdict is Verdict.ERROR
-    assert found.message == "the process mission.py was killed from outside, by signal 9"
+    found = ends_of(tmp_path, STAYS, tests)["<module>:arm.move_by#1:dx:reverse"]
+    assert (found.verdict, found.acted) == (Verdict.KILLED, 1)
 
 
 def test_a_process_that_fails_before_the_mutant_acts_is_an_error(tmp_path: Path) -> None:

@@ -149,7 +149,7 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class Signalled:
-    """The process sends a signal to another, or to a group (negative)."""
+    """The process sends a signal to another, or to a group (negative); -1 and no number: to somebody."""
 
     pid: int
     number: int

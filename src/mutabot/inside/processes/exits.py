@@ -7,13 +7,16 @@ import subprocess
 import sys
 from typing import Any
 
+from .killers import ANYBODY, starts_a_killer
+
 
 class Exits:
     """What the test process knows of the ends of its children.
 
     Attributes:
         codes: exit codes by process, negative for a signal.
-        signalled: processes, and groups (negative), that the tests sent a signal to.
+        signalled: processes, and groups (negative), that the tests sent a signal to; ``ANYBODY`` if they
+            started what does so.
     """
 
     def __init__(self) -> None:
@@ -57,3 +60,5 @@ class Exits:
             self.signalled.add(arguments[0])
         elif event == "os.killpg":
             self.signalled.add(-arguments[0])
+        elif starts_a_killer(event, arguments):
+            self.signalled.add(ANYBODY)
