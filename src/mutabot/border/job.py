@@ -6,12 +6,17 @@ JSON, each one of the report classes below.
 
 from __future__ import annotations
 
+import json
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from mutabot.model.alternative import Choice, Instrumentation
 from mutabot.model.mutant import Mutant
 from mutabot.model.operation import Vocabulary
+
+from .codec import from_data, to_data
 
 #: environment variable that names the job file; the plugin sleeps without it
 JOB_VARIABLE = "MUTABOT_JOB"
@@ -103,3 +108,19 @@ class Job:
     no_oracle: bool = False
     private_files: bool = True
     oracle_nodes: tuple[str, ...] = ()
+
+
+def job_file(home: str | os.PathLike[str]) -> Path:
+    """Where the job of the worker with this folder is."""
+    return Path(home, "job.json")
+
+
+def write_job(home: str | os.PathLike[str], job: Job) -> None:
+    """Write a worker's job into its folder."""
+    job_file(home).write_text(json.dumps(to_data(job)), encoding="utf-8")
+
+
+def read_job(home: str | os.PathLike[str]) -> Job:
+    """The job of the worker with this folder."""
+    job: Job = from_data(Job, json.loads(job_file(home).read_text(encoding="utf-8")))
+    return job

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from mutabot.border.signals import OWN_FAULT
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.observation import Observation, compare, farthest
 from mutabot.model import By, Kill, Mutant, Outcome, Verdict
 from mutabot.model.outcome import added
-
-#: signals by which a program dies of its own fault; others come from outside
-_OWN_FAULT = {signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL}
 
 Ruling = tuple[Verdict, TestEnd | None, str | None]
 
@@ -169,7 +166,7 @@ def _kills(run: Run, message: str | None) -> tuple[Kill, ...]:
 def _ruling_on_death(death: Death, acted: bool) -> Ruling:
     if death.overdue and (acted or death.acted):
         return Verdict.TIMEOUT, None, death.text
-    if death.in_mutated_call and death.signal in _OWN_FAULT:
+    if death.in_mutated_call and death.signal in OWN_FAULT:
         return Verdict.KILLED, None, f"the mutated call crashed: {death.text}"
     return Verdict.ERROR, None, death.text
 

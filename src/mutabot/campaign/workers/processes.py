@@ -18,8 +18,7 @@ from shutil import disk_usage
 from types import TracebackType
 from typing import Any
 
-from mutabot.border.codec import to_data
-from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE, Job
+from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE, Job, job_file, write_job
 from mutabot.border.lines import Line, line_from_data
 from mutabot.border.processes import FOLDER
 from mutabot.border.starter import Starter
@@ -39,13 +38,13 @@ class Home:
     def make(cls, parent: Path, job: Job) -> Home:
         """A new folder in ``parent``, with the job in it."""
         home = cls(Path(tempfile.mkdtemp(dir=parent)))
-        home.job_file.write_text(json.dumps(to_data(job)), encoding="utf-8")
+        write_job(home.folder, job)
         return home
 
     @property
     def job_file(self) -> Path:
         """Where the job is."""
-        return self.folder / "job.json"
+        return job_file(self.folder)
 
     @property
     def log_file(self) -> Path:

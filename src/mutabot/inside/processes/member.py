@@ -16,7 +16,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from mutabot.border.job import Job
+from mutabot.border.job import Job, read_job
 from mutabot.border.lines import (
     Acted,
     Line,
@@ -55,7 +55,7 @@ from mutabot.model.values.quantity import Value
 
 from .carried import carry
 from .diary import Diary
-from .job_of import job_of
+from .killers import ANYBODY, starts_a_killer
 from .now import Now
 
 #: the member that this process is; None in all others
@@ -66,7 +66,7 @@ def join(folder: str) -> None:
     """Be a member of the campaign whose processes have this folder."""
     global _member  # noqa: PLW0603  # one process, one member
     if _member is None:
-        _member = Member(folder, job_of(folder))
+        _member = Member(folder, read_job(os.path.dirname(folder)))
         _member.begin()
 
 
@@ -103,7 +103,6 @@ class Member:
         self._parts: frozenset[str] = frozenset()
         self._places: set[int] = set()
         self._found: set[str] = set()
-        self._modules: set[str] = set()
         self._exceeded = False
         self._is_over = False
 
@@ -284,6 +283,8 @@ class Member:
             self.diary.write(Signalled(-pid if event == "os.killpg" else pid, int(number)))
         elif event == "os.exec" and _member is self:
             self.end()
+        if _member is self and starts_a_killer(event, arguments):
+            self.diary.write(Signalled(ANYBODY, 0))
 
     def _raised(self, error: BaseException, *, in_thread: bool) -> None:
         if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:

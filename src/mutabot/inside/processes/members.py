@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
@@ -30,21 +29,20 @@ from mutabot.border.processes import (
     Signalled,
     Used,
 )
+from mutabot.border.signals import OWN_FAULT
 from mutabot.border.test_end import TestEnd
 from mutabot.inside.calls.trace import TRACE_LIMIT
 from mutabot.inside.session import Session
 from mutabot.model.outcome import added
 
 from .host import Host
+from .killers import ANYBODY
 from .unseen import Unseen
-
-#: signals by which a program dies of its own fault
-_OWN_FAULT = {signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL}
 
 
 @dataclass(slots=True)
-class Member:
-    """A process below the tests, and what it told during the running test.
+class Account:
+    """A process below the tests, and what it told.
 
     Attributes:
         began: what it is.
@@ -53,7 +51,7 @@ class Member:
         ended: whether it ended in an orderly way.
         raised: what ended it otherwise.
         is_in_call: whether a mutated call has begun in it and not ended.
-        fresh: what it told that belongs to no test that is over.
+        called, did, used, exceeded: what it told during the running test.
     """
 
     began: Began
@@ -103,8 +101,8 @@ class Members:
 
     def __init__(self, host: Host, session: Session) -> None:
         self._host, self._session = host, session
-        self._members: dict[str, Member] = {}
-        self._present: list[Member] = []
+        self._members: dict[str, Account] = {}
+        self._present: list[Account] = []
         self._places: set[int] = set()
         self._texts: list[TextsSeen] = []
         self._signalled: set[int] = set()
@@ -143,7 +141,7 @@ class Members:
         self._take_all()
         return self._texts
 
-    def _here(self) -> Iterable[Member]:
+    def _here(self) -> Iterable[Account]:
         """Those that were there during the test."""
         present = {id(one) for one in self._present}
         number = self._host.number
@@ -161,7 +159,7 @@ class Members:
             if entry.unable is not None:
                 self._say_unable(entry)
             else:
-                self._members[name] = Member(entry)
+                self._members[name] = Account(entry)
             return
         member = self._members.get(name)
         if member is None:
@@ -197,7 +195,7 @@ class Members:
             case Ended():
                 member.ended = True
 
-    def _with_calls(self, end: TestEnd, here: list[Member]) -> TestEnd:
+    def _with_calls(self, end: TestEnd, here: list[Account]) -> TestEnd:
         """The calls of each process in their order, one process after the other."""
         called = [(one.sites[call.site], call) for one in here for call in one.called]
         trace = [*end.trace, *((site, call.written, call.read, call.answer) for site, call in called)]
@@ -245,7 +243,7 @@ class Members:
         is_whole = names <= parts
         return replace(end, acted=max(end.acted, 1) if is_whole else 0, partly=bool(parts) and not is_whole)
 
-    def _with_ends(self, end: TestEnd, here: list[Member]) -> TestEnd:
+    def _with_ends(self, end: TestEnd, here: list[Account]) -> TestEnd:
         """What became of the processes, as far as it decides about the test."""
         raised = [one.raised for one in here if one.raised is not None]
         failure = end.failure or next((one.failure for one in raised if one.failure is not None), None)
@@ -266,11 +264,11 @@ class Members:
             end = replace(end, failure=self._lost(end, here))
         return end
 
-    def _lost(self, end: TestEnd, here: list[Member]) -> str | None:
+    def _lost(self, end: TestEnd, here: list[Account]) -> str | None:
         """Why a failed test says nothing about the mutant, or None."""
         for one in here:
             code = self._host.exits.codes.get(one.began.pid)
-            is_killed = code is not None and code < 0 and -code not in _OWN_FAULT
+            is_killed = code is not None and code < 0 and -code not in OWN_FAULT
             if code is not None and is_killed and not one.ended and not self._was_signalled(one):
                 return f"the process {one.name} was killed from outside, by signal {-code}"
         if end.acted or self._acted or end.refused is not None:
@@ -281,11 +279,11 @@ class Members:
                 return f"the process {one.name} ended before the mutant changed anything: {why}"
         return None
 
-    def _was_signalled(self, member: Member) -> bool:
+    def _was_signalled(self, member: Account) -> bool:
         """Whether the tests, or a process below them, sent it a signal."""
         sent = self._signalled | self._host.exits.signalled
         pid, group = member.began.pid, member.began.group
-        return not sent.isdisjoint({pid, -pid, -group, -1})
+        return not sent.isdisjoint({pid, -pid, -group, ANYBODY})
 
     def _say_unable(self, began: Began) -> None:
         name = " ".join(began.command[:3])

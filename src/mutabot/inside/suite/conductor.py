@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import traceback
@@ -13,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from mutabot.border import stack
-from mutabot.border.codec import from_data
-from mutabot.border.job import Branching, Job
+from mutabot.border.job import Branching, Job, read_job
 from mutabot.border.lines import SessionEnd
 from mutabot.border.test_end import TestEnd
 from mutabot.inside import seeds
@@ -83,7 +81,7 @@ class Conductor:
         if nobody_listens(descriptor):  # the controller died before the kernel was asked
             os._exit(BRANCH_FAILED)
         home = os.path.dirname(job_file)
-        job = read_job(job_file)
+        job = read_job(home)
         say_where_on_signal(home)  # before anybody notes which files are open
         if job.memory is not None:
             limit_memory(job.memory)
@@ -237,7 +235,7 @@ class Conductor:
 
     def _take_on(self, session: pytest.Session, commission: Commission) -> None:
         """Become the session of a job."""
-        job = read_job(os.path.join(commission.home, "job.json"))
+        job = read_job(commission.home)
         self._server = None
         self._make_private(job, commission.home)
         pipe = pipe_of(job, commission.home, commission.descriptor)
@@ -275,13 +273,6 @@ class Conductor:
         members = self.running.members
         self.session.finish(members.texts_seen() if members is not None else ())
         self.session.pipe.send(SessionEnd(status, self._collected, tuple(self._errors), self._not_private))
-
-
-def read_job(file_name: str) -> Job:
-    """The job in a file."""
-    with open(file_name, encoding="utf-8") as file:
-        job: Job = from_data(Job, json.load(file))
-    return job
 
 
 def pipe_of(job: Job, home: str, descriptor: int) -> Pipe:
