@@ -24,13 +24,13 @@ from mutabot.model.named import Form
 
 from . import _ros1_node as node
 from ._patches import Patches, code_of
-from ._ros1_types import Seen, look_at
+from ._ros1_types import Ros1Types
 
 MODULE = "rospy"
 
 #: what rospy itself publishes and subscribes to
 _OWN = frozenset({"/rosout", "/clock", "/statistics"})
-_seen = Seen()
+_types = Ros1Types()
 
 
 def hook(messages: Messages) -> Callable[[], None]:
@@ -44,13 +44,13 @@ def hook(messages: Messages) -> Callable[[], None]:
     for module in (rospy.client, rospy):
         patches.put(module, "init_node", _note)
     node.clock.hook(patches, rospy)
-    patches.then(_seen.clear)
+    patches.then(_types.clear)
     return patches.undo
 
 
 def check(operation: Operation) -> Iterator[Finding]:
     """What of an operation does not fit the installed definition of its type, or the one the program uses."""
-    return look_at(operation, _seen)
+    return _types.look_at(operation)
 
 
 def _note(original: Any, *args: Any, **kwargs: Any) -> Any:
@@ -107,7 +107,7 @@ class _Topics:
         if name is None or name in _OWN:
             return None
         message = Form.PUBLISH if form is Form.ADVERTISE else Form.RECEIVE
-        _seen.note(message, name, given.get("data_class"))
+        _types.note(message, name, given.get("data_class"))
         return self._messages.find(form, name, node.name())
 
     def _publish(self, original: Any, publisher: Any, *args: Any, **kwargs: Any) -> Any:
@@ -145,7 +145,7 @@ class _Topics:
 
     def _wait(self, original: Any, topic: str, topic_type: Any, timeout: Any = None) -> Any:
         name = node.resolved(topic) or topic
-        _seen.note(Form.RECEIVE, name, topic_type)
+        _types.note(Form.RECEIVE, name, topic_type)
         handler = self._messages.find(Form.RECEIVE, name, node.name())
         if handler is None:
             return original(topic, topic_type, timeout)
@@ -174,7 +174,7 @@ class _Services:
         name = node.resolved(given.get("name"))
         handler = None
         if name is not None:
-            _seen.note(Form.CALL, name, given.get("service_class"))
+            _types.note(Form.CALL, name, given.get("service_class"))
             handler = self._messages.find(Form.CLIENT, name, node.name())
         if handler is None:
             original(proxy, *args, **kwargs)

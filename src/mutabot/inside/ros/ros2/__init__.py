@@ -20,7 +20,7 @@ from ._parameters import hook as hook_parameters
 from ._services import hook as hook_services
 from ._times import hook as hook_times
 from ._topics import hook as hook_topics
-from ._types import look_at, seen
+from ._types import TYPES
 
 MODULE = "rclpy"
 
@@ -32,10 +32,10 @@ def hook(messages: Messages) -> Callable[[], None]:
     patches = Patches()
     for put in _HOOKS:
         put(patches, messages)
-    patches.then(seen.clear)
+    patches.then(TYPES.clear)
     return patches.undo
 
 
 def check(operation: Operation) -> Iterator[Finding]:
     """What of an operation does not fit the installed definition of its type, or the one the program uses."""
-    return look_at(operation)
+    return TYPES.look_at(operation)

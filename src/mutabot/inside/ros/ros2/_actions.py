@@ -17,7 +17,7 @@ from . import _nodes
 from ._services import never
 from ._steps import Answer, future_of
 from ._topics import as_called
-from ._types import seen
+from ._types import TYPES
 
 _MODULE = "rclpy.action.client"
 #: what the goal's service is called; actions are renamed by it
@@ -66,7 +66,7 @@ class _Actions:
             resolved = node.resolve_service_name(action_name + _SERVICE).removesuffix(_SERVICE)
         except Exception:  # rclpy says what is wrong with it, in its own way
             return made(action_name)
-        seen.note(Form.GOAL, resolved, action_type)
+        TYPES.note(Form.GOAL, resolved, action_type)
         handler = self._messages.find(Form.CLIENT, resolved, _nodes.name_of(node))
         if handler is None:
             return made(action_name)

@@ -13,7 +13,7 @@ from mutabot.model.named import Form
 
 from . import _nodes
 from ._steps import Answer, Never, future_of, inner_of
-from ._types import seen
+from ._types import TYPES
 
 _SLICE = 0.1
 
@@ -46,7 +46,7 @@ class _Services:
             resolved = node.resolve_service_name(srv_name)
         except Exception:  # rclpy says what is wrong with it, in its own way
             return made(srv_name)
-        seen.note(Form.CALL, resolved, srv_type)
+        TYPES.note(Form.CALL, resolved, srv_type)
         handler = self._messages.find(Form.CLIENT, resolved, _nodes.name_of(node))
         if handler is None:
             return made(srv_name)

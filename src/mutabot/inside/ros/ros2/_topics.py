@@ -17,7 +17,7 @@ from mutabot.model.named import Form
 
 from . import _nodes
 from ._qualities import changed, qualities
-from ._types import seen
+from ._types import TYPES
 
 _WRAPPED = "_mutabot_wrapped"
 
@@ -92,7 +92,7 @@ class _Topics:
             name = node.resolve_topic_name(topic)
         except Exception:  # rclpy says what is wrong with it, in its own way
             return None
-        seen.note(use, name, kind)
+        TYPES.note(use, name, kind)
         return self._messages.find(form, name, _nodes.name_of(node))
 
     def publish(self, original: Any, publisher: Any, msg: Any) -> Any:
@@ -137,7 +137,7 @@ class _Topics:
 
     def wait(self, original: Any, msg_type: Any, node: Any, topic: Any, **kwargs: Any) -> Any:
         name = node.resolve_topic_name(topic)
-        seen.note(Form.RECEIVE, name, msg_type)
+        TYPES.note(Form.RECEIVE, name, msg_type)
         node_name = _nodes.name_of(node)
         handler = self._messages.find(Form.RECEIVE, name, node_name)
         limit = kwargs.pop("time_to_wait", -1)

@@ -1,0 +1,158 @@
+"""Types: whether those that a vocabulary names are installed, and have the fields that it describes."""
+
+from __future__ import annotations
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from fnmatch import fnmatchcase
+from importlib import import_module
+from types import ModuleType
+from typing import Any, ClassVar
+
+from mutabot.inside.targets.target import Finding
+from mutabot.model import Operation, Path
+from mutabot.model.named import WRITTEN, Form, Named
+
+#: the tables of the vocabulary in which the fields are described of what is written, and of what is read
+_TABLES: Mapping[Form, tuple[str, str]] = {
+    Form.PUBLISH: ("fields", ""),
+    Form.RECEIVE: ("", "fields"),
+    Form.CALL: ("request", "response"),
+    Form.GOAL: ("goal", ""),
+    Form.FEEDBACK: ("", "feedback"),
+    Form.RESULT: ("", "result"),
+    Form.TRANSFORM: ("", "fields"),
+}
+_KINDS = {"msg": "messages", "srv": "services", "action": "actions"}
+
+
+class Types(ABC):
+    """The types that programs give the names they use, and how a middleware keeps the definitions of types.
+
+    Attributes:
+        written, read: where the definition stands of what is written, and of what is read: the module of a
+            package, and the part of the type.
+        array: a type that is several of something, its group ``item``.
+        as_goal: uses of an action that are known by the type of its goal.
+    """
+
+    written: ClassVar[Mapping[Form, tuple[str, str]]]
+    read: ClassVar[Mapping[Form, tuple[str, str]]]
+    array: ClassVar[re.Pattern[str]]
+    as_goal: ClassVar[frozenset[Form]] = frozenset()
+
+    def __init__(self) -> None:
+        self._used: dict[tuple[Form, str], str] = {}
+
+    def clear(self) -> None:
+        """Forget all that programs use."""
+        self._used.clear()
+
+    def note(self, form: Form, name: str, kind: Any) -> None:
+        """A name is used with a class of messages, of a service or an action."""
+        type_name = self.name_of(kind)
+        if type_name is not None:
+            self._used[form, name] = type_name
+
+    def of(self, named: Named) -> dict[str, str]:
+        """The types of all names that are meant, by name."""
+        wanted = Form.GOAL if named.form in self.as_goal else named.form
+        return {
+            name: kind
+            for (form, name), kind in self._used.items()
+            if form is wanted and fnmatchcase(name, named.name)
+        }
+
+    def look_at(self, operation: Operation) -> Iterator[Finding]:
+        """What of an operation does not fit the installed definition of its type.
+
+        Where the vocabulary names no type, it is the one that the program uses.
+        """
+        named = operation.named
+        if named is None:
+            return
+        used = self.of(named)
+        for kind in [named.type] if named.type is not None else sorted(set(used.values())):
+            yield from self._look_at_fields(operation, named.form, kind)
+        for name, kind in used.items():
+            if named.type not in (None, kind):
+                yield Finding("type", f"the program uses {kind} for {name}", named.type, (kind,))
+
+    @abstractmethod
+    def name_of(self, kind: Any) -> str | None:
+        """``package/Name`` of a class; None for what is no class of the middleware."""
+
+    @abstractmethod
+    def part_of(self, module: ModuleType, name: str, part: str) -> Any:
+        """The class of a part of a type, or of all of it; None if the module has no such type."""
+
+    @abstractmethod
+    def names_in(self, module: ModuleType, part: str) -> Iterator[str]:
+        """The types in a module that have such a part."""
+
+    @abstractmethod
+    def fields_of(self, message: Any) -> Mapping[str, str]:
+        """The types of the fields of a class of messages, by name."""
+
+    def packages(self) -> Iterator[str]:
+        """Packages with definitions, as far as they can be known."""
+        return iter(())
+
+    def fields_of_basic(self, kind: str) -> Mapping[str, str]:
+        """Fields of a type that no package defines."""
+        return {}
+
+    def _look_at_fields(self, operation: Operation, form: Form, kind: str) -> Iterator[Finding]:
+        sides = ((self.written, 0, operation.arguments), (self.read, 1, operation.result))
+        for places, side, quantities in sides:
+            if form not in places:
+                continue
+            try:
+                message = self._class_of(kind, *places[form])
+            except LookupError as error:
+                text, name, known = error.args
+                yield Finding("type", text, name, known)
+                return
+            for quantity in quantities:
+                if quantity.path.root in (None, WRITTEN.get(form)):  # else it is no field of the message
+                    key = f"{_TABLES[form][side]}.{quantity.name}"
+                    yield from self._look_at_steps(message, quantity.path, key)
+
+    def _class_of(self, kind: str, module: str, part: str) -> Any:
+        """The class of a type. Raises LookupError: a sentence, the wrong name, and those there are."""
+        package, _, name = kind.partition("/")
+        try:
+            found = import_module(f"{package}.{module}")
+        except ImportError:
+            text = f"{kind}: no package {package!r} with {_KINDS[module]} is installed"
+            raise LookupError(text, package, tuple(self.packages())) from None
+        message = self.part_of(found, name, part)
+        if message is None:
+            text = f"{package} has no {name} among its {_KINDS[module]}"
+            raise LookupError(text, name, tuple(self.names_in(found, part)))
+        return message
+
+    def _look_at_steps(self, message: Any, path: Path, key: str) -> Iterator[Finding]:
+        """What of a path does not fit a class of messages."""
+        kind, fields = self.name_of(message), self.fields_of(message)
+        for step in path.steps:
+            if step.attribute is None:
+                item = self.array.fullmatch(kind or "")
+                if item is None:
+                    yield Finding(key, f"{kind} is no array, so it has no {step}")
+                    return
+                kind = kind if step.bounds is not None else item["item"]
+            elif step.attribute in fields:
+                kind = fields[step.attribute]
+            else:
+                hint = f"; it has {', '.join(fields)}" if fields else ""
+                text = f"{kind} has no field {step.attribute!r}{hint}"
+                yield Finding(key, text, step.attribute, tuple(fields))
+                return
+            fields = self._fields_named(kind or "")
+
+    def _fields_named(self, kind: str) -> Mapping[str, str]:
+        if "/" not in kind or self.array.fullmatch(kind):
+            return self.fields_of_basic(kind)
+        return self.fields_of(self._class_of(kind, "msg", ""))
