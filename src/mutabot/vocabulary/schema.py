@@ -54,26 +54,31 @@ class PatternTable(Table):
     relative: Any = None
 
 
-class OperationTable(Table):
-    """One ``[[operation]]``."""
+class DescribedTable(Table):
+    """What every ``[[operation]]`` may say, however it is found."""
 
-    call: str
-    arguments: dict[str, Any] = Field(default_factory=dict)
-    result: dict[str, Any] | None = None
     command: bool | None = None
     current: Any = None
     opposite: str | None = None
     idle: Any = None
     refusals: list[str] = Field(default_factory=list)
     message: str | None = None
-    signature: str | None = None
-    overrides: bool = False
     patterns: list[Any] = Field(default_factory=list)
     when: Any = None
     refused: Any = None
 
 
-class NamedTable(Table):
+class OperationTable(DescribedTable):
+    """One ``[[operation]]`` that is a callable."""
+
+    call: str
+    arguments: dict[str, Any] = Field(default_factory=dict)
+    result: dict[str, Any] | None = None
+    signature: str | None = None
+    overrides: bool = False
+
+
+class NamedTable(DescribedTable):
     """One ``[[operation]]`` that has a name on a middleware; which keys go together is checked later."""
 
     topic: str | None = None
@@ -93,15 +98,6 @@ class NamedTable(Table):
     feedback: dict[str, Any] | None = None
     result: dict[str, Any] | None = None
     value: dict[str, Any] | None = None
-    command: bool | None = None
-    current: Any = None
-    opposite: str | None = None
-    idle: Any = None
-    refusals: list[str] = Field(default_factory=list)
-    message: str | None = None
-    patterns: list[Any] = Field(default_factory=list)
-    when: Any = None
-    refused: Any = None
 
 
 class CurrentTable(Table):
