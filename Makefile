@@ -77,7 +77,10 @@ stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) benchmarks/campaigns_in_a_row.py --count 200
 	$(RUN) benchmarks/processes_in_a_row.py --examples scales
 	for ros in $(ROS1) $(ROS2); do \
-	    test ! -x $$ros/bin/python || $$ros/bin/python benchmarks/processes_in_a_row.py --examples ros1 ros2 || exit; \
+	    test ! -x $$ros/bin/python || { \
+	        $$ros/bin/python benchmarks/processes_in_a_row.py --examples ros1 ros2 --selection published.txt && \
+	        $$ros/bin/python benchmarks/processes_in_a_row.py --examples ros1 ros2 --count 2 --rounds 3 \
+	            --families robot,middleware,classical,text; } || exit; \
 	done
 	$(RUN) benchmarks/flaky_campaigns.py
 

@@ -5,8 +5,9 @@ of ``scales``. After each of them there must be no process that began below it, 
 one waits at; of ROS, no shared memory that nobody uses any more, and no log outside the copy. The copy's
 files must be as they were, and outcomes must end alike every time. No other program of ROS may run meanwhile.
 
-Use: ``python benchmarks/processes_in_a_row.py [--count 20] [--examples ros2 …] [--engine auto]``. The exit
-code is 1 if anything is left behind or differs.
+Use: ``python benchmarks/processes_in_a_row.py [--count 20] [--examples ros2 …] [--rounds 1]
+[--families robot,middleware …] [--selection published.txt] [--engine auto]``. The exit code is 1 if anything
+is left behind or differs.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from pathlib import Path
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.families import USUAL
 from mutabot.journal.journal import Journal
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
@@ -47,18 +49,30 @@ class Silent:
         """Ignore it."""
 
 
-def request_for(folder: Path, engine: str) -> Request:
-    """One round of all mutants, nothing taken over from the last campaign."""
+def request_for(folder: Path, given: argparse.Namespace) -> Request:
+    """Nothing is taken over from the last campaign."""
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, configuration.root)
     jobs = len(os.sched_getaffinity(0))
-    return Request(configuration, vocabulary, 1, configuration.seed, jobs, engine=engine, fresh=True)
+    return Request(
+        configuration,
+        vocabulary,
+        given.rounds,
+        configuration.seed,
+        jobs,
+        engine=given.engine,
+        families=tuple(given.families.split(",")),
+        selection=folder / given.selection if given.selection else None,
+        fresh=True,
+    )
 
 
 def ends(request: Request) -> dict[str, str]:
-    """Run a campaign: how each mutant ends."""
+    """Run a campaign: how each mutant ends in each round."""
     with Journal.open(run_campaign(request, Silent())) as journal:
-        return {one.mutant: f"{one.verdict} {one.by}" for one in journal.outcomes()}
+        return {
+            f"{one.mutant} in round {one.round + 1}": f"{one.verdict} {one.by}" for one in journal.outcomes()
+        }
 
 
 def processes_below(folder: Path) -> list[str]:
@@ -112,7 +126,7 @@ def entries(folder: Path) -> set[str]:
     return {one.name for one in folder.iterdir()} if folder.is_dir() else set()
 
 
-def run(example: str, count: int, engine: str) -> list[str]:
+def run(example: str, given: argparse.Namespace) -> list[str]:
     """So many campaigns: what is wrong."""
     wrong: list[str] = []
     below = EXAMPLES[example][0]
@@ -122,9 +136,9 @@ def run(example: str, count: int, engine: str) -> list[str]:
             ROOT / "examples" / example, folder, ignore=shutil.ignore_patterns(".mutabot", "__pycache__")
         )
         files, first = digest(folder), {}
-        for number in range(1, count + 1):
+        for number in range(1, given.count + 1):
             shared, logs, began = entries(SHARED), entries(LOGS), time.monotonic()
-            found = ends(request_for(folder / below, engine))
+            found = ends(request_for(folder / below, given))
             first = first or found
             left = [f"process {one}" for one in processes_below(folder)]
             if example != "scales":
@@ -135,11 +149,9 @@ def run(example: str, count: int, engine: str) -> list[str]:
                 f"{one}: {first.get(one)}, then {end}" for one, end in found.items() if first.get(one) != end
             ]
             wrong += [f"{example}, campaign {number}: {one}" for one in left]
+            place = f"{example} {number}/{given.count}"
             seconds = time.monotonic() - began
-            print(
-                f"{example} {number}/{count}: {len(found)} mutants, {seconds:.1f} s, {len(left)} wrong",
-                flush=True,
-            )
+            print(f"{place}: {len(found)} outcomes, {seconds:.1f} s, {len(left)} wrong", flush=True)
     return wrong
 
 
@@ -151,11 +163,14 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--examples", nargs="+", default=list(EXAMPLES), choices=list(EXAMPLES))
     parser.add_argument("--engine", default="auto")
+    parser.add_argument("--rounds", type=int, default=1)
+    parser.add_argument("--families", default=",".join(USUAL))
+    parser.add_argument("--selection", help="a file of the example with the ids of mutants")
     given = parser.parse_args()
     there = [one for one in given.examples if importlib.util.find_spec(EXAMPLES[one][1]) is not None]
     for missing in sorted(set(given.examples) - set(there)):
         print(f"{missing} is left out: {EXAMPLES[missing][1]} is not installed")
-    wrong = [one for example in there for one in run(example, given.count, given.engine)]
+    wrong = [one for example in there for one in run(example, given)]
     print("\n".join(wrong) or "nothing is left behind, and all campaigns find the same")
     return bool(wrong)
 
