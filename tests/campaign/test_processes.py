@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-import signal
-import threading
 from pathlib import Path
 
 import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.model import Outcome, Verdict
+from tests.campaign.outside import killer
 from tests.campaign.project import ROBOT, Quiet, request_for, run, write_project
 
 TESTS = """
@@ -100,26 +97,8 @@ def test_a_process_that_somebody_else_kills_says_nothing_about_its_mutant(tmp_pa
                     Path(os.environ["VICTIM"]).write_text(str(mission.pid))
             assert mission.wait() == 0
     """
-    victim = Path(f"/dev/shm/{tmp_path.name}-{id(tmp_path)}")  # a folder that no run keeps to itself
-    is_over = threading.Event()
-
-    def kill() -> None:
-        while not is_over.wait(0.05):
-            if victim.exists() and (pid := victim.read_text()):
-                with contextlib.suppress(ProcessLookupError):
-                    os.kill(int(pid), signal.SIGKILL)
-                victim.unlink()
-
-    killer = threading.Thread(target=kill)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("VICTIM", str(victim))
-        killer.start()
-        try:
-            found = ends_of(tmp_path, STAYS, tests)["<module>:arm.move_by#1:dx:reverse"]
-        finally:
-            is_over.set()
-            killer.join()
-            victim.unlink(missing_ok=True)
+    with killer():
+        found = ends_of(tmp_path, STAYS, tests)["<module>:arm.move_by#1:dx:reverse"]
     assert found.verdict is Verdict.ERROR
     assert found.message == "the process mission.py was killed from outside, by signal 9"
 

@@ -9,6 +9,7 @@ from textwrap import dedent
 import pytest
 
 from mutabot.model import Outcome, Verdict
+from tests.campaign.outside import killer
 from tests.campaign.project import run, write_project
 
 pytestmark = pytest.mark.skipif(
@@ -35,8 +36,8 @@ MISSION = """
 """
 DRIVER = """
     import os
-    import subprocess
     import sys
+    import time
     from pathlib import Path
 
     import rospy
@@ -51,8 +52,9 @@ DRIVER = """
     reached = rospy.Publisher("/reached", Float64, queue_size=1, latch=True)
 
     def on_target(message):
-        if message.data < 0 and os.environ.get("KILLED"):     # by a shell: nobody of the campaign's
-            subprocess.run(["sh", "-c", f"kill -9 {os.getpid()}"])
+        if message.data < 0 and "VICTIM" in os.environ:
+            Path(os.environ["VICTIM"]).write_text(str(os.getpid()))
+            time.sleep(10)
         reached.publish(message)
 
     rospy.Subscriber("/target", Float64, on_target)
@@ -134,8 +136,8 @@ def end_of(folder: Path, monkeypatch: pytest.MonkeyPatch, limit: int) -> Outcome
 def test_a_node_that_is_killed_from_outside_kills_no_mutant(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("KILLED", "yes")
-    found = end_of(tmp_path, monkeypatch, limit=1000)
+    with killer():
+        found = end_of(tmp_path, monkeypatch, limit=1000)
     assert (found.verdict, found.acted) == (Verdict.ERROR, 1)
     assert found.message == "the process /driver was killed from outside, by signal 9"
 
