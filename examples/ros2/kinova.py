@@ -35,7 +35,7 @@ ANSWERS = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 #: wall-clock seconds after which one may ask whether an answer is still to come; a move takes 0.02
 PATIENCE = 1.0
 #: the same for a cell that is not there
-LONG_PATIENCE = 20.0
+LONG_PATIENCE = 10.0
 
 _node: Node | None = None
 
