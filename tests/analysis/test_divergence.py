@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from mutabot.analysis.divergence import explain, is_indistinguishable, quantity_of, rank
-from mutabot.model import By, Compared, Outcome, Verdict
+from mutabot.analysis.divergence import change_text, explain, is_indistinguishable, quantity_of, rank
+from mutabot.model import By, Compared, Kind, Outcome, Path, Quantity, Verdict
 from tests.analysis.samples import BACK, NEGATE, REVERSE, SKIP, VOCABULARY, mutant
 
 READ = Outcome(
@@ -34,6 +34,14 @@ def test_a_reading_is_told_with_its_unit_and_what_became_of_the_world() -> None:
 def test_a_command_is_sent_rather_than_read() -> None:
     end = replace(READ, example=(0.2, -0.2))
     assert explain(REVERSE, [end], VOCABULARY).startswith("sent -0.2 m instead of 0.2 m")
+
+
+@pytest.mark.parametrize(("path", "verb"), [("pose", "sent"), (".pose", "read")])
+def test_what_may_be_sent_or_read_is_told_by_where_it_stands(path: str, verb: str) -> None:
+    at = Path.parse(path, rooted=not path.startswith("."))
+    turn = Quantity("pose", at, Kind.EULER, unit="rad", order="XYZ")
+    end = replace(READ, example=([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]))
+    assert (change_text(replace(REVERSE, quantity="pose"), end, turn) or "").startswith(verb)
 
 
 def test_without_the_vocabulary_values_stand_without_unit() -> None:

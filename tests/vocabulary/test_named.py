@@ -151,6 +151,7 @@ def test_two_operations_of_one_site_are_told_apart_by_name() -> None:
         ('topic = "/goal"', ["robot.toml:1", "direction", '"publish" or "receive"']),
         ('topic = "/goal"\ndirection = "publsh"', [":3", "'publsh'", "'publish'"]),
         ('topik = "/goal"\ndirection = "publish"', [":2", "'topik'", "'topic'"]),
+        ('transform = "base -> tool"', [":2", "did you mean tf?"]),
         ('topic = "goal"\ndirection = "publish"', [":2", "not resolved", "'/goal'"]),
         ('service = "~home"', ["not resolved", "'*/home'"]),
         ('service = "/go home"', ["no ' ' in it"]),

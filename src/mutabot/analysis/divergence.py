@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 
 from mutabot.model import Mutant, Outcome, Quantity, Verdict, Vocabulary
-from mutabot.model.values.quantity import READ, told_apart, value_text
+from mutabot.model.values.quantity import told_apart, value_text
 
 
 def quantity_of(mutant: Mutant, vocabulary: Vocabulary | None) -> Quantity | None:
@@ -65,7 +65,7 @@ def is_indistinguishable(outcomes: Sequence[Outcome]) -> bool:
 def _verb(quantity: Quantity | None) -> str:
     if quantity is None:
         return "had"
-    return "read" if quantity.kind in READ else "sent"
+    return "sent" if quantity.path.root is not None else "read"
 
 
 def _world_text(outcome: Outcome) -> str:

@@ -94,6 +94,8 @@ class Inspection:
         for operation in self._vocabulary.operations:
             self.check_target(operation, interception)
             self._check_current(operation)
+            for finding in interception.of("messages").unheard(operation):
+                self.tell(operation.source, finding)
         for tell in self._unfit.values():
             tell()
         self._check_idle()

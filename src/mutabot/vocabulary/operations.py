@@ -76,6 +76,13 @@ def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
     return operation
 
 
+#: words that people use for names on a middleware
+_OTHER_WORDS = {
+    "transform": "tf", "frame": "tf", "param": "parameter", "publisher": "topic", "subscriber": "topic",
+    "srv": "service",
+}  # fmt: skip
+
+
 def _check_one_name(check: Check, raw: Any, place: KeyPath) -> None:
     """Note a callable that is to have a name on a middleware as well, and a misspelt key for such a name."""
     if not isinstance(raw, dict):
@@ -88,6 +95,8 @@ def _check_one_name(check: Check, raw: Any, place: KeyPath) -> None:
             near = None if key in OperationTable.model_fields else nearest_name(key, ("call", *NAMING))
             if near in NAMING:
                 check.unknown((*place, key), "key", key, NAMING)
+            elif key in _OTHER_WORDS:
+                check.error((*place, key), f"unknown key; did you mean {_OTHER_WORDS[key]}?")
 
 
 def read_clock(check: Check, raw: dict[str, Any], place: KeyPath) -> Clock | None:

@@ -40,8 +40,15 @@ def test_a_message_that_is_published_once_has_no_other_before_it() -> None:
     plan = planned(PUBLISH, Hit({"x": 0.4}, {}))
     wanted = ["drop", "duplicate", "delay=0.1", "delay=1", "kill-node", "restart-node"]
     assert kinds(plan) == wanted
-    assert reasons(plan, "stale") == ["takes 2 calls, and the tests make 1"] * 2
-    assert reasons(plan, "every-3rd") == ["takes 3 calls, and the tests make 1"]
+    assert reasons(plan, "stale") == ["takes 2 calls in a test, and no test makes more than 1"] * 2
+    assert reasons(plan, "every-3rd") == ["takes 3 calls in a test, and no test makes more than 1"]
+
+
+def test_messages_of_other_tests_do_not_come_before_one() -> None:
+    plan = planned(PUBLISH, *(Hit({"x": 0.1 * number}, {}, (0, f"test_{number}")) for number in range(4)))
+    assert reasons(plan, "stale") == ["takes 2 calls in a test, and no test makes more than 1"] * 2
+    one_test = planned(PUBLISH, *(Hit({"x": 0.1 * number}, {}, (0, "test")) for number in range(4)))
+    assert not reasons(one_test, "stale")
 
 
 def test_of_many_messages_each_fault_is_planned_however_equal_they_look() -> None:

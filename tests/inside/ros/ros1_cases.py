@@ -524,6 +524,16 @@ def problems(stage: Stage) -> list[tuple[str, str]]:
             "type",
             "program uses geometry_msgs/Twist",
         ),
+        (
+            CLOSE + 'refused = { path = "stat", values = [5] }\n',
+            "refused.path",
+            "std_srvs/SetBoolResponse has no field 'stat'; it has success, message",
+        ),
+        (
+            GOAL + 'refused = { topic = "/cell/goal", path = "linear.w", values = [5] }\n',
+            "refused.path",
+            "/cell/goal: geometry_msgs/Vector3 has no field 'w'",
+        ),
         (ACTION.replace("goal.goal", "goal.angle"), "goal.angle", "actionlib/TestGoal has no field 'angle'"),
         (ACTION.replace("result.result", "result.sum"), "result.sum", "it has result"),
     ],
@@ -534,6 +544,7 @@ def test_a_type_or_field_that_does_not_exist_is_told(
     program = """
     def run():
         rospy.Publisher("goal", Twist, queue_size=1).unregister()
+        rospy.Subscriber("goal", Twist, print).unregister()
     """
     (found,) = problems(make(program, vocabulary))
     assert found[0] == key

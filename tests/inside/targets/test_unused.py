@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from mutabot.inside.targets.messages import Messages
-from mutabot.inside.targets.unused import unused
-from mutabot.model.named import Form, Named
+from mutabot.inside.targets.unused import unheard, unused
+from mutabot.model.named import Form, Named, Refused
 
 
 def said(wanted: str, *used: str) -> list[str]:
@@ -69,3 +69,19 @@ def test_what_a_process_below_the_tests_does_counts() -> None:
     assert set(there.here()) == {"publish /arm/goal of /pick", "publish /arm/*", "call /hme of /pick"}
     here.found_elsewhere([*there.here(), "robot:Arm.move"])
     assert [finding.text for _, finding in here.seek()] == ["no test called the service /home; seen: /hme"]
+
+
+@pytest.mark.parametrize(
+    ("used", "is_told"),
+    [
+        (["publish /arm/ended"], True),
+        (["subscribe /arm/ending"], True),
+        (["subscribe /arm/ended of /mission"], False),
+        (["client /arm/ended"], False),
+        (["receive /arm/ended"], False),
+    ],
+)
+def test_a_refusal_that_nobody_can_hear_is_told(used: list[str], is_told: bool) -> None:
+    refused = [Refused("status", (5,), "/arm/ended"), Refused("ok", (False,))]
+    found = [finding.text for finding in unheard(refused, [Named.of(one) for one in used])]
+    assert [text.startswith("no node listens to /arm/ended") for text in found] == [True] * is_told

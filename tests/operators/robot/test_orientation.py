@@ -38,6 +38,14 @@ def test_the_other_way_is_the_inverse_rotation_in_the_same_form(name: str, form:
     assert list(value) == numbers
 
 
+def test_a_tool_that_points_down_is_its_own_inverse_however_pi_is_written() -> None:
+    quantity = Quantity("o", Path("o"), Kind.EULER, unit="rad", order="XYZ")
+    for value in ([3.14159, 0.0, 0.0], [3.1416, 0.0002, 0.0], [math.pi, 0.0, 0.0]):
+        assert the_other_way(quantity, value) is value
+    assert the_other_way(quantity, [3.13, 0.0, 0.0]) is not None
+    assert the_other_way(quantity, [3.13, 0.0, 0.0]) != [3.13, 0.0, 0.0]
+
+
 @pytest.mark.parametrize("name", KINDS)
 def test_noise_is_a_small_turn_by_its_deviation(name: str) -> None:
     quantity, value = KINDS[name]

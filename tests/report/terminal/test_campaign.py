@@ -149,7 +149,7 @@ def test_a_second_look_is_told(tmp_path: Path, width: int) -> None:
     assert "Confirmed: 3 of 4 kills, survivors and time-outs end so once more." in flat
     assert (
         "Kills: of 5 kills that may be chance 4 were run once more, 1 ended otherwise and count no more, "
-        "1 left for want of time; false kills left among 4: 0.3 (0 to 4); 30 other kills by tests without "
+        "1 were not; false kills left among 4: 0.3 (0 to 4); 30 other kills by tests without "
         "simulated time were not repeated (--confirm)."
     ) in flat
     assert "1 test set aside, which cannot be relied on tests/t.py::test_a in round 1" in flat

@@ -27,10 +27,11 @@ SPARE_OPERATIONS, SPARE_SIMULATED = 200, 10.0
 
 @dataclass(frozen=True, slots=True)
 class Hit:
-    """One recorded call: the values it wrote and read."""
+    """One recorded call: the values it wrote and read, and the round and test in which it was made."""
 
     written: Mapping[str, Any]
     read: Mapping[str, Any]
+    where: tuple[int, str] = (0, "")
 
 
 @dataclass(slots=True)
@@ -54,6 +55,8 @@ class Baseline:
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
         doubted: tests that have failed once where equal runs pass.
         unequal: (round, test) that were not the same to the last bit in all runs of the original.
+        uneven: (round, test) in which equal runs made different numbers of calls, as nodes do that look again
+            and again whether something has come: how many they make is a matter of time.
         skipped: number of tests that skipped themselves.
         startup: seconds from a worker's start to the end, less the tests; the longest.
         program: the program text, if a family of mutants needs it.
@@ -85,6 +88,7 @@ class Baseline:
     sharing: list[Sharing] = field(default_factory=list)
     widened: set[tuple[str, int]] = field(default_factory=set)
     early: set[Place] = field(default_factory=set)
+    uneven: set[tuple[int, str]] = field(default_factory=set)
 
     @property
     def places(self) -> list[Place]:
@@ -170,6 +174,8 @@ class Baseline:
     def compare_runs(self, round: int, end: TestEnd, found: Observation, vocabulary: Vocabulary) -> None:
         """Compare one more run of a test of the original with its first."""
         key = (round, end.test)
+        if end.operations != self.ends[key].operations:
+            self.uneven.add(key)
         first = self.observations[key]
         if found == first and end.simulated == self.ends[key].simulated:
             return
@@ -222,10 +228,14 @@ class Baseline:
         return sorted(self.tests[round], key=lambda test: cost(self.ends[round, test]))
 
     def budget(self, round: int, test: str, factor: float) -> Budget:
-        """What a mutant may use in this test."""
+        """What a mutant may use in this test.
+
+        Where the number of calls is a matter of time, only time limits it.
+        """
         end = self.ends[round, test]
+        is_even = (round, test) not in self.uneven
         return Budget(
-            operations=int(end.operations * factor) + SPARE_OPERATIONS,
+            operations=int(end.operations * factor) + SPARE_OPERATIONS if is_even else None,
             simulated=None if end.simulated is None else end.simulated * factor + SPARE_SIMULATED,
         )
 

@@ -265,14 +265,14 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
             continue
         for index, written, read, answer in end.trace:
             place = places[index]
-            baseline.hits.setdefault(place, []).append(Hit(written, read))
+            baseline.hits.setdefault(place, []).append(Hit(written, read, (round, end.test)))
             baseline.answers.setdefault(place, RecordedAnswers()).add(round, end.test, answer)
             tests = reaching.setdefault(place, [])
             if end.test not in tests:
                 tests.append(end.test)
     for index, written, read, answer in result.called_at_import:
         place = places[index]
-        baseline.hits.setdefault(place, []).append(Hit(written, read))
+        baseline.hits.setdefault(place, []).append(Hit(written, read, (round, "")))
         baseline.answers.setdefault(place, RecordedAnswers()).add(round, "", answer)
         baseline.early.add(place)
         reaching[place] = list(good)

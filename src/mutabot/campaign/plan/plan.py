@@ -133,17 +133,19 @@ class _Seen:
 
 def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, str | None]:
     """What the mutant would do to the recorded calls, and why it is left out, if it is."""
-    least = rule.least_calls(subject)
-    if len(hits) < least:
-        return _Seen(), f"takes {least} calls, and the tests make {len(hits)}"
+    least, most = rule.least_calls(subject), max(Counter(hit.where for hit in hits).values(), default=0)
+    if most < least:
+        return _Seen(), f"takes {least} calls in a test, and no test makes more than {most}"
     if rule.is_chance(subject):
         return _Seen(_value(subject, hits[0])), None
     last = _Seen()
     middleware = rule.middleware(subject, Random(1))
     away = ""
+    where = None
     for hit in hits[:TRIED]:
         before = _value(subject, hit)
-        if not rule.remembers:
+        if not rule.remembers or hit.where != where:
+            where = hit.where
             middleware = rule.middleware(subject, Random(1))
         try:
             passage = _rehearsal(rule, subject, hit, middleware)

@@ -22,6 +22,7 @@ from mutabot.inside.readings.along import Along
 from mutabot.inside.readings.instances import Instances
 from mutabot.inside.targets.target import Handler, Where
 from mutabot.model import Call, Reply, Role, Span
+from mutabot.model.named import Form
 from mutabot.model.values.quantity import Value
 from mutabot.operators.passage import Carried, run
 
@@ -103,7 +104,7 @@ class Passing:
                 self._instances.used(instance)
             if _under_way.get():
                 return wrapped(*args, **kwargs)
-            if where is None or not where.is_again:
+            if (where is None or not where.is_again) and not _marks_time(door):
                 self.meter.count()
             site = self._site(sys._getframe(1), where)
             if site is None:
@@ -220,3 +221,9 @@ class Passing:
             self._along.after(len(self._recorder.trace))
         if self.on_end is not None:
             self.on_end(call, read)
+
+
+def _marks_time(door: Door) -> bool:
+    """Whether it is a tick or the sleep of a rate: how many there are is a matter of time."""
+    named = door.operation.named
+    return named is not None and named.form in (Form.TICK, Form.SLEEP)

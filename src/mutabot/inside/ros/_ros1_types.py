@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterator, Mapping
-from importlib import import_module
 from pathlib import Path as File
 from types import ModuleType
 from typing import Any, ClassVar
@@ -51,8 +51,7 @@ class Ros1Types(Types):
         return dict.fromkeys(_PARTS_OF_MOMENTS, "int32") if kind in _MOMENTS else {}
 
     def packages(self) -> Iterator[str]:
-        std_msgs = import_module("std_msgs")  # others lie beside it
-        for folder in (File(place).parent for place in std_msgs.__path__):
-            for path in folder.iterdir():
+        for folder in map(File, sys.path):
+            for path in folder.iterdir() if folder.is_dir() else ():
                 if (path / "msg").is_dir() or (path / "srv").is_dir():
                     yield path.name

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from importlib import import_module
 from types import ModuleType
@@ -12,7 +13,7 @@ from typing import Any, ClassVar
 
 from mutabot.inside.targets.target import Finding
 from mutabot.model import Operation, Path
-from mutabot.model.named import WRITTEN, Form, Named
+from mutabot.model.named import WRITTEN, Form, Named, Refused
 
 #: the tables of the vocabulary in which the fields are described of what is written, and of what is read
 _TABLES: Mapping[Form, tuple[str, str]] = {
@@ -75,6 +76,7 @@ class Types(ABC):
         used = self.of(named)
         for kind in [named.type] if named.type is not None else sorted(set(used.values())):
             yield from self._look_at_fields(operation, named.form, kind)
+        yield from self._look_at_told(operation)
         for name, kind in used.items():
             if named.type not in (None, kind):
                 yield Finding("type", f"the program uses {kind} for {name}", named.type, (kind,))
@@ -118,6 +120,25 @@ class Types(ABC):
                 if quantity.path.root in (None, WRITTEN.get(form)):  # else it is no field of the message
                     key = f"{_TABLES[form][side]}.{quantity.name}"
                     yield from self._look_at_steps(message, quantity.path, key)
+            for refused in operation.told_as_refused if places is self.read else ():
+                if refused.topic is None:
+                    yield from self._look_at_path_of(refused, message)
+
+    def _look_at_told(self, operation: Operation) -> Iterator[Finding]:
+        """Refusals that are told on topics whose types are known."""
+        for refused in operation.told_as_refused:
+            listened = {} if refused.topic is None else self.of(Named(Form.RECEIVE, refused.topic))
+            for name, kind in listened.items():
+                try:
+                    message = self._class_of(kind, *self.read[Form.RECEIVE])
+                except LookupError:  # the program has it all the same
+                    continue
+                yield from self._look_at_path_of(refused, message, f"{name}: ")
+
+    def _look_at_path_of(self, refused: Refused, message: Any, which: str = "") -> Iterator[Finding]:
+        path = Path.parse(refused.path, rooted=False)
+        for one in self._look_at_steps(message, path, "refused.path"):
+            yield replace(one, text=f"{which}{one.text}")
 
     def _class_of(self, kind: str, module: str, part: str) -> Any:
         """The class of a type. Raises LookupError: a sentence, the wrong name, and those there are."""

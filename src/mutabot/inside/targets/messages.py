@@ -35,7 +35,7 @@ from mutabot.model import Operation
 from mutabot.model.named import Form, Named, named_of
 
 from .target import Finding, Handler, Targets, Tell
-from .unused import unused
+from .unused import unheard, unused
 
 #: the rooms in which middlewares are: each file says in ``MODULE`` which module it is about, and has ``hook``
 _MIDDLEWARES = "mutabot.inside.ros"
@@ -100,6 +100,10 @@ class Messages(Targets):
     def seek(self) -> Iterator[tuple[str, Finding]]:
         """Names come and go with the nodes: what was never used is all that can be said."""
         return unused([named for named, _ in self._handlers], self.used)
+
+    def unheard(self, operation: Operation) -> Iterator[Finding]:
+        """Topics and actions that no process of the tests listens to."""
+        return unheard(operation.told_as_refused, self.used)
 
     def here(self) -> Iterable[str]:
         """What was done under which names, and the targets that these are."""

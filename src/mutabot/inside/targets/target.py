@@ -103,6 +103,10 @@ class Targets(ABC):
     def check(self, operation: Operation) -> Iterator[Finding]:
         """What of an operation does not fit its target, once that is found."""
 
+    def unheard(self, operation: Operation) -> Iterator[Finding]:
+        """Where the vocabulary expects the operation's refusals to be told, and nothing listens."""
+        return iter(())
+
     def here(self) -> Iterable[str]:
         """The targets that this process has."""
         return ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from difflib import SequenceMatcher
 
-from mutabot.model.named import Form, Named
+from mutabot.model.named import Form, Named, Refused
 
 from .target import Finding
 
@@ -29,6 +29,8 @@ _SET_UP = {
     Form.TICK: Form.TIMER,
     Form.SLEEP: Form.RATE,
 }
+#: forms by which a process hears what is said under a name
+_LISTENING = (Form.RECEIVE, Form.SUBSCRIBE, Form.GOAL, Form.CLIENT, Form.RESULT)
 #: names that are told
 _MOST = 4
 
@@ -41,6 +43,17 @@ def unused(wanted: Collection[Named], used: Collection[Named]) -> Iterator[tuple
             continue
         sentence = f"{text.format(named.name)}{_where(named)}; {_instead(named, used)}"
         yield named.target, Finding(named.form.value, sentence, is_remark=True)
+
+
+def unheard(refused: Collection[Refused], used: Collection[Named]) -> Iterator[Finding]:
+    """Names under which the vocabulary expects refusals, and nothing listens."""
+    for name in dict.fromkeys(one.topic for one in refused if one.topic is not None):
+        wanted = [Named(form, name) for form in _LISTENING]
+        if any(one.fits(other.form, other.name, other.node) for one in wanted for other in used):
+            continue
+        instead = _instead(Named(Form.RECEIVE, name), used)
+        sentence = f"no node listens to {name}, so that no refusal told there is seen; {instead}"
+        yield Finding("refused", sentence, is_remark=True)
 
 
 def _where(named: Named) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.named import Form, Named, settings_of
 
@@ -27,6 +29,7 @@ def setting_up(form: Form, name: str) -> Operation:
 PUBLISH = operation(Form.PUBLISH, "/arm/target", (X,))
 RECEIVE = operation(Form.RECEIVE, "/gap", result=(GAP,))
 CALL = operation(Form.CALL, "/gripper/close")
+CALL_TO = operation(Form.CALL, "/arm/move_to", (replace(X, path=Path.parse("request.x", rooted=True)),))
 GOAL = operation(Form.GOAL, "/arm/follow")
 TICK = operation(Form.TICK, "/mission/check")
 RESULT = operation(Form.RESULT, "/arm/follow")

@@ -13,11 +13,13 @@ from mutabot.operators.operator import map_numbers
 
 #: radians within which two orientations are the same
 _SAME = 1e-9
+#: the same for one and its inverse: half a turn written as 3.1416 is turned back to where it was, nearly
+_TURNED_BACK = 1e-3
 
 
 def the_other_way(quantity: Quantity, value: Value) -> Value | None:
     """The inverse rotation, written like the value; the value itself where that is the same orientation."""
-    return _changed(quantity, value, inverse)
+    return _changed(quantity, value, inverse, _TURNED_BACK)
 
 
 def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float) -> Value | None:
@@ -27,12 +29,14 @@ def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float
     return _changed(quantity, value, lambda orientation: product(turn, orientation))
 
 
-def _changed(quantity: Quantity, value: Value, change: Callable[[Quaternion], Quaternion]) -> Value | None:
+def _changed(
+    quantity: Quantity, value: Value, change: Callable[[Quaternion], Quaternion], least: float = _SAME
+) -> Value | None:
     before = quantity.orientation(value)
     if before is None:
         return None
     after = change(before)
-    if distance(before, after) < _SAME:
+    if distance(before, after) < least:
         return value
     parts = iter(quantity.numbers(after))
     return map_numbers(value, lambda _: next(parts) + 0.0)  # no −0

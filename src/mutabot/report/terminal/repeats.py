@@ -26,7 +26,7 @@ def repeat_lines(repeats: Repeats) -> Iterator[Text]:
 def _kills_text(doubted: Repeated, others: Repeated, found: Estimate | None) -> str:
     parts = []
     if doubted.outcomes:
-        left = f", {doubted.left} left for want of time" if doubted.left else ""
+        left = f", {doubted.left} were not" if doubted.left else ""
         parts.append(f"of {plural(doubted.outcomes, 'kill')} that may be chance {_repeated(doubted)}{left}")
     if others.repeated:
         parts.append(f"of {plural(others.outcomes, 'other')} {_repeated(others)}")

@@ -7,14 +7,14 @@ from typing import ClassVar
 
 from mutabot.model import Call, Middleware, Proceed, Reply
 from mutabot.model.named import Form
-from mutabot.operators.middleware._examples import PUBLISH, RECEIVE
+from mutabot.operators.middleware._examples import CALL_TO, PUBLISH, RECEIVE
 from mutabot.operators.middleware._forms import FormOperator, form_of
 from mutabot.operators.operator import Example, Subject
 
 _FIRST = "first"
 _PREVIOUS = "previous"
 _NONE_BEFORE = "there is none before it"
-_WRITTEN = frozenset({Form.PUBLISH, Form.GOAL})
+_WRITTEN = frozenset({Form.PUBLISH, Form.GOAL, Form.CALL})
 
 
 class Stale(FormOperator):
@@ -27,7 +27,7 @@ class Stale(FormOperator):
     )
     rank = 130
     remembers = True
-    forms = _WRITTEN | {Form.RECEIVE, Form.FEEDBACK, Form.CALL, Form.TRANSFORM}
+    forms = _WRITTEN | {Form.RECEIVE, Form.FEEDBACK, Form.TRANSFORM}
     variants = (_FIRST, _PREVIOUS)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
@@ -44,6 +44,13 @@ class Stale(FormOperator):
             earlier=({"x": 0.2}, {"x": 0.3}),
             performed=({"x": 0.3},),
             note="always one behind",
+        ),
+        Example(
+            Subject(CALL_TO, variant=_FIRST),
+            {"x": 0.4},
+            earlier=({"x": 0.2}, {"x": 0.3}),
+            performed=({"x": 0.2},),
+            note="the service is asked for the same over and over",
         ),
         Example(Subject(PUBLISH, variant=_FIRST), {"x": 0.4}, away=_NONE_BEFORE),
         Example(Subject(RECEIVE, variant=_PREVIOUS), replied={"gap": 0.02}, earlier=(), away=_NONE_BEFORE),
