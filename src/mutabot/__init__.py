@@ -1,7 +1,8 @@
 """Mutation testing for robot programs: would your tests notice?
 
-The names below are what plug-ins need; all else is the command line ``mutabot``. They are loaded when they
-are first used, so that ``import mutabot`` costs nothing beside a robot program.
+The names below are what plug-ins need, and ``open``, which reads the results of a campaign; all else is the
+command line ``mutabot``. They are loaded when they are first used, so that ``import mutabot`` costs nothing
+beside a robot program.
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .analysis.stored.campaign import StoredCampaign as StoredCampaign
+    from .analysis.stored.campaign import open as open
     from .errors import MutabotError as MutabotError
     from .model import Call as Call
     from .model import Kind as Kind
@@ -27,6 +30,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
+    "analysis.stored.campaign": ("StoredCampaign", "open"),
     "errors": ("MutabotError",),
     "model": ("Call", "Kind", "Middleware", "Mode", "Operation", "Pattern", "Proceed", "Quantity", "Reply"),
     "operators": ("Example", "Operator", "Subject"),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 
 from mutabot.border.test_end import TestEnd
 from mutabot.model import Outcome
@@ -12,6 +13,26 @@ from mutabot.model.outcome import same_end
 DRAWING = "drawing"
 VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
 REPEATS = "repeats"
+#: summaries of the operators of the plan by their names, and ``Reaching``
+OPERATORS, REACHING = "operators", "reaching"
+
+
+@dataclass(frozen=True, slots=True)
+class Reaching:
+    """Which tests reach which sites, in any round of the baseline.
+
+    Attributes:
+        tests: node ids.
+        sites: by the id of a site, the indexes in ``tests`` of those that reach it.
+    """
+
+    tests: tuple[str, ...] = ()
+    sites: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+
+    def at(self, sites: Iterable[str]) -> tuple[str, ...]:
+        """The tests that reach all of these sites."""
+        reached = [set(self.sites.get(site, ())) for site in sites]
+        return tuple(self.tests[index] for index in sorted(set.intersection(*reached))) if reached else ()
 
 
 @dataclass(frozen=True, slots=True)

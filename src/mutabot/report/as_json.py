@@ -16,6 +16,8 @@ from mutabot.journal.records import (
     CONFIRMATION,
     DRAWING,
     FLAKY,
+    OPERATORS,
+    REACHING,
     REPEATS,
     VERIFICATION,
     Drawing,
@@ -29,7 +31,7 @@ from mutabot.model import Mutant, Outcome, Quantity, Verdict
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
-_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS}
+_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING}
 
 
 def dumps(data: Any) -> str:
