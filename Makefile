@@ -104,7 +104,7 @@ $(VENV)-shipped/.ready: tools/shipped.txt pyproject.toml
 	$(VENV)-shipped/bin/python -m pip install --quiet --disable-pip-version-check -e . -r tools/shipped.txt
 	@touch $@
 
-$(READY): requirements.lock pyproject.toml tools/setup.sh
+$(READY): requirements.lock pyproject.toml tools/setup.sh tools/schemas.py
 	PYTHON=$(PYTHON) VENV=$(VENV) sh tools/setup.sh
 	@touch $@
 

@@ -20,7 +20,7 @@ from mutabot.cli.app import main
 from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
 
-COMMANDS = ("init", "check", "list", "run", "compare", "results", "show", "replay")
+COMMANDS = ("init", "check", "list", "run", "compare", "results", "show", "report", "replay")
 
 
 @pytest.fixture
@@ -395,7 +395,8 @@ def test_the_shell_completes_commands_and_names(project: Path) -> None:
         )  # fmt: skip
         return done.stdout.split()
 
-    assert completed("mutabot re") == ["replay", "results"]
+    assert completed("mutabot re") == ["replay", "report", "results"]
+    assert completed("mutabot report --format s") == ["sarif"]
     assert completed("mutabot run --engine ") == ["auto", "branch", "replay", "warm"]
     assert completed("mutabot run --family cl") == ["classical"]
 

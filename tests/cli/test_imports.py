@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from analysis import samples
+from mutabot.cli.report import FORMATS
 
 #: what runs a campaign, and what that needs
 NOT_FOR_LOOKING = (
@@ -34,6 +35,20 @@ def test_looking_at_results_loads_nothing_that_runs_a_campaign(tmp_path: Path, w
         [sys.executable, "-c", CODE, "-C", str(tmp_path), *words], capture_output=True, text=True, check=True
     )
     assert "gripper.command" in done.stdout
-    loaded = done.stderr.split()
-    assert "mutabot.analysis.results" in loaded
-    assert [name for name in loaded if name.startswith(NOT_FOR_LOOKING)] == []
+    assert_light(done.stderr)
+
+
+@pytest.mark.parametrize("name", [name for name in FORMATS if name != "parquet"])
+def test_a_report_loads_nothing_that_runs_a_campaign_and_no_other_format(tmp_path: Path, name: str) -> None:
+    samples.write_journal(tmp_path / ".mutabot" / "journal.sqlite")
+    words = [sys.executable, "-c", CODE, "-C", str(tmp_path), "report", "--format", name]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert_light(done.stderr)
+    formats = [one for one in done.stderr.split() if one.startswith("mutabot.report.formats.")]
+    assert formats == [f"mutabot.report.formats.{name.replace('-', '_')}"]
+    assert not {"pandas", "pyarrow"} & set(done.stderr.split())
+
+
+def assert_light(loaded: str) -> None:
+    assert "mutabot.analysis.results" in loaded.split()
+    assert [name for name in loaded.split() if name.startswith(NOT_FOR_LOOKING)] == []

@@ -16,7 +16,7 @@ import typer
 from mutabot.errors import MutabotError
 from mutabot.exit_codes import ExitCode
 
-from . import campaign, compare, init, replay, results
+from . import campaign, compare, init, replay, report, results
 from .options import Version
 
 _SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
@@ -50,6 +50,7 @@ app.command(rich_help_panel=_RUN)(compare.compare)
 app.command(rich_help_panel=_RUN)(replay.replay)
 app.command(rich_help_panel=_LOOK)(results.results)
 app.command(rich_help_panel=_LOOK)(results.show)
+app.command(rich_help_panel=_LOOK)(report.report)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

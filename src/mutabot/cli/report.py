@@ -1,0 +1,181 @@
+"""``mutabot report``: the last campaign in formats of other tools, and beside an older one."""
+
+# Commands import what they need when they run, so that `--help` is fast; typer makes options of parameters.
+# ruff: noqa: PLC0415
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from itertools import zip_longest
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from mutabot.errors import UsageError
+from mutabot.journal.files import find_journal
+
+from . import options
+from .output import print_json, tell
+
+if TYPE_CHECKING:
+    from mutabot.analysis.stored.campaign import StoredCampaign
+    from mutabot.analysis.stored.changes import Changes
+    from mutabot.report.format import Format, Material
+
+_FOLDER = Path(__file__).parent.parent / "report" / "formats"
+#: a format is a file; its name is told without loading it, so that `--help` is fast
+FORMATS = tuple(sorted(file.stem.replace("_", "-") for file in _FOLDER.glob("[!_]*.py")))
+#: stands for standard output
+_STANDARD = Path("-")
+
+Formats = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--format",
+        metavar="NAME",
+        help=f"One of {', '.join(FORMATS)}. Repeatable, each with an --output.",
+        autocompletion=lambda: list(FORMATS),
+    ),
+]
+Outputs = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--output", "-o", metavar="FILE", help="File for the format, in the same order; - is standard output."
+    ),
+]
+Old = Annotated[
+    Path | None,
+    typer.Option(
+        "--compare",
+        metavar="OLD",
+        help="Tell what differs from this journal, or a project's folder with one.",
+    ),
+]
+Prefix = Annotated[
+    str, typer.Option("--prefix", metavar="FOLDER", help="Folder of the project in its repository.")
+]
+
+
+def report(
+    context: typer.Context,
+    format: Formats = None,
+    output: Outputs = None,
+    compare: Old = None,
+    prefix: Prefix = "",
+    json: options.Json = False,
+) -> None:
+    """Write the last campaign in formats of other tools, or tell what differs from an older one.
+
+    It reads the journal alone, also that of a campaign that was interrupted or still runs.
+    """
+    from mutabot.analysis.stored.campaign import open as open_campaign
+    from mutabot.report.format import Material
+    from mutabot.report.shaping.portable import portable
+
+    wanted = list(_wanted(format or (), output or ()))
+    if not wanted and compare is None:
+        raise UsageError(f"say which --format to write: {', '.join(FORMATS)}; or --compare with what")
+    for one, _ in wanted:
+        if compare is not None and not one.tells_changes:
+            raise UsageError(f"the format {one.name} cannot hold a comparison; markdown can")
+    if json and (wanted or compare is None):
+        raise UsageError("--json goes with --compare alone; `mutabot results --json` prints the results")
+    journal = find_journal(context.obj)
+    campaign = portable(open_campaign(journal))
+    changes = _changes(campaign, journal, compare) if compare is not None else None
+    material = Material(campaign, _folder(prefix), changes)
+    if changes is not None and not wanted:
+        _show(changes, json=json)
+    for one, file in wanted:
+        _write(one, material, file)
+    if not campaign.is_complete:
+        known = f"{campaign.results.done} of {campaign.results.planned} outcomes are known"
+        tell([f"mutabot: the campaign is not complete ({campaign.state}): {known}"])
+
+
+def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Format, Path]]:
+    """Each format with its file. Raises UsageError if they do not go together."""
+    from mutabot.report.choice import format_of
+
+    if len(files) > len(names) or (len(names) > 1 and len(files) < len(names)):
+        raise UsageError(
+            f"{len(names)} formats and {len(files)} files: each --format takes one --output, in the same "
+            "order; a single format goes to standard output without"
+        )
+    for name, file in zip_longest(names, files, fillvalue=_STANDARD):
+        found = format_of(str(name))
+        if file != _STANDARD:
+            _check(Path(file))
+        yield found, Path(file)
+
+
+def _check(file: Path) -> None:
+    """Raise UsageError for a file that could not be written, before anything is."""
+    if file.is_dir():
+        raise UsageError(f"the report {file} cannot be written: it is a folder")
+    if not file.parent.is_dir():
+        raise UsageError(f"the report {file} cannot be written: there is no folder {file.parent}")
+
+
+def _folder(prefix: str) -> str:
+    """A folder in a repository, in one way of writing it. Raises UsageError if it leads out of it."""
+    folder = PurePosixPath(prefix)
+    if folder.is_absolute() or ".." in folder.parts:
+        raise UsageError(f"--prefix {prefix} must be a folder inside the repository, relative to its root")
+    return "" if folder == PurePosixPath() else str(folder)
+
+
+def _changes(campaign: StoredCampaign, journal: Path, old: Path) -> Changes:
+    from mutabot.analysis.stored.campaign import journal_at
+    from mutabot.analysis.stored.campaign import open as open_campaign
+    from mutabot.analysis.stored.changes import changes
+    from mutabot.journal.succession import previous_of
+    from mutabot.report.shaping.portable import portable
+
+    other = journal_at(old)
+    if other.exists() and journal.exists() and other.samefile(journal):
+        raise UsageError(
+            f"{old} is the campaign itself; the last complete one before it, if there was any, is in "
+            f"{previous_of(journal).name} beside it"
+        )
+    return changes(portable(open_campaign(other)).results, campaign.results)
+
+
+def _show(changes: Changes, *, json: bool) -> None:
+    if json:
+        from mutabot.report.changes.data import changes_data
+
+        print_json(changes_data(changes))
+    else:
+        from mutabot.report.changes.text import print_changes
+        from mutabot.report.terminal.console import make_console
+
+        print_changes(make_console(), changes)
+
+
+def _write(format: Format, material: Material, file: Path) -> None:
+    made = format.make(material)
+    data = made.encode() if isinstance(made, str) else made
+    if not data.endswith(b"\n") and isinstance(made, str):
+        data += b"\n"
+    if file == _STANDARD:
+        _print(data)
+        return
+    try:
+        file.write_bytes(data)
+    except OSError as error:
+        raise UsageError(f"the report {file} cannot be written: {error.strerror}") from error
+
+
+def _print(data: bytes) -> None:
+    """Print as it is, in UTF-8 whatever the terminal has, also where the reader leaves early."""
+    from mutabot.report.terminal.console import leave_pipe
+
+    try:
+        sys.stdout.flush()
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+    except BrokenPipeError:
+        leave_pipe()

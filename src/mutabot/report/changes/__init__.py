@@ -1,0 +1,1 @@
+"""What differs between two campaigns: as text, as JSON and as Markdown."""

@@ -1,0 +1,21 @@
+"""CSV: one row per outcome, in UTF-8 with a header. docs/reports.md has the columns."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+from mutabot.analysis.stored.table import COLUMNS, rows
+from mutabot.report.format import Format, Material
+
+
+def make(material: Material) -> str:
+    """The report. A value that is not known is an empty cell."""
+    file = io.StringIO(newline="")
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(column.name for column in COLUMNS)
+    writer.writerows(rows(material.campaign.results))
+    return file.getvalue()
+
+
+FORMAT = Format("csv", make)

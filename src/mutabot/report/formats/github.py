@@ -1,0 +1,64 @@
+"""Workflow commands of GitHub Actions: each survivor is an annotation beside the line in a pull request.
+
+A step shows at most ten warnings and ten notices: the survivors that matter most come first, and what is left
+is told in a last notice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mutabot.analysis.results import MutantResult
+from mutabot.report.format import Format, Material
+from mutabot.report.shaping.status import survivor_text
+
+#: annotations of each level; the tenth notice says what is not shown
+_LIMITS = {"warning": 10, "notice": 9}
+
+
+def make(material: Material) -> str:
+    """The report: one command a line."""
+    return "".join(f"{line}\n" for line in _lines(material))
+
+
+def _lines(material: Material) -> Iterator[str]:
+    left, hidden = dict(_LIMITS), 0
+    for result in material.campaign.survivors:
+        level = "notice" if result.indistinguishable else "warning"
+        if left[level]:
+            left[level] -= 1
+            yield _annotation(level, result, material)
+        else:
+            hidden += 1
+    told = [f"{hidden} more survivors are not shown here; `mutabot results` lists them"] if hidden else []
+    if not material.campaign.is_complete:
+        results = material.campaign.results
+        told.append(f"the campaign is not complete ({results.state}): {results.done} of {results.planned} "
+                    "outcomes are known")  # fmt: skip
+    if told:
+        yield f"::notice title=mutabot::{_data('; '.join(told))}"
+
+
+def _annotation(level: str, result: MutantResult, material: Material) -> str:
+    mutant = result.mutant
+    span = mutant.singles[0].site.span
+    place = material.place(span)
+    where = {"file": material.path(span.file), "line": str(place.line), "endLine": str(place.end_line)}
+    if place.end_column is not None and place.line == place.end_line:  # columns are of one line only
+        where |= {"col": str(place.column), "endColumn": str(place.end_column)}
+    where["title"] = f"Survivor {mutant.number}: {mutant.operator} ({mutant.site.role})"
+    properties = ",".join(f"{name}={_property(value)}" for name, value in where.items())
+    return f"::{level} {properties}::{_data(survivor_text(result))}"
+
+
+def _data(text: str) -> str:
+    """The message of a command, which ends with its line."""
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    """A value before the message, which also ends at a comma or at two colons."""
+    return _data(text).replace(":", "%3A").replace(",", "%2C")
+
+
+FORMAT = Format("github", make)

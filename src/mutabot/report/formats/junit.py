@@ -1,0 +1,115 @@
+"""JUnit XML: a test case per mutant, which every CI system shows. A survivor is a failure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from xml.etree import ElementTree as Xml
+
+from mutabot.analysis.results import MutantResult
+from mutabot.analysis.score import Group, groups_of
+from mutabot.model import Verdict
+from mutabot.report.format import Format, Material
+from mutabot.report.shaping.status import reason_of, rounds_text, short_reason, status_of
+from mutabot.report.shaping.texts import one_line
+
+#: state to the element that says so; states that are not here passed
+_ELEMENT: Mapping[Verdict | None, str] = {
+    Verdict.SURVIVED: "failure",
+    Verdict.NOT_COVERED: "failure",
+    Verdict.ERROR: "error",
+    Verdict.UNSTABLE: "error",
+    Verdict.REFUSED: "skipped",
+    Verdict.INVALID: "skipped",
+    Verdict.NO_EFFECT: "skipped",
+    None: "skipped",
+}
+
+
+def make(material: Material) -> str:
+    """The report."""
+    campaign = material.campaign
+    suites: dict[tuple[str, str, str], list[MutantResult]] = {}
+    for result in campaign.mutants:
+        site = result.mutant.site
+        suites.setdefault((site.span.file, result.mutant.family, site.role.value), []).append(result)
+    groups = {(group.family, group.role): group for group in campaign.scores}
+    root = Xml.Element("testsuites", {"name": f"mutabot ({campaign.state})", **_counts(campaign.mutants)})
+    for (file, family, role), results in suites.items():
+        name = f"{material.path(file)} · {family} · {role}"
+        suite = Xml.SubElement(root, "testsuite", {"name": name, **_counts(results)})
+        _properties(suite, material, results, groups.get((family, role)))
+        for result in results:
+            _case(suite, result, material)
+    Xml.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + Xml.tostring(root, encoding="unicode") + "\n"
+
+
+def _counts(results: Sequence[MutantResult]) -> dict[str, str]:
+    elements = [_ELEMENT.get(status_of(result)) for result in results]
+    return {
+        "tests": str(len(results)),
+        "failures": str(elements.count("failure")),
+        "errors": str(elements.count("error")),
+        "skipped": str(elements.count("skipped")),
+        "time": _seconds(results),
+    }
+
+
+def _seconds(results: Iterable[MutantResult]) -> str:
+    return f"{sum(outcome.wall for result in results for outcome in result.outcomes):.3f}"
+
+
+def _properties(
+    suite: Xml.Element, material: Material, results: Sequence[MutantResult], group: Group | None
+) -> None:
+    """The scores of the suite's own mutants, and those of its family and role over all files."""
+    outcomes = [outcome for result in results for outcome in result.outcomes]
+    own = groups_of([result.mutant for result in results], outcomes, material.campaign.rounds)
+    found: dict[str, object] = {"state": material.campaign.state, "rounds": material.campaign.rounds}
+    for start, one in (("", own[0]), (f"{own[0].family}.{own[0].role}.", group)):
+        if one is not None:
+            total = one.scores.total
+            found |= {
+                f"{start}score": _share(one.scores.mean),
+                f"{start}check_score": _share(one.scores.mean_check),
+                f"{start}killed": total.killed,
+                f"{start}valid": total.valid,
+            }
+    properties = Xml.SubElement(suite, "properties")
+    for name, value in found.items():
+        Xml.SubElement(properties, "property", {"name": name, "value": str(value)})
+
+
+def _share(share: float | None) -> str:
+    return "" if share is None else f"{share:.4f}"
+
+
+def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
+    mutant = result.mutant
+    file = material.path(mutant.site.span.file)
+    case = Xml.SubElement(
+        suite,
+        "testcase",
+        {
+            # together they name the mutant in every campaign: the id begins with its file
+            "classname": f"mutabot.{mutant.family}.{mutant.site.role.value}",
+            "name": mutant.id,
+            "file": file,
+            "line": str(mutant.site.span.line),
+            "time": _seconds([result]),
+        },
+    )
+    status = status_of(result)
+    element = _ELEMENT.get(status)
+    text = f"{file}:{mutant.site.span.line}: {mutant.description}\n{reason_of(result)}"
+    if element is None:
+        Xml.SubElement(case, "system-out").text = text
+        return
+    why = result.why if element == "failure" else f"{rounds_text(result)}: {short_reason(result)}"
+    told = Xml.SubElement(case, element, {"message": one_line(f"{mutant.description}: {why}")})
+    if element != "skipped":
+        told.set("type", str(status).replace(" ", "-"))
+    told.text = text
+
+
+FORMAT = Format("junit", make)

@@ -1,0 +1,155 @@
+"""Markdown for the summary of a CI job or a comment: scores, survivors, and what is not judged."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+
+from mutabot.analysis.results import MutantResult
+from mutabot.analysis.score import Group
+from mutabot.analysis.statistics import Interval
+from mutabot.model import Verdict
+from mutabot.report.changes.markdown import change_lines
+from mutabot.report.format import Format, Material
+from mutabot.report.shaping.markup import escaped, table
+from mutabot.report.shaping.status import rounds_text, short_reason, status_of, why_alone
+
+#: rows of a table of mutants; GitHub takes no summary of more than a megabyte
+_ROWS = 100
+#: states of mutants that no test has judged, in the order of their interest
+_UNJUDGED = (
+    Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT, None,
+)  # fmt: skip
+
+
+def make(material: Material) -> str:
+    """The report."""
+    return "\n".join(_lines(material)) + "\n"
+
+
+def _lines(material: Material) -> Iterator[str]:
+    results = material.campaign.results
+    yield f"## Mutation testing: {len(results.mutants)} mutants × {results.rounds} rounds"
+    yield ""
+    if not material.campaign.is_complete or results.done < results.planned:
+        known = f"{results.done} of {results.planned} outcomes are known"
+        yield f"> **This campaign is not complete** ({escaped(results.state)}): {known}."
+        yield ""
+    yield from _scores(results.groups)
+    if material.changes is not None:
+        yield from change_lines(material.changes, material.path)
+    yield from _survivors(material)
+    yield from _unjudged(material)
+    yield from _left_out(material)
+    yield from _flaky(results.flaky.tests)
+
+
+def _scores(groups: Sequence[Group]) -> Iterator[str]:
+    if not groups:
+        yield "No mutants were planned."
+        return
+    head = ("family", "role", "mutants", "score", "killed / valid", "check score", "by a check / valid")
+    yield from table(head, (_score_cells(group) for group in groups), right=range(2, 7))
+
+
+def _score_cells(group: Group) -> tuple[str, ...]:
+    scores, total = group.scores, group.scores.total
+    return (
+        group.family,
+        group.role,
+        str(group.mutants),
+        _percent(scores.mean, scores.interval),
+        f"{total.killed} / {total.valid}",
+        _percent(scores.mean_check, scores.check_interval),
+        f"{total.by_check} / {total.valid}",
+    )
+
+
+def _percent(share: float | None, interval: Interval | None) -> str:
+    if share is None:
+        return "–"
+    ends = f" ({100 * interval.low:.0f}–{100 * interval.high:.0f} %)" if interval is not None else ""
+    return f"{100 * share:.1f} %{ends}"
+
+
+def _survivors(material: Material) -> Iterator[str]:
+    survivors = material.campaign.survivors
+    if not survivors:
+        if material.campaign.results.all.total.valid:
+            yield "### No survivors"
+            yield ""
+        return
+    yield f"### Survivors: {len(survivors)}, the farthest from the original first"
+    yield ""
+    head = ("no.", "place", "operator", "what it does", "let through", "why")
+    yield from table(head, (_survivor_cells(one, material) for one in survivors[:_ROWS]), right=(0,))
+    yield from _rest(len(survivors))
+
+
+def _survivor_cells(result: MutantResult, material: Material) -> tuple[str, ...]:
+    mutant, rate = result.mutant, result.kill_rate
+    return (
+        str(mutant.number),
+        _place(result, material),
+        mutant.operator,
+        mutant.description,
+        f"{rate.valid - rate.killed} of {rate.valid}",
+        why_alone(result),
+    )
+
+
+def _place(result: MutantResult, material: Material) -> str:
+    span = result.mutant.site.span
+    return f"{material.path(span.file)}:{span.line}"
+
+
+def _rest(count: int) -> Iterator[str]:
+    if count > _ROWS:
+        yield f"and {count - _ROWS} more, which `mutabot results` lists."
+        yield ""
+
+
+def _unjudged(material: Material) -> Iterator[str]:
+    by_status: dict[Verdict | None, list[MutantResult]] = {}
+    for result in material.campaign.mutants:
+        by_status.setdefault(status_of(result), []).append(result)
+    found = [(status, one) for status in _UNJUDGED for one in by_status.get(status, ())]
+    if not found:
+        return
+    yield f"### Not judged: {len(found)}, outside the score"
+    yield ""
+    head = ("no.", "place", "operator", "what it does", "rounds", "reason")
+    rows = (
+        (
+            str(one.mutant.number),
+            _place(one, material),
+            one.mutant.operator,
+            one.mutant.description,
+            rounds_text(one),
+            short_reason(one) if status is not None else "",
+        )
+        for status, one in found[:_ROWS]
+    )
+    yield from table(head, rows, right=(0,))
+    yield from _rest(len(found))
+
+
+def _left_out(material: Material) -> Iterator[str]:
+    left_out = material.campaign.results.left_out
+    if left_out:
+        reasons = Counter(item.reason for item in left_out).most_common()
+        told = "; ".join(f"{count} × {escaped(reason)}" for reason, count in reasons)
+        yield f"Left out, because they cannot matter: {len(left_out)} ({told})."
+        yield ""
+
+
+def _flaky(tests: Iterable[str]) -> Iterator[str]:
+    lines = [f"- {escaped(line)}" for line in tests]
+    if lines:
+        yield "### Tests that cannot be relied on"
+        yield ""
+        yield from lines
+        yield ""
+
+
+FORMAT = Format("markdown", make, tells_changes=True)

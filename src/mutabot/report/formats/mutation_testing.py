@@ -1,0 +1,149 @@
+"""mutation-testing-report-schema, version 2: the JSON that Stryker's report page and dashboard show.
+
+That schema has one status per mutant and no rounds: ``shaping.status`` says which, and the rounds stand in
+``statusReason``. Outside the score stand there *RuntimeError*, *CompileError*, *Ignored* and *Pending*.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from mutabot.analysis.results import MutantResult
+from mutabot.model import Mutant, Outcome, Span, Verdict
+from mutabot.report.as_json import dumps
+from mutabot.report.format import Format, Material
+from mutabot.report.shaping.places import utf16
+from mutabot.report.shaping.status import reason_of, status_of
+
+_SCHEMA_VERSION = "2.0"
+#: in percent; what the page paints green and red. They are the schema's customary ones, and no limit of ours
+_THRESHOLDS = {"high": 80, "low": 60}
+#: our state to theirs. docs/reports.md has the reasons
+_STATUS: Mapping[Verdict | None, str] = {
+    Verdict.KILLED: "Killed",
+    Verdict.TIMEOUT: "Timeout",
+    Verdict.SURVIVED: "Survived",
+    Verdict.NOT_COVERED: "NoCoverage",
+    Verdict.INVALID: "CompileError",  # it is no program, or no command
+    Verdict.REFUSED: "RuntimeError",  # it ran, and the robot answered with an error that no test is about
+    Verdict.ERROR: "RuntimeError",  # the run failed, and no test did
+    Verdict.NO_EFFECT: "Ignored",  # it ran and was the original: nothing was there to judge
+    Verdict.UNSTABLE: "Ignored",  # it ran, and what came of it is not believed
+    None: "Pending",  # it was planned, and has not been run yet
+}
+
+
+def make(material: Material) -> str:
+    """The report."""
+    campaign = material.campaign
+    return dumps(
+        {
+            "schemaVersion": _SCHEMA_VERSION,
+            "thresholds": _THRESHOLDS,
+            "framework": _framework(campaign.meta),
+            "config": _config(material),
+            "files": _files(material),
+            "testFiles": _test_files(material),
+        }
+    )
+
+
+def _framework(meta: Mapping[str, Any]) -> dict[str, Any]:
+    versions = {str(name): str(version) for name, version in meta.get("versions", {}).items()}
+    return {"name": "Mutabot", "version": str(meta.get("mutabot", "")), "dependencies": versions}
+
+
+def _config(material: Material) -> dict[str, Any]:
+    results = material.campaign.results
+    return {
+        **{key: results.meta.get(key) for key in ("families", "rounds", "seed", "engine", "order")},
+        "state": results.state,
+        "outcomes": {"known": results.done, "planned": results.planned},
+        "scores": [
+            {
+                "family": group.family,
+                "role": group.role,
+                "score": group.scores.mean,
+                "checkScore": group.scores.mean_check,
+            }
+            for group in results.groups
+        ],
+        "leftOut": dict(Counter(item.reason for item in results.left_out)),
+    }
+
+
+def _files(material: Material) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for result in material.campaign.mutants:
+        file = result.mutant.singles[0].site.span.file
+        entry = found.setdefault(
+            material.path(file),
+            {"language": "python", "source": material.campaign.source(file) or "", "mutants": []},
+        )
+        entry["mutants"].append(_mutant(result, material))
+    return found
+
+
+def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
+    mutant = result.mutant
+    killed_by = _unique(test for outcome in result.outcomes for test in _killers(outcome))
+    covered_by = _unique([*material.campaign.reached_by(mutant), *killed_by])
+    return {
+        "id": mutant.id,
+        "mutatorName": mutant.operator,
+        "description": mutant.description,
+        "replacement": _replacement(mutant, material),
+        "location": _location(mutant.singles[0].site.span, material),
+        "status": _STATUS[status_of(result)],
+        "statusReason": reason_of(result),
+        "coveredBy": covered_by,
+        "killedBy": killed_by,
+        "testsCompleted": max((outcome.tests for outcome in result.outcomes), default=0),
+        "duration": 1000 * sum(outcome.wall for outcome in result.outcomes),
+    }
+
+
+def _replacement(mutant: Mutant, material: Material) -> str:
+    """What would stand there: the new text of a mutant of the program text, else what becomes of the call."""
+    text = material.place(mutant.site.span).text
+    before, arrow, after = mutant.description.partition(" → ")
+    is_text = not mutant.parts and not mutant.operation and arrow and before == text
+    return after if is_text else mutant.description
+
+
+def _location(span: Span, material: Material) -> dict[str, Any]:
+    place = material.place(span, utf16)
+    end_column = place.end_column or place.column + 1
+    return {
+        "start": {"line": place.line, "column": place.column},
+        "end": {"line": place.end_line, "column": end_column},
+    }
+
+
+def _killers(outcome: Outcome) -> Iterable[str]:
+    if not outcome.verdict.is_killed:
+        return ()
+    first = (outcome.test,) if outcome.test is not None else ()
+    return (*first, *(kill.test for kill in outcome.kills))
+
+
+def _test_files(material: Material) -> dict[str, Any]:
+    """All tests that are known, by their files: what mutants name is among them."""
+    campaign = material.campaign
+    named = (test for result in campaign.mutants for one in result.outcomes for test in _killers(one))
+    baseline = (one.test.test for one in campaign.results.tests)
+    found: dict[str, Any] = {}
+    for test in _unique([*baseline, *campaign.reaching.tests, *named]):
+        file, _, name = test.partition("::")
+        tests = found.setdefault(material.path(file), {"tests": []})["tests"]
+        tests.append({"id": test, "name": name or test})
+    return found
+
+
+def _unique(names: Iterable[str]) -> list[str]:
+    return list(dict.fromkeys(names))
+
+
+FORMAT = Format("mutation-testing", make)

@@ -1,0 +1,152 @@
+"""SARIF 2.1.0: a result per survivor, for code scanning and editors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import quote
+
+from mutabot.analysis.results import MutantResult
+from mutabot.model import Mutant, Span
+from mutabot.report.as_json import dumps
+from mutabot.report.format import Format, Material
+from mutabot.report.shaping.places import utf16
+from mutabot.report.shaping.status import is_divergent, status_of, survivor_text
+
+_SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+#: paths are relative to this; whoever reads the file knows where it is
+_ROOT = "%SRCROOT%"
+#: part of a name in ``partialFingerprints``; rises if ids of mutants are made in another way
+_FINGERPRINT = "mutabotMutant/v1"
+_HELP = (
+    "A survivor is a fault that the test suite lets through. Add a check that notices what the robot does "
+    "otherwise, or a case in which the fault matters; `mutabot show ID` tells all about it."
+)
+
+
+def make(material: Material) -> str:
+    """The report."""
+    survivors = material.campaign.survivors
+    rules = {name: index for index, name in enumerate(sorted({one.mutant.operator for one in survivors}))}
+    return dumps(
+        {
+            "$schema": _SCHEMA,
+            "version": "2.1.0",
+            "runs": [
+                {
+                    "tool": {"driver": _driver(material, rules)},
+                    "automationDetails": {"id": "mutabot/"},
+                    "columnKind": "utf16CodeUnits",
+                    "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
+                    "invocations": [_invocation(material)],
+                    "results": [_result(one, material, rules) for one in survivors],
+                    "properties": _scores(material),
+                }
+            ],
+        }
+    )
+
+
+def _driver(material: Material, rules: Mapping[str, int]) -> dict[str, Any]:
+    version = str(material.campaign.meta.get("mutabot", ""))
+    known = {one.mutant.operator: one.mutant for one in material.campaign.survivors}
+    return {
+        "name": "Mutabot",
+        **({"version": version} if version else {}),
+        "rules": [_rule(name, known[name], material) for name in rules],
+    }
+
+
+def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
+    told = [material.campaign.operators.get(one) or "" for one in name.split("+")]
+    summary = " ".join(filter(None, told)) or f"Operator {name} of family {mutant.family}."
+    return {
+        "id": name,
+        "name": name,
+        "shortDescription": {"text": f"The tests let a mutant of {name} through"},
+        "fullDescription": {"text": _message(summary)},
+        "help": {"text": _message(f"{summary}\n\n{_HELP}")},
+        "defaultConfiguration": {"level": "warning"},
+        "properties": {"tags": ["mutation-testing", mutant.family]},
+    }
+
+
+def _invocation(material: Material) -> dict[str, Any]:
+    results = material.campaign.results
+    is_complete = material.campaign.is_complete
+    told = f"{results.state}: {results.done} of {results.planned} outcomes are known"
+    notes = [] if is_complete else [{"level": "warning", "message": {"text": _message(told)}}]
+    return {"executionSuccessful": is_complete, "toolExecutionNotifications": notes}
+
+
+def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) -> dict[str, Any]:
+    mutant = result.mutant
+    first, *others = mutant.singles
+    found = {
+        "ruleId": mutant.operator,
+        "ruleIndex": rules[mutant.operator],
+        "level": _level(result),
+        "message": {"text": _message(survivor_text(result))},
+        "locations": [_location(first.site.span, material)],
+        "partialFingerprints": {_FINGERPRINT: mutant.id},
+        "properties": {
+            "mutant": mutant.id,
+            "number": mutant.number,
+            "family": mutant.family,
+            "role": mutant.site.role.value,
+            "status": str(status_of(result)),
+            "killed": result.kill_rate.killed,
+            "valid": result.kill_rate.valid,
+            "distance": result.distance,
+            "indistinguishable": result.indistinguishable,
+        },
+    }
+    related = [{"id": number, **_location(one.site.span, material)} for number, one in enumerate(others, 1)]
+    return {**found, "relatedLocations": related} if related else found
+
+
+def _level(result: MutantResult) -> str:
+    """How important a survivor is: whether the robot did something else, as far as that is known."""
+    if result.indistinguishable:
+        return "note"
+    return "error" if is_divergent(result) else "warning"
+
+
+def _location(span: Span, material: Material) -> dict[str, Any]:
+    place = material.place(span, utf16)
+    region: dict[str, Any] = {"startLine": place.line, "endLine": place.end_line}
+    if place.text is not None:
+        region |= {
+            "startColumn": place.column,
+            "endColumn": place.end_column,
+            "snippet": {"text": place.text},
+        }
+    file = {"uri": quote(material.path(span.file)), "uriBaseId": _ROOT}
+    return {
+        "physicalLocation": {"artifactLocation": file, "region": region},
+        "logicalLocations": [{"fullyQualifiedName": span.function, "kind": "function"}],
+    }
+
+
+def _message(text: str) -> str:
+    """Plain text for ``message.text``, in which braces stand for arguments and ``[…](…)`` for a link."""
+    return text.replace("{", "{{").replace("}", "}}").replace("](", "] (")
+
+
+def _scores(material: Material) -> dict[str, Any]:
+    groups = material.campaign.scores
+    return {
+        "state": material.campaign.state,
+        "scores": [
+            {
+                "family": one.family,
+                "role": one.role,
+                "score": one.scores.mean,
+                "checkScore": one.scores.mean_check,
+            }
+            for one in groups
+        ],
+    }
+
+
+FORMAT = Format("sarif", make)

@@ -1,0 +1,137 @@
+"""What holds for every format, whatever a campaign brings along."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as Xml
+
+import pytest
+from jsonschema.validators import validator_for
+
+import schemas
+from analysis import samples
+from mutabot.errors import UsageError
+from mutabot.report.choice import format_of, names
+from mutabot.report.format import Material
+from mutabot.report.shaping.portable import portable
+from report.material import HOSTILE, ROOT, made, stored, with_text
+
+TEXTS = [name for name in names() if name != "parquet"]
+JSON = ["mutation-testing", "sarif", "badge"]
+
+
+def check(name: str, text: str) -> Any:
+    """The data of a report in JSON, strict and as its schema says."""
+    data = json.loads(text, parse_constant=pytest.fail)
+    if name in schemas.SOURCES:
+        try:
+            schema = schemas.schema(name)
+        except schemas.NoSchemaError as error:
+            pytest.skip(f"no schema of {name} here: {error}")
+        validator_for(schema)(schema).validate(data)
+    return data
+
+
+def test_a_format_is_a_file_and_has_its_name() -> None:
+    assert names() == [
+        "badge", "csv", "github", "junit", "markdown", "mutation-testing", "parquet", "sarif",
+    ]  # fmt: skip
+    for name in names():
+        assert format_of(name).name == name
+
+
+def test_an_unknown_format_is_named_with_the_nearest() -> None:
+    with pytest.raises(UsageError, match="did you mean 'junit'"):
+        format_of("junti")
+
+
+@pytest.mark.parametrize("name", JSON)
+@pytest.mark.parametrize("finish", ["complete", "interrupted"])
+def test_json_is_as_the_published_schema_says(tmp_path: Path, name: str, finish: str) -> None:
+    for number, outcomes in enumerate((samples.OUTCOMES, samples.OUTCOMES[:3], ())):
+        campaign = stored(tmp_path / str(number), outcomes=outcomes, finish=finish)
+        check(name, made(name, campaign))
+
+
+@pytest.mark.parametrize("name", JSON)
+@pytest.mark.parametrize("text", HOSTILE)
+def test_json_is_strict_whatever_texts_say(tmp_path: Path, name: str, text: str) -> None:
+    check(name, made(name, with_text(stored(tmp_path), text)))
+
+
+@pytest.mark.parametrize("name", JSON)
+def test_numbers_that_json_cannot_hold_are_not_in_it(tmp_path: Path, name: str) -> None:
+    campaign = stored(tmp_path)
+    odd = [replace(one, way=float("nan"), distance=float("inf")) for one in samples.OUTCOMES]
+    mutants = tuple(
+        replace(one, rounds=tuple(odd[2 * index : 2 * index + 2]))
+        for index, one in enumerate(campaign.mutants)
+    )
+    check(name, made(name, replace(campaign, results=replace(campaign.results, mutants=mutants))))
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_xml_can_be_parsed_and_says_what_was_said(tmp_path: Path, text: str) -> None:
+    campaign = with_text(stored(tmp_path), text)
+    root = Xml.fromstring(made("junit", campaign))
+    assert len(root.findall(".//testcase")) == len(samples.MUTANTS)
+    message = " ".join(portable(campaign).mutants[1].why.split())
+    (failure,) = root.findall(".//testcase[@line='2'][@file='mission.py']/failure")
+    assert failure.attrib["message"].endswith(message)
+
+
+@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("text", HOSTILE)
+def test_no_report_holds_a_control_character(tmp_path: Path, name: str, text: str) -> None:
+    found = made(name, with_text(stored(tmp_path), text))
+    assert not re.search("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]", found)
+
+
+@pytest.mark.parametrize("name", names())
+def test_no_report_names_a_folder_of_the_machine(tmp_path: Path, name: str) -> None:
+    told = f"{ROOT}/mission.py /home/me/robot/a.py file:///tmp/pytest-of-me/x.log /usr/lib/python3/json.py"
+    campaign = with_text(stored(tmp_path), "safe")
+    campaign = replace(
+        campaign,
+        results=replace(
+            campaign.results,
+            state=f"OSError: {told}",
+            mutants=tuple(
+                replace(
+                    one,
+                    why=told,
+                    rounds=tuple(replace(each, message=told, place=told, test=f"{ROOT}/tests/a.py::b")
+                                 for each in one.rounds if each is not None),
+                )
+                for one in campaign.mutants
+            ),
+            meta={**campaign.meta, "root": ROOT},
+        ),
+    )  # fmt: skip
+    text = format_of(name).make(Material(portable(campaign)))
+    data = text.encode() if isinstance(text, str) else text
+    for part in (ROOT, "/home/me", "/tmp/", "/usr/lib", str(tmp_path)):
+        assert part.encode() not in data, part
+
+
+@pytest.mark.parametrize("name", ["mutation-testing", "sarif", "junit", "markdown", "github"])
+def test_files_are_named_from_the_root_of_the_repository_on(tmp_path: Path, name: str) -> None:
+    text = made(name, stored(tmp_path), prefix="cells/one")
+    assert "cells/one/mission.py" in text
+    assert "cells/one/tests/sensors.py" in text
+
+
+@pytest.mark.parametrize("name", [one for one in TEXTS if one != "csv"])
+def test_a_campaign_that_was_interrupted_says_so(tmp_path: Path, name: str) -> None:
+    campaign = stored(tmp_path, outcomes=samples.OUTCOMES[:3], finish="interrupted")
+    assert re.search("interrupted|not complete", made(name, campaign))
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_the_same_campaign_gives_the_same_report(tmp_path: Path, name: str) -> None:
+    campaign = stored(tmp_path)
+    assert made(name, campaign) == made(name, campaign)

@@ -1,0 +1,58 @@
+"""One state per mutant, and the rounds in words."""
+
+from __future__ import annotations
+
+import pytest
+
+from analysis import samples
+from mutabot.analysis.results import MutantResult
+from mutabot.model import By, Outcome, Verdict
+from mutabot.report.shaping.status import rounds_text, status_of
+
+K, T, S, N = Verdict.KILLED, Verdict.TIMEOUT, Verdict.SURVIVED, Verdict.NOT_COVERED
+R, I, O, U, E = Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT, Verdict.UNSTABLE, Verdict.ERROR  # noqa: E741
+
+
+def result(*verdicts: Verdict | None) -> MutantResult:
+    rounds = tuple(
+        Outcome("m", round, one, By.CHECK if one is K else None) if one is not None else None
+        for round, one in enumerate(verdicts)
+    )
+    return MutantResult(samples.SKIP, rounds, None, "")
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "status"),
+    [
+        ((K, K, K), K),
+        ((T, T), T),
+        ((K, T), K),
+        ((K, S, K), S),
+        ((S, N), S),
+        ((K, N), S),  # tests reach it, and one round lets it through
+        ((N, N), N),
+        ((N, R), N),
+        ((K, R, E), K),
+        ((K, None), K),
+        ((E, S), S),
+        ((O, R, U, E), E),
+        ((I, R), R),
+        ((O, I), I),
+        ((O, None), O),
+        ((U, O), U),
+        ((None, None), None),
+        ((), None),
+    ],
+)
+def test_the_state_is_what_there_is_to_act_on(
+    verdicts: tuple[Verdict | None, ...], status: Verdict | None
+) -> None:
+    assert status_of(result(*verdicts)) is status
+
+
+def test_rounds_are_told_by_their_end() -> None:
+    assert rounds_text(result(K, K, S, None, None, None)) == (
+        "killed by check in rounds 1 and 2, survived in round 3, not run in rounds 4 to 6"
+    )
+    assert rounds_text(result(S, K, S, S, S)) == "survived in rounds 1 and 3 to 5, killed by check in round 2"
+    assert rounds_text(result()) == "not run"
