@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -25,9 +26,11 @@ def outcomes(mutant: Mutant, *verdicts: Verdict, same: bool | None = None) -> tu
     )
 
 
-def results(folder: Path, found: Sequence[Outcome], mutants: tuple[Mutant, ...] = (A, B)) -> Results:
-    number = len(list(folder.iterdir()))
-    path = samples.write_journal(folder / f"{number}.sqlite", outcomes=tuple(found), mutants=mutants)
+def results(
+    folder: Path, found: Sequence[Outcome], mutants: tuple[Mutant, ...] = (A, B), **meta: Any
+) -> Results:
+    path = folder / f"{len(list(folder.iterdir()))}.sqlite"
+    samples.write_journal(path, outcomes=tuple(found), mutants=mutants, **meta)
     return mutabot.open(path).results
 
 
@@ -81,6 +84,26 @@ def test_mutants_that_are_gone_or_new_are_known_by_their_ids(tmp_path: Path) -> 
     assert (ids(found, "gone"), ids(found, "added")) == ([A.id], [samples.BY_TO.id])
     assert ids(found, "appeared") == [samples.BY_TO.id]
     assert ids(found, "fixed") == ids(found, "unknown") == []
+
+
+def test_a_family_that_was_not_to_run_is_neither_gone_nor_new(tmp_path: Path) -> None:
+    other = replace(B, family="classical", operation="", operator="SBR")
+    wide = {"families": ["robot", "classical"]}
+    old = results(tmp_path, outcomes(other, *SURVIVED), (A, other), **wide)
+    new = results(tmp_path, outcomes(A, *KILLED), (A,), families=["robot"])
+    there, back = changes(old, new), changes(new, old)
+    told = "was not to run family classical; mutants that are not compared: 1"
+    assert (there.gone, there.notes) == ((), (f"the new campaign {told}",))
+    assert (back.added, back.notes) == ((), (f"the old campaign {told}",))
+    same = changes(old, results(tmp_path, outcomes(A, *KILLED), (A,), **wide))
+    assert (ids(same, "gone"), same.notes) == ([other.id], ())
+
+
+def test_a_sample_is_told(tmp_path: Path) -> None:
+    drawing = {"sample": "10%", "one_per_site": False, "selected": 60, "strata": []}
+    found = changes(results(tmp_path, ()), results(tmp_path, (), drawing=drawing))
+    (note,) = found.notes
+    assert note.startswith("the new campaign is of a sample")
 
 
 def test_scores_of_both_stand_beside_each_other(tmp_path: Path) -> None:

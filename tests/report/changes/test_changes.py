@@ -56,7 +56,7 @@ def test_text_tells_every_section_and_what_happened(found: Changes) -> None:
     assert second == "the old campaign is not complete: interrupted"
     for heading in ("New survivors: 2", "Fixed survivors: 1", "Mutants that are gone: 1"):
         assert heading in text
-    assert "survived in rounds 1 and 2; was killed by check in rounds 1 and 2" in text
+    assert "survived in rounds 1 and 2; before: killed by check in rounds 1 and 2" in text
     assert re.search(r"robot · program +66\.7 % +50\.0 % +-16\.7", text)
 
 
@@ -87,7 +87,7 @@ def test_markdown_has_a_table_for_every_section(found: Changes) -> None:
     rows = cells("\n".join(change_lines(found, lambda file: f"cell/{file}")))
     assert ["robot · program", "66.7 %", "50.0 %", "-16.7"] in rows
     (row,) = (row for row in rows if row[1:3] == ["cell/mission.py:2", "skip"])
-    assert row[4] == "survived in rounds 1 and 2; was killed by check in rounds 1 and 2"
+    assert row[4] == "survived in rounds 1 and 2; before: killed by check in rounds 1 and 2"
 
 
 @pytest.mark.parametrize("text", HOSTILE)

@@ -11,10 +11,10 @@ from mutabot.report.shaping.texts import Cleaner, legible
 @pytest.mark.parametrize(
     ("text", "wanted"),
     [
-        ("/work/cell/tests/a.py:3", "tests/a.py:3"),
-        ("in '/work/cell'", "in '.'"),
-        ("file:///work/cell/log.txt", "log.txt"),
-        ("/work/cellar/a.py", "…/a.py"),
+        ("/srv/cell/tests/a.py:3", "tests/a.py:3"),
+        ("in '/srv/cell'", "in '.'"),
+        ("file:///srv/cell/log.txt", "log.txt"),
+        ("/srv/cellar/a.py", "…/a.py"),
         ("No such file: '/home/me/models/arm.urdf'", "No such file: '…/arm.urdf'"),
         ("file:///tmp/pytest-of-me/x.log, again", "…/x.log, again"),
         ("/usr/lib/python3.12/json/decoder.py:355", "…/decoder.py:355"),
@@ -26,7 +26,7 @@ from mutabot.report.shaping.texts import Cleaner, legible
     ],
 )
 def test_paths_of_the_machine_become_relative_and_topics_stay(text: str, wanted: str) -> None:
-    assert Cleaner("/work/cell")(text) == wanted
+    assert Cleaner("/srv/cell")(text) == wanted
 
 
 def test_without_a_root_nothing_is_taken_for_it() -> None:

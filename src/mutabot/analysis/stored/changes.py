@@ -6,7 +6,8 @@ judged can be fixed: a survivor that is refused, unstable or not run in the othe
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from mutabot.analysis.results import MutantResult, Results
@@ -43,10 +44,11 @@ class Changes:
             the campaigns shows anything that differs from the original.
         same: number of survivors of both that are not in ``changed``.
         unknown: survivors of the old one of which the new one says nothing: not run, or outside the score.
-        gone: mutants that the new one has no longer.
-        added: mutants that the old one did not have.
+        gone: mutants that only the old one has, of families that were asked for in the new one.
+        added: mutants that only the new one has, of families that were asked for in the old one.
         scores: the old and the new scores per family and role; None where a campaign has none of them.
         old_state, new_state: how the campaigns ended.
+        notes: what else is to be known of the campaigns before they are compared, a sentence each.
     """
 
     appeared: tuple[Pair, ...]
@@ -59,6 +61,7 @@ class Changes:
     scores: Mapping[tuple[str, str], tuple[Group | None, Group | None]]
     old_state: str
     new_state: str
+    notes: tuple[str, ...] = ()
 
 
 def changes(old: Results, new: Results) -> Changes:
@@ -76,12 +79,29 @@ def changes(old: Results, new: Results) -> Changes:
         changed=tuple(changed),
         same=len(both) - len(changed),
         unknown=tuple(pair for pair in lost if not _is_judged(pair.new)),
-        gone=tuple(one for one in old.mutants if one.mutant.id not in after),
-        added=tuple(one for one in new.mutants if one.mutant.id not in before),
+        gone=tuple(one for one in _asked_for(new, old.mutants) if one.mutant.id not in after),
+        added=tuple(one for one in _asked_for(old, new.mutants) if one.mutant.id not in before),
         scores=_scores(old.groups, new.groups),
         old_state=old.state,
         new_state=new.state,
+        notes=(*_notes("new", new, old), *_notes("old", old, new)),
     )
+
+
+def _asked_for(results: Results, mutants: Iterable[MutantResult]) -> list[MutantResult]:
+    """The mutants of families that a campaign had; all of them if it does not say which."""
+    families = results.meta.get("families")
+    return [one for one in mutants if families is None or set(one.mutant.family.split("+")) <= {*families}]
+
+
+def _notes(name: str, results: Results, other: Results) -> Iterator[str]:
+    """What a campaign did not look at, so that nobody takes it for gone or new."""
+    asked = {one.mutant.id for one in _asked_for(results, other.mutants)}
+    missing = [one.mutant.family for one in other.mutants if one.mutant.id not in asked]
+    for family, count in Counter(missing).items():
+        yield f"the {name} campaign was not to run family {family}; mutants that are not compared: {count}"
+    if results.drawing is not None:
+        yield f"the {name} campaign is of a sample: mutants that it does not have may not have been drawn"
 
 
 def _worst_first(results: Results) -> list[MutantResult]:

@@ -18,6 +18,7 @@ def changes_data(changes: Changes) -> dict[str, Any]:
         "format": FORMAT,
         "old_state": changes.old_state,
         "new_state": changes.new_state,
+        "notes": list(changes.notes),
         "same_survivors": changes.same,
         "new_survivors": _pairs(changes.appeared),
         "fixed_survivors": _pairs(changes.fixed),

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from mutabot.analysis.stored.changes import Changes
 from mutabot.report.shaping.markup import escaped, table
 
-from .sections import incomplete, score_rows, sections, summary
+from .sections import notes, score_rows, sections, summary
 
 #: mutants of a section that are shown
 _ROWS = 50
@@ -19,7 +19,7 @@ def change_lines(changes: Changes, path: Callable[[str], str]) -> Iterator[str]:
     yield ""
     yield f"{summary(changes)}."
     yield ""
-    for line in incomplete(changes):
+    for line in notes(changes):
         yield f"> **{escaped(line)}**"
         yield ""
     yield from table(("family · role", "old", "new", "points"), score_rows(changes), right=(1, 2, 3))

@@ -37,7 +37,7 @@ def sections(changes: Changes) -> Iterator[Section]:
             yield Section(heading, tuple((pair.either, _told(pair)) for pair in found))
     if changes.gone:
         yield Section(
-            "Mutants that are gone", tuple((one, f"was {rounds_text(one)}") for one in changes.gone)
+            "Mutants that are gone", tuple((one, f"before: {rounds_text(one)}") for one in changes.gone)
         )
     added = tuple((one, rounds_text(one)) for one in changes.added if not one.is_survivor)
     if added:
@@ -53,10 +53,11 @@ def summary(changes: Changes) -> str:
     )
 
 
-def incomplete(changes: Changes) -> list[str]:
-    """What is to be known of campaigns that did not run to their end."""
+def notes(changes: Changes) -> list[str]:
+    """What is to be known of campaigns that did not run to their end, or not of the same mutants."""
     states = (("old", changes.old_state), ("new", changes.new_state))
-    return [f"the {name} campaign is not complete: {state}" for name, state in states if state != "complete"]
+    ends = [f"the {name} campaign is not complete: {state}" for name, state in states if state != "complete"]
+    return [*ends, *changes.notes]
 
 
 def score_rows(changes: Changes) -> Iterator[tuple[str, str, str, str]]:
@@ -68,7 +69,7 @@ def score_rows(changes: Changes) -> Iterator[tuple[str, str, str, str]]:
 
 
 def _told(pair: Pair) -> str:
-    old = f"was {rounds_text(pair.old)}" if pair.old is not None else "is a new mutant"
+    old = f"before: {rounds_text(pair.old)}" if pair.old is not None else "a new mutant"
     return f"{rounds_text(pair.new)}; {old}" if pair.new is not None else old
 
 

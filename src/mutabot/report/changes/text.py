@@ -19,7 +19,7 @@ from mutabot.report.terminal.console import (
     short_place,
 )
 
-from .sections import Section, incomplete, score_rows, sections, summary
+from .sections import Section, notes, score_rows, sections, summary
 
 #: mutants of a section that are shown
 _SHOWN = 50
@@ -33,7 +33,7 @@ def print_changes(console: Console, changes: Changes) -> None:
 
 def _parts(changes: Changes, width: int) -> Iterator[RenderableType]:
     yield Text(summary(changes), style="bold")
-    for line in incomplete(changes):
+    for line in notes(changes):
         yield Text(plain(line), style="bold")
     yield _scores(changes)
     for section in sections(changes):

@@ -58,11 +58,10 @@ def _driver(material: Material, rules: Mapping[str, int]) -> dict[str, Any]:
 
 
 def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
-    told = [material.campaign.operators.get(one) or "" for one in name.split("+")]
+    told = dict.fromkeys(material.campaign.operators.get(one) or "" for one in name.split("+"))
     summary = " ".join(filter(None, told)) or f"Operator {name} of family {mutant.family}."
     return {
         "id": name,
-        "name": name,
         "shortDescription": {"text": f"The tests let a mutant of {name} through"},
         "fullDescription": {"text": _message(summary)},
         "help": {"text": _message(f"{summary}\n\n{_HELP}")},

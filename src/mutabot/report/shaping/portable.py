@@ -9,7 +9,6 @@ from typing import Any, TypeVar
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.stored.campaign import StoredCampaign
-from mutabot.border.codec import from_data, to_data
 from mutabot.journal.records import Reaching
 
 from .texts import Cleaner, legible
@@ -54,7 +53,10 @@ def portable(campaign: StoredCampaign) -> StoredCampaign:
             legible(file): legible(text.removeprefix("\ufeff")) for file, text in campaign.sources.items()
         },
         operators=mapped(campaign.operators, legible),
-        reaching=from_data(Reaching, mapped(to_data(campaign.reaching), clean)),
+        reaching=Reaching(
+            mapped(campaign.reaching.tests, clean),
+            {legible(site): tests for site, tests in campaign.reaching.sites.items()},
+        ),
     )
 
 

@@ -12,8 +12,8 @@ _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\uf
 _ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 #: an absolute path in one of the folders in which machines keep files; topics of ROS look like others
 _ABSOLUTE = re.compile(
-    r"(?<![\w.~/…-])(?:file://)?/(?:home|root|tmp|usr|opt|var|etc|mnt|srv|run|data|work|workspace|workspaces|"
-    r"builds|github|Users|private|Volumes|Library)(?:/[^\s/:;,'\"<>()\[\]{}|]+)*/(?=[^\s/:;,'\"<>()\[\]{}|])"
+    r"(?<![\w.~/…-])(?:file://)?/(?:home|root|tmp|usr|opt|var|etc|mnt|srv|nix|workspace|workspaces|builds|github|"
+    r"__w|Users|private|Volumes|Library)(?:/[^\s/:;,'\"<>()\[\]{}|]+)*/(?=[^\s/:;,'\"<>()\[\]{}|])"
 )
 
 
