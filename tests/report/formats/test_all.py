@@ -129,9 +129,3 @@ def test_files_are_named_from_the_root_of_the_repository_on(tmp_path: Path, name
 def test_a_campaign_that_was_interrupted_says_so(tmp_path: Path, name: str) -> None:
     campaign = stored(tmp_path, outcomes=samples.OUTCOMES[:3], finish="interrupted")
     assert re.search("interrupted|not complete", made(name, campaign))
-
-
-@pytest.mark.parametrize("name", TEXTS)
-def test_the_same_campaign_gives_the_same_report(tmp_path: Path, name: str) -> None:
-    campaign = stored(tmp_path)
-    assert made(name, campaign) == made(name, campaign)

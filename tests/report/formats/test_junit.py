@@ -56,6 +56,8 @@ def test_a_mutant_that_has_not_been_run_is_skipped(tmp_path: Path) -> None:
     root = xml(stored(tmp_path, outcomes=(), finish="interrupted"))
     assert root.attrib["name"] == "mutabot (interrupted)"
     assert root.attrib["skipped"] == "5"
+    messages = [one.attrib["message"] for one in root.findall(".//skipped")]
+    assert messages[1] == "gripper.command: do nothing: not run in rounds 1 and 2"
 
 
 def test_a_case_is_named_by_the_id_and_says_where_it_is(tmp_path: Path) -> None:

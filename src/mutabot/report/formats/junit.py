@@ -9,7 +9,7 @@ from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group, groups_of
 from mutabot.model import Verdict
 from mutabot.report.format import Format, Material
-from mutabot.report.shaping.status import reason_of, rounds_text, short_reason, status_of
+from mutabot.report.shaping.status import reason_of, rounds_text, short_reason, status_of, why_alone
 from mutabot.report.shaping.texts import one_line
 
 #: state to the element that says so; states that are not here passed
@@ -105,7 +105,8 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
     if element is None:
         Xml.SubElement(case, "system-out").text = text
         return
-    why = result.why if element == "failure" else f"{rounds_text(result)}: {short_reason(result)}"
+    reason = f": {short_reason(result)}" if status is not None else ""
+    why = why_alone(result) if element == "failure" else f"{rounds_text(result)}{reason}"
     told = Xml.SubElement(case, element, {"message": one_line(f"{mutant.description}: {why}")})
     if element != "skipped":
         told.set("type", str(status).replace(" ", "-"))

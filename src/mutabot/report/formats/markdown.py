@@ -18,7 +18,7 @@ from mutabot.report.shaping.status import rounds_text, short_reason, status_of, 
 _ROWS = 100
 #: states of mutants that no test has judged, in the order of their interest
 _UNJUDGED = (
-    Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT, None,
+    Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT,
 )  # fmt: skip
 
 
@@ -76,7 +76,7 @@ def _survivors(material: Material) -> Iterator[str]:
     survivors = material.campaign.survivors
     if not survivors:
         if material.campaign.results.all.total.valid:
-            yield "### No survivors"
+            yield "### No survivors" if material.campaign.is_complete else "### No survivors so far"
             yield ""
         return
     yield f"### Survivors: {len(survivors)}, the farthest from the original first"
@@ -113,7 +113,10 @@ def _unjudged(material: Material) -> Iterator[str]:
     by_status: dict[Verdict | None, list[MutantResult]] = {}
     for result in material.campaign.mutants:
         by_status.setdefault(status_of(result), []).append(result)
-    found = [(status, one) for status in _UNJUDGED for one in by_status.get(status, ())]
+    if None in by_status:
+        yield f"Mutants that have not been run: {len(by_status[None])}."
+        yield ""
+    found = [one for status in _UNJUDGED for one in by_status.get(status, ())]
     if not found:
         return
     yield f"### Not judged: {len(found)}, outside the score"
@@ -126,9 +129,9 @@ def _unjudged(material: Material) -> Iterator[str]:
             one.mutant.operator,
             one.mutant.description,
             rounds_text(one),
-            short_reason(one) if status is not None else "",
+            short_reason(one),
         )
-        for status, one in found[:_ROWS]
+        for one in found[:_ROWS]
     )
     yield from table(head, rows, right=(0,))
     yield from _rest(len(found))

@@ -72,10 +72,9 @@ def why_alone(result: MutantResult) -> str:
 
 
 def short_reason(result: MutantResult) -> str:
-    """Why a mutant is outside the score, in a line."""
+    """Why a mutant that has been run has its state, in a line: what the first such round said."""
     status = status_of(result)
-    outcome = next((one for one in result.outcomes if one.verdict is status), None)
-    return first_line(outcome.message) if outcome is not None else "not run"
+    return next(first_line(one.message) for one in result.outcomes if one.verdict is status)
 
 
 def _end(outcome: Outcome | None) -> str:
