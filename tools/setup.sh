@@ -17,7 +17,6 @@ fi
 "$PYTHON" -m venv "$VENV"
 "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check -r requirements.lock
 "$VENV/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
-"$VENV/bin/python" tools/schemas.py
 # Workers never write bytecode, so let them find ours.
 "$VENV/bin/python" -m compileall -q src
 echo "ready: $VENV"
