@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from mutabot.model.check import Check
 from mutabot.model.verdict import By
 
 from .footprint import Footprint
@@ -53,6 +54,8 @@ class TestEnd:
             and whether these are all parts.
         reading: processor seconds it takes to read all probes; None if they cannot be read along the way.
         not_along: why not, or None.
+        checks: the checks of the tests that were made, and what they compared.
+        more_checks: how many further ones were made.
     """
 
     __test__ = False  # not a test class, whatever pytest may think of the name
@@ -89,6 +92,8 @@ class TestEnd:
     moments: tuple[Any, ...] = ()
     reading: float | None = None
     not_along: str | None = None
+    checks: tuple[Check, ...] = ()
+    more_checks: int = 0
 
     @property
     def lasting(self) -> str:

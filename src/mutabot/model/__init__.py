@@ -19,6 +19,8 @@ from .call import Mishap as Mishap
 from .call import NotToldError as NotToldError
 from .call import Proceed as Proceed
 from .call import Reply as Reply
+from .check import Check as Check
+from .check import Looked as Looked
 from .mutant import Mutant as Mutant
 from .operation import Case as Case
 from .operation import Clock as Clock

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from .check import Looked
 from .verdict import By, Verdict
 
 
@@ -102,6 +103,7 @@ class Outcome:
             that is not known.
         stuck: where it was when its wall-clock time was up: its innermost calls; None if that is not known.
         repeats: how often it was run once more in a fresh process and had the same verdict.
+        looked: of a survivor, the tests that ran it and what they checked.
     """
 
     mutant: str
@@ -133,6 +135,7 @@ class Outcome:
     commands: int | None = None
     stuck: str | None = None
     repeats: int = 0
+    looked: tuple[Looked, ...] = ()
 
 
 def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:

@@ -9,8 +9,11 @@ from mutabot.border.signals import OWN_FAULT
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.observation import Observation, compare, farthest
-from mutabot.model import By, Kill, Mutant, Outcome, Verdict
+from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.outcome import added
+
+#: tests of a survivor whose checks are kept
+_MOST_LOOKED = 20
 
 Ruling = tuple[Verdict, TestEnd | None, str | None]
 
@@ -100,8 +103,15 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
         kills=_kills(run, message)[: None if request.every_test else 1] if verdict.is_killed else (),
         commands=end.commands if end is not None else None,
         stuck=run.death.where if run.death is not None else None,
+        looked=_looked(run) if verdict is Verdict.SURVIVED else (),
     )
     return _compared(campaign, outcome, run) if verdict is Verdict.SURVIVED else outcome
+
+
+def _looked(run: Run) -> tuple[Looked, ...]:
+    """The tests that ran a survivor, those first in which it acted."""
+    found = [Looked(end.test, end.acted > 0, end.checks, end.more_checks) for end in run.ends]
+    return tuple(sorted(found, key=lambda one: not one.acted)[:_MOST_LOOKED])
 
 
 def _let_through_without(aside: Sequence[str]) -> str:

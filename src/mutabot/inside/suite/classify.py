@@ -12,6 +12,7 @@ import pytest
 from mutabot.errors import MutabotError
 from mutabot.inside import FOLDER
 from mutabot.inside.calls.locate import Locator
+from mutabot.inside.checks.comparisons import FILE as AROUND_COMPARISONS
 from mutabot.inside.evidence import Evidence
 from mutabot.inside.exception_groups import everything, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
@@ -145,6 +146,8 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
     folder = os.path.dirname(os.path.realpath(test_file)) + os.sep
     for frame, _ in _from_the_raise(error):
         filename = locator.real(frame.f_code.co_filename)
+        if filename == AROUND_COMPARISONS:
+            continue
         if filename.startswith(FOLDER):
             return False
         role = locator.role(filename)

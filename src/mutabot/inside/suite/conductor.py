@@ -17,6 +17,8 @@ from mutabot.border.lines import SessionEnd
 from mutabot.border.test_end import TestEnd
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
+from mutabot.inside.checks.assertions import Assertions
+from mutabot.inside.checks.comparisons import Comparisons
 from mutabot.inside.footprint.footprints import Footprints
 from mutabot.inside.fork.lifeline import die_with_parent, nobody_listens
 from mutabot.inside.fork.trunk import FAILED as BRANCH_FAILED
@@ -30,6 +32,7 @@ from mutabot.inside.ros._environment import prepare
 from mutabot.inside.session import Session
 from mutabot.inside.stacks import say_where_on_signal
 from mutabot.inside.text.returns import Returns
+from mutabot.model import Role
 from mutabot.operators.registry import preload
 
 from .classify import classify
@@ -100,6 +103,8 @@ class Conductor:
         conductor.session.install()
         if job.no_oracle:
             conductor.switch_off_checks()
+        else:
+            conductor.look_at_checks()
         if job.serving is None:
             conductor._begin(home)
         return conductor
@@ -136,6 +141,18 @@ class Conductor:
         """Let tests check nothing."""
         self._no_oracle = NoOracle(self.job.root, self.locator)
         self._no_oracle.install()
+
+    def look_at_checks(self) -> None:
+        """Note what tests check."""
+        looks, root = self.running.looks, self.job.root
+        Assertions(root, self._is_of_tests, looks).install()
+        Comparisons(root, looks).install()
+
+    def _is_of_tests(self, path: str) -> bool:
+        """Whether a file is the project's own, and not the program's."""
+        relative = self.locator.relative(path)
+        is_foreign = relative.startswith("..") or "site-packages" in relative
+        return not is_foreign and self.locator.role(path) is not Role.PROGRAM
 
     def seed_of(self, name: str) -> int:
         """The seed of a test or shared fixture in this round."""

@@ -13,6 +13,7 @@ from mutabot.border.lines import TestStart
 from mutabot.border.test_end import TestEnd
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
+from mutabot.inside.checks.looks import Looks
 from mutabot.inside.evidence import Evidence
 from mutabot.inside.footprint.footprints import Footprints
 from mutabot.inside.processes.members import Members
@@ -36,6 +37,7 @@ class Running:
     Attributes:
         branch: what to do if this process turns out to be a branch when the test is over.
         members: processes below the tests; None as long as no job is known.
+        looks: the checks that the test makes.
     """
 
     def __init__(self, session: Session, locator: Locator, footprints: Footprints) -> None:
@@ -44,6 +46,7 @@ class Running:
         self.footprints = footprints
         self.branch = BranchOfTest(session, footprints, self.start_clocks)
         self.members: Members | None = None
+        self.looks = Looks()
         self._ending: Ending | None = None
         self._expected: Ending | None = None
         self._outcome = PASSED
@@ -58,6 +61,7 @@ class Running:
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
         """One test, its fixtures included."""
         self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
+        self.looks.clear()
         self.session.pipe.send(TestStart(item.nodeid))
         limit = watched_by_faulthandler(item)
         if limit is not None:
@@ -190,6 +194,8 @@ class Running:
             moments=tuple(session.along.entries) if self.session.job.record else (),
             reading=session.rehearsal.seconds,
             not_along=session.rehearsal.why_not,
+            checks=self.looks.checks if self.session.job.record else (),
+            more_checks=self.looks.more,
         )
 
     def _footprint(self) -> Footprint | None:

@@ -20,6 +20,7 @@ from mutabot.model.outcome import end_in_words
 
 from .console import between, heading, make_table, percent, plain
 from .excerpt import excerpt
+from .looked import looked_parts
 from .marks import mark_of
 
 #: facts that a mutant of the program text has not
@@ -69,6 +70,7 @@ def _parts(result: MutantResult, source: str | None) -> Iterator[RenderableType]
         groups.setdefault(_alike(outcome), []).append(number)
     for numbers in groups.values():
         yield from _ended(numbers, result.rounds)
+    yield from looked_parts(result)
 
 
 def _facts(result: MutantResult) -> Table:

@@ -1,0 +1,130 @@
+"""How far apart the sides of a comparison are. Only plain numbers count: no code of the user's runs."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Mapping
+from typing import Any
+
+#: arrays with more elements than this are not looked at
+_MOST = 1000
+_LONGEST = 100
+_PLAIN = (str, bytes, int, float, bool, complex, range, type(None))
+
+
+def margin(left: Any, operator: str, right: Any) -> float | None:
+    """How far the sides of ``left operator right`` are apart; None if it is no matter of more or less.
+
+    Arrays and sequences count by their element that is nearest to end otherwise.
+    """
+    if operator in ("==", "!="):
+        for value, other in ((left, right), (right, left)):
+            if is_approximate(other):
+                return _of_approximate(value, other)
+        return None
+    if operator not in ("<", "<=", ">", ">="):
+        return None
+    pairs = _pairs(left, right)
+    found = [abs(other - value) for value, other in pairs] if pairs else []
+    return _least(found)
+
+
+def of_tolerance(value: Any, expected: Any, absolute: float, relative: float) -> float | None:
+    """How far the sides of ``|value - expected| <= absolute + relative * |expected|`` are apart."""
+    pairs = _pairs(value, expected) or ()
+    return _least([abs(absolute + relative * abs(wanted) - abs(one - wanted)) for one, wanted in pairs])
+
+
+def is_approximate(value: Any) -> bool:
+    """Whether it is what ``pytest.approx`` makes."""
+    return type(value).__module__ == "_pytest.python_api" and hasattr(value, "expected")
+
+
+def in_words(value: Any) -> str | None:
+    """A plain value as people read it; None for others."""
+    if is_approximate(value):
+        expected = in_words(value.expected)
+        return f"approx({expected})" if expected is not None else None
+    number = _number(value)
+    if number is not None and not isinstance(value, bool | int):
+        return f"{number:.6g}"
+    if type(value) in _PLAIN:
+        return _short(repr(value))
+    if type(value) in (list, tuple) and len(value) <= _MOST:
+        parts = [in_words(one) for one in value]
+        text = ", ".join(part for part in parts if part is not None)
+        brackets = "[]" if type(value) is list else "()"
+        return _short(f"{brackets[0]}{text}{brackets[1]}") if None not in parts else None
+    if _is_array(value) and value.size <= _MOST:
+        return in_words(value.tolist())
+    return None
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+
+
+def _of_approximate(value: Any, approximate: Any) -> float | None:
+    pairs = _approximate_pairs(value, approximate.expected)
+    found: list[float] = []
+    for one, wanted in pairs or ():
+        scalar = approximate._approx_scalar(wanted) if hasattr(approximate, "_approx_scalar") else approximate
+        found.append(abs(scalar.tolerance - abs(one - wanted)))
+    return _least(found)
+
+
+def _approximate_pairs(value: Any, expected: Any) -> list[tuple[float, float]] | None:
+    if isinstance(expected, Mapping):
+        if type(value) is not dict or value.keys() != expected.keys():
+            return None
+        return _pairs(list(value.values()), [expected[key] for key in value])
+    return _pairs(value, expected)
+
+
+def _least(found: list[float]) -> float | None:
+    finite = [one for one in found if math.isfinite(one)]
+    return min(finite) if finite else None
+
+
+def _pairs(left: Any, right: Any) -> list[tuple[float, float]] | None:
+    """Numbers that stand against each other; None if there is anything else."""
+    ones, others = _numbers(left), _numbers(right)
+    if ones is None or others is None:
+        return None
+    if len(ones) == 1 != len(others):
+        ones *= len(others)
+    elif len(others) == 1 != len(ones):
+        others *= len(ones)
+    return list(zip(ones, others, strict=True)) if len(ones) == len(others) else None
+
+
+def _numbers(value: Any) -> list[float] | None:
+    number = _number(value)
+    if number is not None:
+        return [number]
+    if _is_array(value):
+        value = value.ravel().tolist() if value.size <= _MOST else None
+    if type(value) not in (list, tuple) or len(value) > _MOST:
+        return None
+    found: list[float] = []
+    for one in value:
+        numbers = _numbers(one)
+        if numbers is None:
+            return None
+        found += numbers
+    return found
+
+
+def _number(value: Any) -> float | None:
+    if type(value) in (int, float, bool):
+        return float(value)
+    numpy = sys.modules.get("numpy")
+    if numpy is not None and isinstance(value, numpy.number) and not numpy.iscomplexobj(value):
+        return float(value)
+    return None
+
+
+def _is_array(value: Any) -> bool:
+    numpy = sys.modules.get("numpy")
+    return numpy is not None and type(value) is numpy.ndarray and value.dtype.kind in "biuf"
