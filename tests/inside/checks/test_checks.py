@@ -1,0 +1,157 @@
+"""What tests check is noted with the values compared, and nothing of them runs more often or differently."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from mutabot.model import Check, Verdict
+from tests.campaign.project import run, write_project
+
+MISSION = """
+    def run(arm):
+        arm.move_by(0.25)
+        arm.position()
+    """
+#: the reading is that of a sensor: each look takes a number that the next one does not find
+START = """
+    import math
+    import unittest
+
+    import numpy as np
+    import pytest
+    from mission import run
+    from robot import Arm
+
+    class Sensor:
+        def __init__(self, arm):
+            self.arm, self.reads = arm, 0
+
+        @property
+        def x(self):
+            self.reads += 1
+            return self.arm.x
+
+        def __repr__(self):
+            raise RuntimeError("nobody asked for words")
+
+    def sensor():
+        arm = Arm()
+        run(arm)
+        return Sensor(arm)
+
+"""
+
+HELPERS = """
+    def is_near(value, wanted, by=0.1):
+        return abs(value - wanted) <= by
+
+"""
+#: assertion, or statement of a TestCase, to the values that it compares and how far they are apart
+ASSERTIONS: dict[str, tuple[str | None, float | None]] = {
+    "sensor().x < 0.3": ("0.25 < 0.3", 0.05),
+    "0.2 <= sensor().x <= 0.3": ("0.2 <= 0.25", 0.05),
+    "sensor().x == pytest.approx(0.26, abs=0.05)": ("0.25 == approx(0.26)", 0.04),
+    "[sensor().x, 1.0] == pytest.approx([0.26, 1.0], abs=0.05)": ("[0.25, 1] == approx([0.26, 1])", 0.04),
+    "{'x': sensor().x} == pytest.approx({'x': 0.26}, abs=0.05)": ("", 0.04),
+    "np.array([sensor().x]) == pytest.approx(np.array([0.26]), abs=0.05)": (None, 0.04),
+    "abs(sensor().x - 0.26) <= 0.05": ("0.01 <= 0.05", 0.04),
+    "math.isclose(sensor().x, 0.26, abs_tol=0.05)": ("0.25 ≈ 0.26", 0.04),
+    "np.allclose([sensor().x], [0.26], rtol=0, atol=0.05)": ("[0.25] ≈ [0.26]", 0.04),
+    "is_near(sensor().x, 0.26, by=0.05)": ("is_near(0.25, 0.26, by=0.05)", 0.04),
+    "sensor().x == 0.25": ("0.25 == 0.25", None),
+    "str(sensor().x) in ('0.25', 'a')": ("'0.25' in ('0.25', 'a')", None),
+    "isinstance(sensor(), Sensor)": ("", None),
+    "sensor() is not None": ("", None),
+}
+COMPARISONS: dict[str, tuple[str | None, float | None]] = {
+    "self.assertAlmostEqual(sensor().x, 0.26, delta=0.05)": ("0.25 ≈ 0.26", 0.04),
+    "self.assertAlmostEqual(sensor().x, 0.26, places=1)": ("0.25 ≈ 0.26", 0.04),
+    "self.assertLess(sensor().x, 0.3)": ("0.25 < 0.3", 0.05),
+    "self.assertEqual([1, 2], [1, 2])": ("[1, 2] == [1, 2]", None),
+    "self.assertTrue(sensor().x)": ("assertTrue(0.25)", None),
+    "np.testing.assert_allclose(sensor().x, 0.26, rtol=0, atol=0.05)": ("0.25 ≈ 0.26", 0.04),
+}
+
+
+def looked_at(folder: Path, tests: str) -> dict[str, tuple[Check, ...]]:
+    """The checks of each test of a mutant that nobody notices, by the test's name."""
+    project = write_project(folder, MISSION, dedent(START) + dedent(HELPERS) + dedent(tests))
+    (survivor,) = run(project, fresh=True, rounds=1, only=("*:negate",)).values()
+    assert survivor.verdict is Verdict.SURVIVED
+    assert all(one.acted for one in survivor.looked)
+    return {one.test.rpartition(":")[2]: one.checks for one in survivor.looked}
+
+
+def test_a_check_tells_what_it_compared(tmp_path: Path) -> None:
+    asserted = "".join(f"    assert {one}\n" for one in ASSERTIONS)
+    compared = "".join(f"        {one}\n" for one in COMPARISONS)
+    tests = (
+        f"def test_asserts():\n{asserted}\nclass TestIt(unittest.TestCase):\n    def test_compares(self):\n"
+    )
+    lines = (dedent(START) + dedent(HELPERS) + tests + compared).splitlines()
+    found = looked_at(tmp_path, tests + compared)
+    for name, wanted in (("test_asserts", ASSERTIONS), ("test_compares", COMPARISONS)):
+        assert [one.text for one in found[name]] == list(wanted)
+        for check in found[name]:
+            seen, spare = wanted[check.text]
+            assert seen is None or check.seen == seen, check.text
+            assert check.spare == (pytest.approx(spare) if spare is not None else None), check.text
+            file, line = check.place.split(":")
+            assert file == "tests/test_mission.py"
+            assert check.text in lines[int(line) - 1]
+
+
+def test_parts_of_an_assertion_and_rounds_of_a_loop_are_told_once(tmp_path: Path) -> None:
+    found = looked_at(
+        tmp_path,
+        """
+        def test_parts():
+            assert not sensor().x > 1 and (sensor().x < 0.3 or sensor().x == 7)
+
+        def test_loop():
+            x = sensor().x
+            for limit in (1.0, 0.3, 2.0):
+                assert x < limit
+        """,
+    )
+    assert [(one.text, one.seen) for one in found["test_parts"]] == [
+        ("sensor().x > 1", "0.25 > 1"),
+        ("sensor().x < 0.3", "0.25 < 0.3"),
+    ]
+    assert [(one.seen, one.times) for one in found["test_loop"]] == [("0.25 < 0.3", 3)]
+
+
+def test_nothing_is_worked_out_twice(tmp_path: Path) -> None:
+    tests = """
+        def test_reads():
+            found = sensor()
+            assert found.x < 0.3 and (found.x > 0.1 or found.x > 7)
+            assert found.reads == 2
+        """
+    assert len(looked_at(tmp_path, tests)["test_reads"]) == 3
+
+
+def test_a_check_that_fails_says_what_it_ever_said(tmp_path: Path) -> None:
+    tests = """
+        def test_asserts():
+            x = sensor().x
+            assert x == 0.25, "too near"
+
+        def test_compares():
+            unittest.TestCase().assertEqual(sensor().x, 0.25)
+
+        def test_numpy():
+            np.testing.assert_allclose(sensor().x, 0.25)
+        """
+    text = dedent(START) + dedent(tests)
+    project = write_project(tmp_path, MISSION, text)
+    (found,) = run(project, fresh=True, rounds=1, only=("*:reverse",), every_test=True).values()
+    wanted = ("too near\nassert -0.25 == 0.25", "-0.25 != 0.25", "Not equal to tolerance")
+    assert [str(one.by) for one in found.kills] == ["check"] * 3
+    for kill, message in zip(found.kills, wanted, strict=True):
+        assert message in (kill.message or "")
+    assert found.place is not None
+    assert "assert x == 0.25" in text.splitlines()[int(found.place.rpartition(":")[2]) - 1]
