@@ -11,9 +11,11 @@ from mutabot.border.test_end import TestEnd
 from mutabot.journal.journal import Journal
 from mutabot.model import (
     By,
+    Check,
     Compared,
     Kind,
     LeftOut,
+    Looked,
     Mode,
     Mutant,
     Operation,
@@ -27,6 +29,17 @@ from mutabot.model import (
     Vocabulary,
 )
 
+LOOKED = (
+    Looked(
+        "tests/test_box.py::test_arrives",
+        acted=True,
+        checks=(
+            Check("tests/test_box.py:7", "x == approx(0.5, abs=0.1)", "0.48 == approx(0.5)", 0.08, times=2),
+            Check("tests/test_box.py:8", "box.colour == [red]"),
+        ),
+    ),
+    Looked("tests/test_box.py::test_leaves", acted=False),
+)
 PROGRAM = """\
 def run(arm, gripper):
     gripper.command(0)
@@ -94,7 +107,7 @@ OUTCOMES = (
     Outcome(BY_TO.id, 1, Verdict.TIMEOUT, test=TEST, message="over 1000 operations"),
     Outcome(
         NEGATE.id, 0, Verdict.SURVIVED, indistinguishable=True, distance=0.0, example=(0.0014, -0.0014),
-        hits=3, acted=3, tests=2, compared=Compared(calls=3, moments=1, returned=2),
+        hits=3, acted=3, tests=2, compared=Compared(calls=3, moments=1, returned=2), looked=LOOKED,
     ),
     Outcome(NEGATE.id, 1, Verdict.KILLED, By.CHECK, test=TEST, message="assert False"),
     Outcome(NOISE.id, 0, Verdict.ERROR, message="the simulator gave NaN [bold]not markup[/bold]"),

@@ -150,6 +150,8 @@ def test_the_plan_has_the_same_keys_for_a_mutant(tmp_path: Path) -> None:
 def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
     documented = set(re.findall(r"^\| `(\w+)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE))
     found = data(tmp_path, **SECOND_LOOK, **DRAWING)
+    outcomes = [one for mutant in found["mutants"] for one in mutant["rounds"]]
+    all_looked = [looked for one in outcomes for looked in one.get("looked", ())]
     parts = [found, *found["mutants"], *found["groups"], *found["rounds"], *found["left_out"]]
     parts += [
         *found["controls"],
@@ -161,7 +163,8 @@ def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
         found["repeats"]["doubted"],
         found["repeats"]["false_kills"],
         *found["baseline"],
-        *(one for mutant in found["mutants"] for one in mutant["rounds"]),
-        *(one["compared"] for mutant in found["mutants"] for one in mutant["rounds"] if one.get("compared")),
+        *outcomes,
+        *(one for looked in all_looked for one in (looked, *looked["checks"])),
+        *(one["compared"] for one in outcomes if one.get("compared")),
     ]
     assert {key for part in parts for key in part} == documented

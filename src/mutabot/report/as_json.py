@@ -252,6 +252,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "engine": outcome.engine,
         "stuck": outcome.stuck,
         "repeats": outcome.repeats,
+        "looked": [to_data(one) for one in outcome.looked],
     }
 
 
