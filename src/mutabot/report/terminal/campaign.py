@@ -29,6 +29,7 @@ from .console import (
     short_place,
 )
 from .errors import error_lines
+from .looked import unlooked_lines
 from .marks import legend, mark_of, marks_in
 from .repeats import repeat_lines
 
@@ -70,6 +71,7 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
             yield Text(_INTERVALS, style="dim")
         yield from sample_lines(results)
     yield from survivor_lines(results, width)
+    yield from unlooked_lines(results)
     yield from _outside(results, width)
     yield from left_out_lines(results.left_out, everything=everything)
     yield from trust_lines(results)

@@ -9,7 +9,8 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.analysis.results import MutantResult
+from mutabot.analysis.results import MutantResult, Results
+from mutabot.analysis.unlooked import unlooked
 from mutabot.model import Check, Looked
 
 from .console import heading, make_table, plain
@@ -29,6 +30,15 @@ def looked_parts(result: MutantResult) -> Iterator[RenderableType]:
         yield Padding(Text(plain(_summary(looked)), overflow="fold"), (0, 0, 0, 2), expand=False)
         if looked.acted and looked.checks:
             yield Padding(_table(looked.checks[:_MOST]), (0, 0, 0, 4), expand=False)
+
+
+def unlooked_lines(results: Results) -> Iterator[RenderableType]:
+    """Readings that nobody looks at."""
+    found = unlooked(results.mutants)
+    if found:
+        yield heading("Readings that no test looks at")
+    for one in found:
+        yield Padding(Text(plain(one.text), overflow="fold"), (0, 0, 0, 2), expand=False)
 
 
 def _summary(looked: Looked) -> str:

@@ -14,6 +14,7 @@ from mutabot.model import Verdict
 from .campaign import RATES, group_name, sample_lines, survivor_lines, title, trust_lines
 from .console import between, heading, make_table, percent
 from .errors import error_lines
+from .looked import unlooked_lines
 
 #: survivors that are shown
 _SURVIVORS = 10
@@ -34,6 +35,7 @@ def _parts(results: Results, width: int) -> Iterator[RenderableType]:
         yield _scores(results, with_interval=width >= RATES)
         yield from sample_lines(results)
     yield from survivor_lines(results, width, at_most=_SURVIVORS)
+    yield from unlooked_lines(results)
     yield from _outside(results)
     yield from trust_lines(results)
     yield Text("\n`mutabot results` shows every mutant, `mutabot show N` all about one.", style="dim")
