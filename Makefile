@@ -12,7 +12,7 @@ ROS2   := $(VENV)-ros2
 
 of_ros  = $(wildcard tests/*/test_ros$(1)*.py tests/*/*/test_ros$(1)*.py)
 
-.PHONY: demo test check format docs comparison bench stress judged shipped foreign clean
+.PHONY: demo test whole check format docs comparison bench stress judged shipped foreign clean
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
@@ -24,6 +24,11 @@ test: check $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) -m pytest -n 2 --dist worksteal
 	$(ROS1)/bin/python -m pytest -n 2 --dist worksteal $(call of_ros,1) || test $$? -eq 5  # all skipped
 	$(ROS2)/bin/python -m pytest -n 2 --dist worksteal $(call of_ros,2) || test $$? -eq 5
+
+## the tests that take long because many nodes come up: of ROS 1 and ROS 2
+whole: $(ROS1)/.ready $(ROS2)/.ready
+	$(ROS1)/bin/python -m pytest -n 2 --dist worksteal -m whole $(call of_ros,1) || test $$? -eq 5  # all skipped
+	$(ROS2)/bin/python -m pytest -n 2 --dist worksteal -m whole $(call of_ros,2) || test $$? -eq 5
 
 ## lint and types only
 check: $(READY) $(REPORTS)

@@ -123,6 +123,7 @@ VOCABULARY = """
 """
 
 
+@pytest.mark.whole
 def test_mutants_of_launched_nodes_end_as_they_must(tmp_path: Path) -> None:
     project = write_project(tmp_path, MISSION, TESTS, vocabulary=VOCABULARY, more=FILES)
     for script in ("driver.py", "mission.py", "check.py"):

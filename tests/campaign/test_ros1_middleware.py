@@ -134,6 +134,7 @@ WANTED = {
     find_spec("rospy") is None or find_spec("rosmaster") is None,
     reason="no rospy: install Debian's python3-rospy and python3-rosmaster",
 )
+@pytest.mark.whole
 def test_faults_of_the_middleware_act_in_the_node_and_the_suite_notices_those_it_checks(
     tmp_path: Path,
 ) -> None:

@@ -142,6 +142,7 @@ def test_a_node_that_is_killed_from_outside_kills_no_mutant(
     assert found.message == "the process /driver was killed from outside, by signal 9"
 
 
+@pytest.mark.whole
 def test_a_driver_that_does_not_come_up_kills_no_mutant(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

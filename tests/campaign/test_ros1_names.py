@@ -126,6 +126,7 @@ CONFIGURATION = """
     find_spec("rospy") is None or find_spec("rosmaster") is None,
     reason="no rospy: install Debian's python3-rospy and python3-rosmaster",
 )
+@pytest.mark.whole
 def test_a_vocabulary_of_names_is_enough_for_nodes_in_processes_of_their_own(tmp_path: Path) -> None:
     write_project(
         tmp_path,

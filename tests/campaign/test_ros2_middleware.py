@@ -159,6 +159,7 @@ WANTED = {
 }
 
 
+@pytest.mark.whole
 def test_faults_of_the_middleware_act_in_the_node_and_the_suite_notices_those_it_checks(
     tmp_path: Path,
 ) -> None:

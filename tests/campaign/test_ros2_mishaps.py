@@ -140,6 +140,7 @@ def test_a_node_that_is_killed_from_outside_kills_no_mutant(
     assert found.message == "the process /driver was killed from outside, by signal 9"
 
 
+@pytest.mark.whole
 def test_a_driver_that_does_not_come_up_kills_no_mutant(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -157,6 +158,7 @@ def test_a_full_queue_kills_no_mutant_and_a_topic_without_messages_is_told(
     assert any("no test received anything on /nothing" in line for line in lines)
 
 
+@pytest.mark.whole
 def test_with_two_nodes_of_one_name_the_tests_judge_as_ever(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
