@@ -130,8 +130,12 @@ def test_nothing_is_worked_out_twice(tmp_path: Path) -> None:
             found = sensor()
             assert found.x < 0.3 and (found.x > 0.1 or found.x > 7)
             assert found.reads == 2
+            assert (x := found.x) < 0.3 and (0.2 < (y := found.x) < 0.3) and is_near(z := found.x, y)
+            assert (found.reads, x, y, z) == (5, 0.25, 0.25, 0.25)
+            assert is_near(*[found.x, 0.25], **{"by": found.x})
+            assert found.reads == 7
         """
-    assert len(looked_at(tmp_path, tests)["test_reads"]) == 3
+    assert len(looked_at(tmp_path, tests)["test_reads"]) >= 3
 
 
 def test_a_check_that_fails_says_what_it_ever_said(tmp_path: Path) -> None:

@@ -109,9 +109,17 @@ class _Inserter(ast.NodeTransformer):
         if not isinstance(value, ast.Compare | ast.Call) or not _is_pytests(node):
             return node
         number = self._found.get(_position(value))
-        if number is None:
-            return node
+        if number is None or not all(isinstance(one, ast.Name | ast.Constant) for one in _parts(value)):
+            return node  # what is no variable would be worked out twice
         return [node, ast.fix_missing_locations(ast.copy_location(_line(number, value), node))]
+
+
+def _parts(value: ast.Compare | ast.Call) -> list[ast.expr]:
+    """What a comparison or call is made of."""
+    if isinstance(value, ast.Compare):
+        return [value.left, *value.comparators]
+    given = [one.value if isinstance(one, ast.Starred) else one for one in value.args]
+    return [value.func, *given, *(one.value for one in value.keywords)]
 
 
 def _is_pytests(node: ast.Assign) -> bool:
