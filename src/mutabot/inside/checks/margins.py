@@ -53,13 +53,19 @@ def in_words(value: Any) -> str | None:
     if type(value) in _PLAIN:
         return _short(repr(value))
     if type(value) in (list, tuple) and len(value) <= _MOST:
-        parts = [in_words(one) for one in value]
-        text = ", ".join(part for part in parts if part is not None)
-        brackets = "[]" if type(value) is list else "()"
-        return _short(f"{brackets[0]}{text}{brackets[1]}") if None not in parts else None
+        return _gathered("[]" if type(value) is list else "()", [("", one) for one in value])
+    if type(value) is dict and len(value) <= _MOST and all(type(key) in _PLAIN for key in value):
+        return _gathered("{}", [(f"{key!r}: ", one) for key, one in value.items()])
     if _is_array(value) and value.size <= _MOST:
         return in_words(value.tolist())
     return None
+
+
+def _gathered(brackets: str, parts: list[tuple[str, Any]]) -> str | None:
+    texts = [(name, in_words(one)) for name, one in parts]
+    if any(text is None for _, text in texts):
+        return None
+    return _short(f"{brackets[0]}{', '.join(f'{name}{text}' for name, text in texts)}{brackets[1]}")
 
 
 def _short(text: str) -> str:
