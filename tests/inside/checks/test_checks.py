@@ -19,6 +19,8 @@ MISSION = """
 START = """
     import math
     import unittest
+    from collections import namedtuple
+    from dataclasses import dataclass
 
     import numpy as np
     import pytest
@@ -45,6 +47,13 @@ START = """
 """
 
 HELPERS = """
+    @dataclass(frozen=True)
+    class Loads:
+        left: float
+        right: float
+
+    Pair = namedtuple("Pair", "one other")
+
     def is_near(value, wanted, by=0.1):
         return abs(value - wanted) <= by
 
@@ -64,6 +73,11 @@ ASSERTIONS: dict[str, tuple[str | None, float | None]] = {
     "sensor().x == 0.25": ("0.25 == 0.25", None),
     "str(sensor().x) in ('0.25', 'a')": ("'0.25' in ('0.25', 'a')", None),
     "{'x': [sensor().x]} == {'x': [0.25]}": ("{'x': [0.25]} == {'x': [0.25]}", None),
+    "Loads(sensor().x, 1) == Loads(0.25, 1)": (
+        "Loads(left=0.25, right=1) == Loads(left=0.25, right=1)",
+        None,
+    ),
+    "Pair(1, 2) == Pair(1, 2)": ("Pair(one=1, other=2) == Pair(one=1, other=2)", None),
     "isinstance(sensor(), Sensor)": ("", None),
     "sensor() is not None": ("", None),
 }

@@ -58,14 +58,27 @@ def in_words(value: Any) -> str | None:
         return _gathered("{}", [(f"{key!r}: ", one) for key, one in value.items()])
     if _is_array(value) and value.size <= _MOST:
         return in_words(value.tolist())
-    return None
+    parts = _fields_of(value)
+    return _gathered(f"{type(value).__name__}()", parts) if parts is not None else None
+
+
+def _fields_of(value: Any) -> list[tuple[str, Any]] | None:
+    """The fields of a dataclass or named tuple that are plainly kept; None for all else."""
+    kind: Any = type(value)
+    if isinstance(value, tuple) and kind.__bases__ == (tuple,) and hasattr(kind, "_fields"):
+        return [(f"{name}=", one) for name, one in zip(kind._fields, tuple.__iter__(value), strict=True)]
+    names = getattr(kind, "__dataclass_fields__", None)
+    if names is None or kind.__getattribute__ is not object.__getattribute__:
+        return None
+    kept = vars(value) if hasattr(value, "__dict__") else {}
+    return [(f"{name}=", kept[name]) for name in names] if kept.keys() >= names.keys() else None
 
 
 def _gathered(brackets: str, parts: list[tuple[str, Any]]) -> str | None:
     texts = [(name, in_words(one)) for name, one in parts]
     if any(text is None for _, text in texts):
         return None
-    return _short(f"{brackets[0]}{', '.join(f'{name}{text}' for name, text in texts)}{brackets[1]}")
+    return _short(f"{brackets[:-1]}{', '.join(f'{name}{text}' for name, text in texts)}{brackets[-1]}")
 
 
 def _short(text: str) -> str:
