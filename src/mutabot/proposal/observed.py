@@ -19,6 +19,7 @@ from mutabot.border.watch import WATCH_VARIABLE
 from mutabot.campaign.workers.processes import command, kill_group
 
 from .layout import Layout
+from .named.seen import Use, uses
 
 #: seconds that the tests may take; what was seen by then counts
 LIMIT = 180.0
@@ -114,6 +115,8 @@ class Observed:
         problems: what failed, in pytest's words.
         trouble: why the run tells less than it could; empty if it went well.
         extra: pytest arguments that it needed.
+        names: what was done under names of a middleware.
+        reached: file, line and name of everything that was called; the name is empty for a plain one.
     """
 
     calls: list[SeenCall] = field(default_factory=list)
@@ -121,6 +124,8 @@ class Observed:
     problems: list[str] = field(default_factory=list)
     trouble: str = ""
     extra: list[str] = field(default_factory=list)
+    names: list[Use] = field(default_factory=list)
+    reached: list[tuple[str, int, str]] = field(default_factory=list)
 
 
 def observe(layout: Layout, limit: float = LIMIT) -> Observed:
@@ -186,7 +191,8 @@ def _read(output: Path) -> Observed:
     except (OSError, ValueError):
         return Observed()
     calls = [_call(raw) for raw in _together(data["calls"])]
-    return Observed(calls, data["outcomes"], data["problems"])
+    reached = list(dict.fromkeys((file, line, name) for file, line, name in data["reached"]))
+    return Observed(calls, data["outcomes"], data["problems"], names=uses(data["names"]), reached=reached)
 
 
 def _together(calls: Sequence[dict[str, Any]]) -> Iterable[dict[str, Any]]:
@@ -195,6 +201,7 @@ def _together(calls: Sequence[dict[str, Any]]) -> Iterable[dict[str, Any]]:
     for raw in calls:
         first = found.setdefault((raw["target"], raw["of_tests"]), raw)
         if first is not raw:
+            first["leads_to_names"] |= raw["leads_to_names"]
             counts = {(file, line): count for file, line, count in first["sites"]}
             for file, line, count in raw["sites"]:
                 counts[file, line] = counts.get((file, line), 0) + count

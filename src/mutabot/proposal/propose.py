@@ -13,6 +13,7 @@ from mutabot.vocabulary import load
 from .compared import Unreached, compared_with, unreached
 from .known import Known, known_vocabularies
 from .layout import look
+from .named.entries import Entry, entries
 from .nodes import commands_of, tells_commands
 from .observed import LIMIT, Observed, SeenCall, observe
 from .operations import proposals
@@ -28,6 +29,7 @@ class _Look:
         layout: where what lies.
         seen: the watched run of the tests.
         known: shipped vocabularies that fit it.
+        named: proposed operations that have a name on a middleware.
         found: proposed operations that no shipped vocabulary has.
         others: calls of which nothing shows what they mean.
         oracle: files on the tests' side that read from the robot.
@@ -42,16 +44,17 @@ class _Look:
         calls = [call for call in self.seen.calls if call.sites]
         self.known: list[Known] = known_vocabularies(self.layout, calls)
         groups = compared_with(self.layout)
-        mine, rest = _by_side(calls)
+        self.named: list[Entry] = entries(self.seen.names)
+        mine, rest = _by_side([call for call in calls if not call.facts["leads_to_names"]])
         ours, own = (
             [call for call in mine if not call.facts["own"]],
             [call for call in mine if call.facts["own"]],
         )
         self.found, self.others = proposals(self._new(ours), groups)
-        if not self.found and not self.known and own:  # program and robot share a file
+        if not self.found and not self.known and not self.named and own:  # program and robot share a file
             self.found, self.others = proposals([*ours, *own], groups)
         self._add_readings(rest, groups)
-        if not self.found and not self.known:
+        if not self.found and not self.known and not self.named:
             self._fall_back()
         self.unreached: list[Unreached] = unreached(self.layout, self._reached())
 
@@ -59,12 +62,12 @@ class _Look:
     def vocabulary(self) -> list[str]:
         """Names for the configuration."""
         names = [one.name for one in self.known]
-        return [*names, VOCABULARY] if self.found or not names else names
+        return [*names, VOCABULARY] if self.found or self.named or not names else names
 
     @property
     def needs_vocabulary(self) -> bool:
         """Whether there is anything to say that no shipped vocabulary says."""
-        return bool(self.found or self.others or self.unreached or not self.known)
+        return bool(self.found or self.named or self.others or self.unreached or not self.known)
 
     def _new(self, calls: Sequence[SeenCall]) -> list[SeenCall]:
         """Calls to be described here: those of shipped vocabularies only where nodes tell more."""
@@ -84,6 +87,7 @@ class _Look:
             for file, _, _ in call.sites
             if call.target in targets or any(one.reads(call) for one in self.known)
         ]
+        files += [file for entry in self.named if entry.of_tests for file in entry.files]
         self.oracle = [file for file in dict.fromkeys(files) if file not in self.program]
 
     def _fall_back(self) -> None:
@@ -94,7 +98,8 @@ class _Look:
         self.others = [one for one in self.others if not one.is_plain]
 
     def _reached(self) -> list[tuple[str, int, str]]:
-        return [(file, line, call.name) for call in self.seen.calls for file, line, _ in call.sites]
+        made = [(file, line, call.name) for call in self.seen.calls for file, line, _ in call.sites]
+        return [*made, *self.seen.reached]
 
 
 def propose(
@@ -156,16 +161,21 @@ def _refuse_existing(root: Path) -> None:
 
 
 def _loadable(found: _Look) -> str:
-    """The vocabulary's text; what would not load becomes a comment, which only a wrong guess can cause."""
-    text = vocabulary_text(found.found, found.others, found.program, found.unreached)
-    if not found.found or _loads(text):
+    """The vocabulary's text; what would not load, by a wrong guess, is left out or a comment."""
+    text = _text(found)
+    if not (found.found or found.named) or _loads(text):
         return text
     for proposal in found.found:
         proposal.current = proposal.opposite = None
     kept = [proposal for proposal in found.found if _loads(vocabulary_text([proposal], [], found.program))]
     dropped = [proposal for proposal in found.found if proposal not in kept]
     found.found, found.others = kept, [*dropped, *found.others]
-    return vocabulary_text(kept, found.others, found.program, found.unreached)
+    found.named = [one for one in found.named if _loads(vocabulary_text([], [], found.program, named=[one]))]
+    return _text(found)
+
+
+def _text(found: _Look) -> str:
+    return vocabulary_text(found.found, found.others, found.program, found.unreached, found.named)
 
 
 def _loads(text: str) -> bool:
@@ -223,8 +233,11 @@ def _told(found: _Look) -> list[str]:
 def _counted(found: _Look) -> str:
     mine, rest = _by_side([call for call in found.seen.calls if call.sites])
     calls = sum(call.count for call in mine)
-    return f"the program calls {len(mine)} callables, {calls} times" + (
-        f", the tests {len(rest)} more" if rest else ""
+    names = {(use.form, use.name) for use in found.seen.names if not use.of_tests}
+    return (
+        f"the program calls {len(mine)} callables, {calls} times"
+        + (f", the tests {len(rest)} more" if rest else "")
+        + (f"; it does {len(names)} things under names of ROS" if names else "")
     )
 
 
@@ -232,16 +245,17 @@ def _about_vocabulary(found: _Look) -> str:
     commented = len(found.others) + len(found.unreached)
     more = "1 more call stands" if commented == 1 else f"{commented} more calls stand"
     also = f"; {more} there as comments" if commented else ""
-    if found.found:
-        noun = "operation" if len(found.found) == 1 else "operations"
-        return f"wrote {VOCABULARY} with {len(found.found)} {noun}, guessed from names and values{also}"
+    count = len(found.named) + len(found.found)
+    if count:
+        noun = "operation" if count == 1 else "operations"
+        return f"wrote {VOCABULARY} with {count} {noun}, guessed from names and values{also}"
     if found.known:
         return f"wrote {VOCABULARY}, which is not used yet{also}"
     return f"wrote {VOCABULARY} without an operation: no call was seen{also}"
 
 
 def _next(found: _Look) -> str:
-    if found.found:
+    if found.found or found.named:
         return "next: correct the lines marked `guess`, then `mutabot check`, `mutabot list`, `mutabot run`"
     if found.known:
         return "next: `mutabot check`, `mutabot list`, `mutabot run`"

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from .compared import Unreached
-from .guess import Guess
+from .named.entries import Entry
+from .named.text import entry_text
 from .observed import Part, SeenCall
-from .operations import Proposal, is_complete
+from .operations import Proposal
+from .toml import key_text, quantity_line, short, value_text
 
-_BARE = re.compile(r"[A-Za-z0-9_-]+")
-#: values shown as an example, and the longest text
-_EXAMPLES, _LONGEST = 4, 60
+#: values shown as an example
+_EXAMPLES = 4
 _MOST_UNREACHED = 40
 
 
@@ -23,11 +23,13 @@ def vocabulary_text(
     others: Sequence[Proposal],
     program: Sequence[str],
     unreached: Sequence[Unreached] = (),
+    named: Sequence[Entry] = (),
 ) -> str:
     """The vocabulary file."""
     blocks = [
         f"# Proposed by `mutabot init` from {', '.join(program)}. What things mean is guessed from names\n"
         "# and values: correct what is wrong, and take out what is no operation. `mutabot check` tries it.",
+        *(entry_text(entry) for entry in named),
         *(operation_text(proposal) for proposal in found),
     ]
     if others:
@@ -50,10 +52,10 @@ def operation_text(proposal: Proposal) -> str:
     lines = [f"[[operation]]  # {_where(call)}"]
     if call.facts["problem"]:
         lines.append(f"# {call.facts['problem']}")
-    lines.append(f"call = {_toml(proposal.target)}")
+    lines.append(f"call = {value_text(proposal.target)}")
     if proposal.is_plain:
         lines.append("command = true  # guess: it is skipped and repeated; say what its values mean")
-    lines += [f"{key} = {_toml(value)}  # guess" for key, value in _references(proposal)]
+    lines += [f"{key} = {value_text(value)}  # guess" for key, value in _references(proposal)]
     lines += _arguments(proposal)
     lines += _results(proposal)
     if proposal.message is not None:
@@ -89,11 +91,11 @@ def _arguments(proposal: Proposal) -> Iterator[str]:
         for part in parts:
             mine = {path: guess for path, guess in proposal.arguments.items() if _belongs(path, part)}
             yield from (
-                _quantity(f"arguments.{_key(path)}", guess, _examples(part, path))
+                quantity_line(f"arguments.{key_text(path)}", guess, _examples(part, path))
                 for path, guess in mine.items()
             )
             if not mine:
-                yield f"# arguments.{_key(part.path)}  # seen: {_examples(part)}"
+                yield f"# arguments.{key_text(part.path)}  # seen: {_examples(part)}"
     if proposal.call.positional:
         firsts = {part.path.partition("[")[0]: _first(part) for part in reversed(proposal.call.positional)}
         values = ", ".join(firsts[name] for name in sorted(firsts))
@@ -101,7 +103,7 @@ def _arguments(proposal: Proposal) -> Iterator[str]:
 
 
 def _first(part: Part) -> str:
-    return _short(part.values[0]) if part.values else part.type
+    return short(part.values[0]) if part.values else part.type
 
 
 def _results(proposal: Proposal) -> Iterator[str]:
@@ -110,13 +112,13 @@ def _results(proposal: Proposal) -> Iterator[str]:
     for part in proposal.call.result:
         mine = {path: guess for path, guess in proposal.result.items() if _belongs(path, part)}
         for path, guess in mine.items():
-            yield _quantity(_result_key(path), guess, _examples(part, path))
+            yield quantity_line(_result_key(path), guess, _examples(part, path))
         if not mine and (part.values or part.length):
             yield f"# {_result_key(part.path)}  # seen: {_examples(part)}"
 
 
 def _result_key(path: str) -> str:
-    return f"result.{_key(path)}" if path else "result"
+    return f"result.{key_text(path)}" if path else "result"
 
 
 def _belongs(path: str, part: Part) -> bool:
@@ -132,28 +134,9 @@ def _examples(part: Part, path: str = "") -> str:
         first = int(step[1])
         cut = [one[first : int(step[2])] if step[2] else one[first] for one in values if len(one) > first]
         values = tuple(cut)
-    texts = [_short(value) for value in values[: 1 if part.length is not None else _EXAMPLES]]
+    texts = [short(value) for value in values[: 1 if part.length is not None else _EXAMPLES]]
     more = ", …" if len(part.values) > len(texts) else ""
     return (", ".join(texts) + more) if texts else part.type or "nothing"
-
-
-def _short(value: Any) -> str:
-    if isinstance(value, list):
-        shown = ", ".join(_short(one) for one in value[:8])
-        return f"[{shown}{', …' if len(value) > 8 else ''}]"
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    text = _toml(value)
-    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
-
-
-def _quantity(key: str, guess: Guess, seen: str) -> str:
-    shown = f"; seen: {seen}" if seen and seen != "nothing" else ""
-    if not is_complete(guess):
-        table = _toml({**guess.table, "values": ["…", "…"]})
-        return f"# {key} = {table}  # guess: give all values it can have{shown}"
-    checks = f"; check the {' and the '.join(guess.checks)}" if guess.checks else ""
-    return f"{key} = {_toml(guess.table)}  # guess{checks}{shown}"
 
 
 def _pattern_lines(proposal: Proposal) -> list[str]:
@@ -161,7 +144,7 @@ def _pattern_lines(proposal: Proposal) -> list[str]:
     for text, guess in proposal.patterns:
         checks = f"  # check the {' and the '.join(guess.checks)}" if guess.checks else ""
         checks += f"  # seen: {guess.seen}" if guess.seen else ""
-        rows.append(f"  {_toml({'text': text, **guess.table})},{checks}")
+        rows.append(f"  {value_text({'text': text, **guess.table})},{checks}")
     lines = ["patterns = [", *rows, "]"]
     if proposal.reads_by_name and all(guess.table for _, guess in proposal.patterns):
         return ["command = false  # guess: it only reads", *lines]
@@ -171,17 +154,3 @@ def _pattern_lines(proposal: Proposal) -> list[str]:
         )
         lines = ["command = false  # guess: it only reads", f"# give each pattern {hint}", *lines]
     return lines
-
-
-def _key(path: str) -> str:
-    return path if _BARE.fullmatch(path) else _toml(path)
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(key)} = {_toml(item)}" for key, item in value.items()) + " }"
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(_toml(item) for item in value) + "]"
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
-    return json.dumps(value)

@@ -66,11 +66,11 @@ def join(folder: str) -> None:
         signal.signal(signal.SIGTERM, end)  # else nothing would be written
 
 
-def seen_elsewhere(folder: str) -> list[dict[str, Any]]:
-    """What processes that have ended saw, as ``Watch.data`` gives it."""
-    found: list[dict[str, Any]] = []
+def seen_elsewhere(folder: str) -> list[dict[str, list[Any]]]:
+    """What processes saw, each as ``Watch.data`` gives it."""
+    found: list[dict[str, list[Any]]] = []
     for name in sorted(os.listdir(folder)):
         if name.endswith(_SEEN):
             with open(os.path.join(folder, name), encoding="utf-8") as file:
-                found += json.load(file)
+                found.append(json.load(file))
     return found

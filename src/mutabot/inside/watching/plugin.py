@@ -55,8 +55,9 @@ class _Plugin:
     def _write(self) -> None:
         outcomes = list(self._outcomes.values())
         counts = {one: outcomes.count(one) for one in dict.fromkeys(outcomes)}
-        calls = [*self._watch.data(), *seen_elsewhere(self._folder)]
-        found = {"calls": calls, "outcomes": counts, "problems": self._problems[:20]}
+        every = [self._watch.data(), *seen_elsewhere(self._folder)]
+        seen = {key: [one for data in every for one in data[key]] for key in every[0]}
+        found = {**seen, "outcomes": counts, "problems": self._problems[:20]}
         with open(f"{self._output}.new", "w", encoding="utf-8") as file:
             json.dump(found, file, default=str)
         os.replace(f"{self._output}.new", self._output)

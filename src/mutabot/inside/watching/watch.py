@@ -8,15 +8,20 @@ from __future__ import annotations
 import builtins
 import functools
 import inspect
+import os
 import sys
 from contextlib import suppress
+from contextvars import ContextVar
 from dataclasses import dataclass, field
+from types import FrameType
 from typing import Any
 
+from mutabot.inside.targets.target import Where
 from mutabot.model.class_name import class_name
 
 from .callee import Callee, facts, function_of, method_of
 from .described import Leaves
+from .named import NamesSeen
 from .told_apart import ToldApart
 from .watched_text import METHOD, NAME, READ, watch_imports
 
@@ -30,6 +35,15 @@ _NO_ROBOTS = frozenset(
         "networkx", "click", "typer", "PIL", "math3d", "transforms3d",
     }
 )  # fmt: skip
+#: client libraries of ROS: what is done through them has a name of its own
+_CLIENT_LIBRARIES = frozenset(
+    {
+        "rospy", "rclpy", "actionlib", "tf", "tf2_ros", "tf2_py", "genpy", "rosgraph", "rosparam", "roslib",
+        "rosnode", "rosservice", "rostopic", "message_filters", "builtin_interfaces", "rosidl_runtime_py",
+        "rcl_interfaces", "ament_index_python", "launch", "launch_ros",
+    }
+)  # fmt: skip
+_MESSAGES = ("_msgs", "_srvs", "_interfaces")
 
 
 @dataclass
@@ -50,7 +64,12 @@ class _Seen:
     answered: int = 0
     is_coroutine: bool = False
     returns_coroutine: bool = False
+    leads_to_names: bool = False
     signature: inspect.Signature | None = None
+
+
+#: the calls that are under way here, the outermost first
+_under_way: ContextVar[tuple[_Seen, ...]] = ContextVar("mutabot_watched_calls", default=())
 
 
 class Watch:
@@ -66,9 +85,13 @@ class Watch:
         self._numbers: dict[tuple[str, int], int] = {}
         self._seen: dict[tuple[str, bool], _Seen] = {}
         self._known: dict[tuple[Any, str], Callee | None] = {}
+        self._reached: dict[tuple[int, str], None] = {}
+        self._names: NamesSeen | None = None
+        self._files: dict[str, tuple[str, bool] | None] = {}
 
     def install(self) -> None:
         """Watch what is imported from now on."""
+        self._names = NamesSeen(self._place_of, self._leads)
         setattr(builtins, METHOD, self.method)
         setattr(builtins, NAME, self.named)
         setattr(builtins, READ, self.read)
@@ -77,12 +100,14 @@ class Watch:
     def method(self, value: Any, name: str, place: int) -> Any:
         """``value.name`` is about to be called."""
         found = getattr(value, name)
+        self._reached[place, name] = None
         if isinstance(found, type):
             return found
         return self._wrapped(found, self._of(self._method(value, name), place), place)
 
     def named(self, function: Any, place: int) -> Any:
         """A function is about to be called by its name."""
+        self._reached[place, ""] = None
         if isinstance(function, type):
             return function
         return self._wrapped(function, self._of(function_of(function), place), place)
@@ -97,9 +122,38 @@ class Watch:
                 self._answer(seen, found)
         return found
 
-    def data(self) -> list[dict[str, Any]]:
-        """All callables that were seen, for JSON."""
-        return [self._data(seen) for seen in self._seen.values()]
+    def data(self) -> dict[str, list[Any]]:
+        """What was seen, for JSON: callables, what was done under names, and all places that were come by."""
+        return {
+            "calls": [self._data(seen) for seen in list(self._seen.values())],
+            "names": self._names.data() if self._names is not None else [],
+            "reached": [[*self._places[place], name] for place, name in list(self._reached)],
+        }
+
+    def _place_of(self, frame: FrameType | None, where: Where | None) -> tuple[str, int, bool] | None:
+        """File, line and side of a frame or the nearest one around it, or of what is called back."""
+        if where is not None and where.code is not None:
+            found = self._side(where.code.co_filename)
+            return (found[0], where.code.co_firstlineno, found[1]) if found is not None else None
+        while frame is not None:
+            found = self._side(frame.f_code.co_filename)
+            if found is not None:
+                return found[0], frame.f_lineno, found[1]
+            frame = frame.f_back
+        return None
+
+    def _side(self, file: str) -> tuple[str, bool] | None:
+        """A file's name for people, and whether it is on the tests' side; None if it is on none."""
+        if file not in self._files:
+            real = os.path.realpath(file)
+            name = self._program.get(real, self._tests.get(real))
+            self._files[file] = (name, real not in self._program) if name is not None else None
+        return self._files[file]
+
+    def _leads(self) -> None:
+        """Something is done under a name: the calls that are under way lead to it."""
+        for seen in _under_way.get():
+            seen.leads_to_names = True
 
     def _place(self, file: str, line: int) -> int:
         if (file, line) not in self._numbers:
@@ -124,7 +178,7 @@ class Watch:
         known = self._seen.get(key)
         if known is None:
             top = callee.target.partition(":")[0].partition(".")[0]
-            if top in sys.stdlib_module_names or top in _NO_ROBOTS or top.startswith("pytest"):
+            if _is_no_robot(top):
                 return None
             known = self._seen[key] = _Seen(callee, callee.file in self._program, key[1])
             known.signature = callee.signature
@@ -142,11 +196,14 @@ class Watch:
             with suppress(Exception):  # looking at values must not disturb the program
                 values = self._arguments(seen, args, kwargs)
                 which = seen.told_apart.see(instance, seen.callee.target, values)
+            token = _under_way.set((*_under_way.get(), seen))
             try:
                 result = function(*args, **kwargs)
             except Exception as error:
                 seen.raised[class_name(type(error))] = None
                 raise
+            finally:
+                _under_way.reset(token)
             if inspect.iscoroutine(result):
                 seen.returns_coroutine = not seen.is_coroutine
                 return self._awaited(seen, which, result)
@@ -156,11 +213,15 @@ class Watch:
         return watched
 
     async def _awaited(self, seen: _Seen, which: str | None, waiting: Any) -> Any:
+        token = _under_way.set((*_under_way.get(), seen))
         try:
             result = await waiting
         except Exception as error:
             seen.raised[class_name(type(error))] = None
             raise
+        finally:
+            with suppress(ValueError):  # a coroutine that is closed from elsewhere
+                _under_way.reset(token)
         self._answer(seen, result, which)
         return result
 
@@ -214,6 +275,7 @@ class Watch:
         return {
             **found,
             "own": seen.own,
+            "leads_to_names": seen.leads_to_names,
             "of_tests": seen.of_tests,
             "sites": [[*self._places[place], count] for place, count in seen.sites.items()],
             "given": seen.given,
@@ -224,3 +286,9 @@ class Watch:
             "raised": self._raised(seen.callee.target),
             "told_apart": seen.told_apart.data(),
         }
+
+
+def _is_no_robot(top: str) -> bool:
+    """Whether nothing of a top-level package is to be described as a call."""
+    is_plain = top in sys.stdlib_module_names or top in _NO_ROBOTS or top.startswith("pytest")
+    return is_plain or top in _CLIENT_LIBRARIES or top.endswith(_MESSAGES)

@@ -1,0 +1,122 @@
+"""What one process sees of the names of a middleware: what is done under which, with which messages.
+
+The hooks are those of a campaign (``inside.targets.messages``); what stands around each use looks at it and
+changes nothing.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from types import FrameType
+from typing import Any
+
+from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.target import Handler, Where
+from mutabot.model.named import MAIN, WRITTEN, Form
+
+from .message import Parts
+
+#: uses of one name whose messages are looked at; more are only counted
+_MOST = 300
+_LOOKED_AT = MAIN | {Form.FEEDBACK, Form.RESULT}
+
+
+@dataclass
+class _Use:
+    """What was seen of a form under a name, on one side."""
+
+    form: Form
+    name: str
+    of_tests: bool
+    sites: dict[tuple[str, int], int] = field(default_factory=dict)
+    written: Parts = field(default_factory=Parts)
+    read: Parts = field(default_factory=Parts)
+    looked_at: int = 0
+
+
+class NamesSeen(Messages):
+    """All that is done under names, where it is the program's or the tests'.
+
+    Args:
+        place_of: file for people, line, and whether it is on the tests' side, of a frame or the nearest one
+            around it; None if it is nobody's.
+        passed: told of each use: calls that are under way lead to it.
+    """
+
+    def __init__(
+        self,
+        place_of: Callable[[FrameType | None, Where | None], tuple[str, int, bool] | None],
+        passed: Callable[[], None],
+    ) -> None:
+        self._place_of, self._passed = place_of, passed
+        self._uses: dict[tuple[Form, str, bool], _Use] = {}
+        self._lock = threading.RLock()
+        super().__init__(lambda target, finding: None)
+
+    def find(self, form: Form, name: str, node: str | None) -> Handler | None:
+        """What looks at a use; None where something is set up."""
+        self._passed()
+        if form not in _LOOKED_AT:
+            return None
+
+        def handle(
+            wrapped: Callable[..., Any],
+            instance: Any,
+            args: tuple[Any, ...],
+            kwargs: dict[str, Any],
+            where: Where | None = None,
+        ) -> Any:
+            use = self._use(form, name, self._place_of(sys._getframe(1), where))
+            if use is not None and args:
+                self._look(use.written, args[0])
+            if inspect.iscoroutinefunction(wrapped):
+                return self._awaited(use, wrapped(*args, **kwargs))
+            result = wrapped(*args, **kwargs)
+            self._answer(use, result)
+            return result
+
+        return handle
+
+    def data(self) -> list[dict[str, Any]]:
+        """All uses, for JSON."""
+        with self._lock:
+            return [
+                {
+                    "form": use.form,
+                    "name": use.name,
+                    "of_tests": use.of_tests,
+                    "sites": [[*site, count] for site, count in use.sites.items()],
+                    "written": use.written.data(),
+                    "read": use.read.data(),
+                }
+                for use in self._uses.values()
+            ]
+
+    def _use(self, form: Form, name: str, place: tuple[str, int, bool] | None) -> _Use | None:
+        """The use that a place is one of, if it is to be looked at."""
+        if place is None:
+            return None
+        file, line, of_tests = place
+        with self._lock:
+            use = self._uses.setdefault((form, name, of_tests), _Use(form, name, of_tests))
+            use.sites[file, line] = use.sites.get((file, line), 0) + 1
+            use.looked_at += 1
+            return use if use.looked_at <= _MOST else None
+
+    async def _awaited(self, use: _Use | None, waiting: Any) -> Any:
+        result = await waiting
+        self._answer(use, result)
+        return result
+
+    def _answer(self, use: _Use | None, result: Any) -> None:
+        if use is not None and (use.form not in WRITTEN or use.form is Form.CALL):
+            self._look(use.read, result)
+
+    def _look(self, parts: Parts, value: Any) -> None:
+        with self._lock, suppress(Exception):  # looking at values must not disturb the program
+            parts.see(value)

@@ -1,0 +1,1 @@
+"""Proposing operations that have a name on a middleware, from what was seen to pass under it."""
