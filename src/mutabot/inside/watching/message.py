@@ -84,8 +84,8 @@ def type_of(value: Any) -> str:
 
 
 def _parts(value: Any, part: Part, depth: int) -> Iterator[Part]:
-    fields = _fields_of(value)
     seconds = _seconds(value)
+    fields = _fields_of(value) if seconds is None else None
     if seconds is not None:
         part.values = [seconds]
         yield part

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from mutabot.model.named import Form
 from mutabot.proposal.guess import Guess
 
-from .meanings import Place, meaning
+from .meanings import Place, is_nothing, meaning
 from .seen import Part, Use
 
 #: which key names it, which tables speak of what is written and of what is read
@@ -118,6 +118,6 @@ def _described(use: Use) -> Iterator[Described]:
         for part in parts:
             meant = meaning(part, place) if part.always else {}
             for path, guess in meant.items():
-                yield Described(table, path, part, guess)
-            if not meant and not place.is_nothing(part):
+                yield Described(table, path, part, guess if guess.table else None)
+            if not meant and not is_nothing(part):
                 yield Described(table, part.path, part, None)

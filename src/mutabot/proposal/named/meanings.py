@@ -1,15 +1,38 @@
-"""What the parts of messages mean, by the types that hold them and their names."""
+"""What the parts of messages mean, by the types that hold them: units and axes are those of REP 103.
+
+Types that no convention is known of are left to the names of their fields (``by_name``).
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from mutabot.model.named import Form
-from mutabot.proposal.guess import Guess
+from mutabot.proposal.guess import Guess, Table
 
+from .by_name import by_name
 from .seen import Part, Use
+
+Meant = dict[str, Guess]
+
+_POINTS = frozenset({"geometry_msgs/Point", "geometry_msgs/Point32"})
+_TRANSLATION = ("geometry_msgs/Transform", "translation")
+#: holders of speeds, which a program sends to move something; read, no kind of quantity fits them
+_SPEEDS = "geometry_msgs/Twist"
+#: types whose fields are as conventions say, or unknown; their names alone tell nothing
+_STANDARD = re.compile(r"(?:geometry|sensor|nav|diagnostic|actionlib|action|visualization|shape)_msgs/.*")
+_JOINTS = {
+    ("sensor_msgs/JointState", "position"),
+    ("trajectory_msgs/JointTrajectoryPoint", "positions"),
+}
+_MOST_JOINTS = 12
+#: how far fingers open that nobody says more of, in m
+_STROKE = 0.1
+_BY = frozenset({"by", "relative", "rel", "offset", "shift", "jog", "delta", "step", "increment"})
+_GETTERS = frozenset({"get", "read", "query", "is", "has", "where", "locate", "detect", "measure", "lookup"})
+_VELOCITY = "unit: m stands for m/s, and rad for rad/s, if it is a speed"
 
 
 @dataclass(frozen=True)
@@ -18,7 +41,7 @@ class Place:
 
     Attributes:
         form: what is done.
-        words: the words of its name.
+        words: the words of its name, in lower case.
         is_written: whether the program sends them.
         frame: the frame that all messages speak of; empty if there are several or none.
     """
@@ -31,14 +54,125 @@ class Place:
     @classmethod
     def of(cls, use: Use, parts: Sequence[Part], *, is_written: bool) -> Place:
         """The place of what passes in a use."""
-        words = tuple(word.lower() for word in re.findall(r"[A-Za-z]+|\d+", use.name))
-        return cls(use.form, words, is_written)
+        name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", use.name)
+        words = tuple(word.lower() for word in re.findall(r"[A-Za-z]+\d*|\d+", name))
+        frames = {value for part in parts if _is_header(part, "frame_id") for value in part.values}
+        frame = next(iter(frames)) if len(frames) == 1 else ""
+        return cls(use.form, words, is_written, frame)
 
-    def is_nothing(self, part: Part) -> bool:
-        """Whether a part is not worth asking about."""
-        return False
+    @property
+    def is_by(self) -> bool:
+        """Whether its name says that what is sent is relative."""
+        return bool(_BY & set(self.words))
+
+    @property
+    def tells_nothing(self) -> bool:
+        """Whether it is the answer to a command, which says how that went."""
+        return self.form is Form.CALL and not self.is_written and not _GETTERS & set(self.words)
 
 
-def meaning(part: Part, place: Place) -> dict[str, Guess]:
-    """What a part means, by path; nothing if nothing tells."""
-    return {}
+def meaning(part: Part, place: Place) -> Meant:
+    """What a part means, by path; an empty guess for a path of which nothing tells, nothing for the whole."""
+    if place.tells_nothing:
+        return {}
+    for rule in _RULES:
+        found = rule(part, place)
+        if found is not None:
+            return found
+    if part.within and _STANDARD.fullmatch(part.within[-1][0]):
+        return {}
+    return by_name(part, place.words, is_written=place.is_written)
+
+
+def is_nothing(part: Part) -> bool:
+    """Whether a part is not worth asking about: no number, or one that the middleware itself writes."""
+    if part.type in ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration"):
+        return True
+    if part.within and part.within[-1][0] == "std_msgs/Header":
+        return True
+    return not part.values and not part.length
+
+
+def _header(part: Part, place: Place) -> Meant | None:
+    if any(part.values):
+        for name, kind in (("frame_id", "frame_id"), ("stamp", "stamp")):
+            if _is_header(part, name):
+                return {part.path: Guess({"kind": kind})}
+    return None
+
+
+def _is_header(part: Part, name: str) -> bool:
+    return bool(part.within) and part.within[-1] == ("std_msgs/Header", name)
+
+
+def _quaternion(part: Part, place: Place) -> Meant | None:
+    return {part.path: Guess({"kind": "quaternion"})} if part.type == "geometry_msgs/Quaternion" else None
+
+
+def _coordinate(part: Part, place: Place) -> Meant | None:
+    """A coordinate of a point, of a transform's translation, or of a plane's pose."""
+    holder, name = part.within[-1] if part.within else ("", "")
+    if holder == "geometry_msgs/Pose2D":
+        return {part.path: _placed("rotation" if name == "theta" else "translation", name, place)}
+    is_translation = holder == "geometry_msgs/Vector3" and part.within[-2:-1] == (_TRANSLATION,)
+    if holder in _POINTS or is_translation:
+        return {part.path: _placed("translation", name, place)}
+    return None
+
+
+def _placed(kind: str, name: str, place: Place) -> Guess:
+    """Where something is, or is to be."""
+    unit, axis = ("rad", "z") if kind == "rotation" else ("m", name)
+    if not place.is_written:
+        read = "orientation" if kind == "rotation" else "position"
+        return Guess(_framed({"kind": read, "axis": axis, "unit": unit}, place))
+    table = _framed({"kind": kind, "axis": axis, "unit": unit}, place)
+    return Guess({**table, "mode": "by" if place.is_by else "to"}, [] if place.is_by else ["mode"])
+
+
+def _speed(part: Part, place: Place) -> Meant | None:
+    if len(part.within) < 2 or part.within[-2][0] != _SPEEDS:
+        return None
+    if not place.is_written:
+        return {}
+    kind, unit = ("rotation", "rad") if part.within[-2][1] == "angular" else ("translation", "m")
+    table = _framed({"kind": kind, "axis": part.within[-1][1], "unit": unit}, place)
+    return {part.path: Guess({**table, "mode": "by"}, [] if place.is_by else [_VELOCITY])}
+
+
+def _framed(table: Table, place: Place) -> Table:
+    return {**table, "frame": place.frame} if place.frame else table
+
+
+def _joints(part: Part, place: Place) -> Meant | None:
+    if not part.within or part.within[-1] not in _JOINTS or not part.length:
+        return None
+    if part.length > _MOST_JOINTS:
+        return {}
+    axis = "j1" if part.length == 1 else f"j1..j{part.length}"
+    path = f"{part.path}[0]" if part.length == 1 else f"{part.path}[0:{part.length}]"
+    if place.is_written:
+        return {path: Guess({"kind": "rotation", "axis": axis, "unit": "rad", "mode": "to"}, ["order"])}
+    return {path: Guess({"kind": "angle", "axis": axis, "unit": "rad"}, ["order"])}
+
+
+def _finger(part: Part, place: Place) -> Meant | None:
+    if not part.within or part.within[-1] != ("control_msgs/GripperCommand", "position"):
+        return None
+    if not place.is_written:
+        return {part.path: Guess({"kind": "distance", "unit": "m"})}
+    numbers = [value for value in part.values if isinstance(value, int | float)]
+    table: Table = {"kind": "opening", "unit": "m", "range": [0.0, float(max([_STROKE, *numbers]))]}
+    return {part.path: Guess(table, ["range"])}
+
+
+def _range(part: Part, place: Place) -> Meant | None:
+    is_range = bool(part.within) and part.within[-1] == ("sensor_msgs/Range", "range")
+    return (
+        {part.path: Guess({"kind": "distance", "unit": "m"})} if is_range and not place.is_written else None
+    )
+
+
+_RULES: tuple[Callable[[Part, Place], Meant | None], ...] = (
+    _header, _quaternion, _coordinate, _speed, _joints, _finger, _range,
+)  # fmt: skip

@@ -26,7 +26,8 @@ def entry_text(entry: Entry) -> str:
         lines.append(f"type = {value_text(entry.type)}")
     told = [part for part in entry.parts if part.guess is not None]
     lines += [quantity_line(_key(part), part.guess, _seen(part)) for part in told if part.guess is not None]
-    lines += _untold([part for part in entry.parts if part.guess is None])
+    lines += _refused(entry)
+    lines += _untold([part for part in entry.parts if part.guess is None and not _says_no(part)])
     return "\n".join(lines)
 
 
@@ -35,6 +36,18 @@ def _where(entry: Entry) -> str:
     file, line, _ = entry.uses[0].sites[0]
     what = _DONE[entry.key]
     return f"seen: {count} {what.removesuffix('s') if count == 1 else what}, first at {file}:{line}"
+
+
+def _refused(entry: Entry) -> Iterator[str]:
+    """How it may say no, by the conventions of ROS: that is for the user to decide."""
+    if any(_says_no(part) for part in entry.parts):
+        yield '# refused = { path = "success", values = [false] }  # if that is how it refuses a command'
+    if entry.key == "action":
+        yield '# refused = ["ABORTED", "REJECTED"]  # if goals that end so were refused'
+
+
+def _says_no(part: Described) -> bool:
+    return part.table == "response" and part.path == "success" and part.part.type in ("bool", "boolean")
 
 
 def _untold(parts: list[Described]) -> Iterator[str]:
