@@ -139,7 +139,7 @@ def observe(layout: Layout, limit: float = LIMIT) -> Observed:
 
 
 def _run(layout: Layout, extra: list[str], limit: float) -> Observed:
-    with TemporaryDirectory() as name:
+    with TemporaryDirectory(ignore_cleanup_errors=True) as name:  # nodes may still write to their logs
         folder = Path(name)
         order, output, log = folder / "watch.json", folder / "seen.json", folder / "log.txt"
         order.write_text(json.dumps(_order(layout, output)), encoding="utf-8")
@@ -159,7 +159,7 @@ def _run(layout: Layout, extra: list[str], limit: float) -> Observed:
 def _order(layout: Layout, output: Path) -> dict[str, Any]:
     names = {kind: {os.path.realpath(path): layout.relative(path) for path in getattr(layout, kind)}
              for kind in ("program", "tests")}  # fmt: skip
-    return {**names, "output": str(output)}
+    return {**names, "root": str(layout.root), "output": str(output)}
 
 
 def _wait(words: Sequence[str], root: Path, order: Path, log: Path, limit: float) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from mutabot.border.job import Job
 
 from . import _domain, _master
+from ._speech import speaks_of
 
 
 def prepare(job: Job, home: str) -> None:
@@ -19,4 +20,19 @@ def prepare(job: Job, home: str) -> None:
     if _domain.is_wanted(job):
         _domain.take(home)
     if _master.is_wanted(job):
+        _master.start(home)
+
+
+def prepare_unknown(root: str, home: str) -> None:
+    """The same where no vocabulary tells yet what the program uses: its files do.
+
+    Args:
+        root: the project's folder.
+        home: a folder for what nodes leave.
+
+    Raises ``_master.MasterError`` likewise.
+    """
+    if speaks_of(root, "rclpy"):
+        _domain.take(home)
+    if _master.is_spoken_of(root):
         _master.start(home)

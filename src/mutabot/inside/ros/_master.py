@@ -13,10 +13,11 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 from mutabot.border.job import Job
+
+from ._speech import speaks_of
 
 #: environment variables by which nodes find it
 URI, ADDRESS, LOGS, HOME = "ROS_MASTER_URI", "ROS_IP", "ROS_LOG_DIR", "ROS_HOME"
@@ -24,8 +25,6 @@ URI, ADDRESS, LOGS, HOME = "ROS_MASTER_URI", "ROS_IP", "ROS_LOG_DIR", "ROS_HOME"
 _PATIENCE = 20.0
 _PAUSE = 0.005
 _TRIES = 5
-#: how many files are looked into
-_FILES = 500
 _LOCAL = "127.0.0.1"
 _PROGRAM = """
 import ctypes, os, signal, sys
@@ -67,30 +66,16 @@ def is_wanted(job: Job) -> bool:
         return False
     if not _is_installed("rospy") or not _is_installed("rosmaster"):
         return False
-    return not _is_installed("rclpy") or any(map(_speaks_of_rospy, _files(job.root)))
+    return not _is_installed("rclpy") or speaks_of(job.root, "rospy")
+
+
+def is_spoken_of(root: str) -> bool:
+    """Whether the files below a folder use ROS 1, and it is installed."""
+    return _is_installed("rospy") and _is_installed("rosmaster") and speaks_of(root, "rospy")
 
 
 def _is_installed(module: str) -> bool:
     return importlib.util.find_spec(module) is not None
-
-
-def _files(root: str) -> Iterator[str]:
-    """The first program files below a folder."""
-    found = 0
-    for folder, folders, files in os.walk(root):
-        folders[:] = sorted(name for name in folders if not name.startswith((".", "__")))
-        for name in sorted(files):
-            if name.endswith(".py") and found < _FILES:
-                found += 1
-                yield os.path.join(folder, name)
-
-
-def _speaks_of_rospy(file: str) -> bool:
-    try:
-        with open(file, "rb") as opened:
-            return b"rospy" in opened.read()
-    except OSError:
-        return False
 
 
 def start(home: str) -> Master:

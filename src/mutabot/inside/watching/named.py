@@ -33,6 +33,7 @@ class _Use:
     form: Form
     name: str
     of_tests: bool
+    is_called_back: bool
     sites: dict[tuple[str, int], int] = field(default_factory=dict)
     written: Parts = field(default_factory=Parts)
     read: Parts = field(default_factory=Parts)
@@ -54,7 +55,7 @@ class NamesSeen(Messages):
         passed: Callable[[], None],
     ) -> None:
         self._place_of, self._passed = place_of, passed
-        self._uses: dict[tuple[Form, str, bool], _Use] = {}
+        self._uses: dict[tuple[Form, str, bool, bool], _Use] = {}
         self._lock = threading.RLock()
         super().__init__(lambda target, finding: None)
 
@@ -71,7 +72,8 @@ class NamesSeen(Messages):
             kwargs: dict[str, Any],
             where: Where | None = None,
         ) -> Any:
-            use = self._use(form, name, self._place_of(sys._getframe(1), where))
+            is_called_back = where is not None and where.code is not None
+            use = self._use(form, name, self._place_of(sys._getframe(1), where), is_called_back)
             if use is not None and args:
                 self._look(use.written, args[0])
             if inspect.iscoroutinefunction(wrapped):
@@ -90,6 +92,7 @@ class NamesSeen(Messages):
                     "form": use.form,
                     "name": use.name,
                     "of_tests": use.of_tests,
+                    "is_called_back": use.is_called_back,
                     "sites": [[*site, count] for site, count in use.sites.items()],
                     "written": use.written.data(),
                     "read": use.read.data(),
@@ -97,13 +100,16 @@ class NamesSeen(Messages):
                 for use in self._uses.values()
             ]
 
-    def _use(self, form: Form, name: str, place: tuple[str, int, bool] | None) -> _Use | None:
+    def _use(
+        self, form: Form, name: str, place: tuple[str, int, bool] | None, is_called_back: bool
+    ) -> _Use | None:
         """The use that a place is one of, if it is to be looked at."""
         if place is None:
             return None
         file, line, of_tests = place
         with self._lock:
-            use = self._uses.setdefault((form, name, of_tests), _Use(form, name, of_tests))
+            key = (form, name, of_tests, is_called_back)
+            use = self._uses.setdefault(key, _Use(*key))
             use.sites[file, line] = use.sites.get((file, line), 0) + 1
             use.looked_at += 1
             return use if use.looked_at <= _MOST else None

@@ -32,7 +32,8 @@ _ENDINGS = {
     Form.FEEDBACK: ("Feedback",),
     Form.RESULT: ("Result",),
 }
-#: what the tests alone read is worth a word: it is what they judge by
+#: what the tests alone read is worth a word if they wait for it: it is what they judge by. What goes wrong in
+#: a callback of theirs, the client library may keep to itself
 _READINGS = frozenset({Form.RECEIVE, Form.TRANSFORM})
 
 
@@ -85,7 +86,7 @@ def entries(found: Sequence[Use]) -> list[Entry]:
     """An entry for each name that the program uses, and for the readings of the tests that mean something."""
     made: dict[tuple[str, str, str], Entry] = {}
     for use in found:
-        if use.of_tests and use.form not in _READINGS:
+        if use.of_tests and (use.form not in _READINGS or use.is_called_back):
             continue
         if use.form not in _KEYS:
             continue
@@ -98,7 +99,8 @@ def entries(found: Sequence[Use]) -> list[Entry]:
             entry.uses, entry.parts = [], []
         entry.uses.append(use)
         entry.type = entry.type or _type(use)
-        entry.parts += _described(use)
+        known = {(part.table, part.path) for part in entry.parts}
+        entry.parts += [part for part in _described(use) if (part.table, part.path) not in known]
     return [entry for entry in made.values() if not entry.of_tests or entry.has_meaning]
 
 
@@ -119,5 +121,5 @@ def _described(use: Use) -> Iterator[Described]:
             meant = meaning(part, place) if part.always else {}
             for path, guess in meant.items():
                 yield Described(table, path, part, guess if guess.table else None)
-            if not meant and not is_nothing(part):
+            if not meant and not is_nothing(part, place):
                 yield Described(table, part.path, part, None)

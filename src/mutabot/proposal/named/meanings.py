@@ -30,6 +30,7 @@ _JOINTS = {
 _MOST_JOINTS = 12
 #: how far fingers open that nobody says more of, in m
 _STROKE = 0.1
+_BYTES = ("uint8[", "char[", "byte[", "octet[", "sequence<uint8", "sequence<octet")
 _BY = frozenset({"by", "relative", "rel", "offset", "shift", "jog", "delta", "step", "increment"})
 _GETTERS = frozenset({"get", "read", "query", "is", "has", "where", "locate", "detect", "measure", "lookup"})
 _VELOCITY = "unit: m stands for m/s, and rad for rad/s, if it is a speed"
@@ -84,13 +85,15 @@ def meaning(part: Part, place: Place) -> Meant:
     return by_name(part, place.words, is_written=place.is_written)
 
 
-def is_nothing(part: Part) -> bool:
-    """Whether a part is not worth asking about: no number, or one that the middleware itself writes."""
+def is_nothing(part: Part, place: Place) -> bool:
+    """Whether a part is not worth asking about: what the middleware itself writes, and words for people."""
+    if any(isinstance(value, str) for value in part.values):
+        return not place.is_written and bool(part.within) and part.within[-1] != ("std_msgs/String", "data")
     if part.type in ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration"):
         return True
     if part.within and part.within[-1][0] == "std_msgs/Header":
         return True
-    return not part.values and not part.length
+    return part.type.startswith(_BYTES) or (not part.values and not part.length)
 
 
 def _header(part: Part, place: Place) -> Meant | None:

@@ -50,6 +50,7 @@ class Use:
         form: what.
         name: the resolved name; where it would be another one in each run, with ``*``.
         of_tests: whether the tests did it.
+        is_called_back: whether it came to a callback, rather than to who waited for it.
         sites: file, line, number of times.
         type: ``package/Name`` of the message, service or action; empty if that is not known.
         written, read: parts of what was sent, and of what came.
@@ -58,6 +59,7 @@ class Use:
     form: Form
     name: str
     of_tests: bool
+    is_called_back: bool
     sites: tuple[tuple[str, int, int], ...]
     type: str = ""
     written: tuple[Part, ...] = ()
@@ -71,15 +73,16 @@ class Use:
 
 def uses(raw: Iterable[Mapping[str, Any]]) -> list[Use]:
     """What all processes saw, one use for each form, name and side."""
-    found: dict[tuple[str, str, bool], list[Mapping[str, Any]]] = {}
+    found: dict[tuple[str, str, bool, bool], list[Mapping[str, Any]]] = {}
     for one in raw:
         name = _ANONYMOUS.sub("_*", one["name"])
         if name not in _OWN and not name.startswith(_OWN_BEGINNINGS):
-            found.setdefault((one["form"], name, one["of_tests"]), []).append(one)
-    return [_use(Form(form), name, of_tests, several) for (form, name, of_tests), several in found.items()]
+            key = (one["form"], name, one["of_tests"], one["is_called_back"])
+            found.setdefault(key, []).append(one)
+    return [_use(several, Form(form), *rest) for (form, *rest), several in found.items()]
 
 
-def _use(form: Form, name: str, of_tests: bool, several: Sequence[Mapping[str, Any]]) -> Use:
+def _use(several: Sequence[Mapping[str, Any]], form: Form, name: str, *sides: bool) -> Use:
     sites: dict[tuple[str, int], int] = {}
     for one in several:
         for file, line, count in one["sites"]:
@@ -87,7 +90,7 @@ def _use(form: Form, name: str, of_tests: bool, several: Sequence[Mapping[str, A
     seen = tuple((file, line, count) for (file, line), count in sites.items())
     types = [one[side]["type"] for one in several for side in ("written", "read") if one[side]["type"]]
     return Use(
-        form, name, of_tests, seen, next((found for found in map(_whole, types) if found), ""),
+        form, name, *sides, seen, next((found for found in map(_whole, types) if found), ""),
         _parts([one["written"] for one in several]), _parts([one["read"] for one in several]),
     )  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from mutabot.proposal.toml import key_text, quantity_line, short, value_text
@@ -64,5 +65,8 @@ def _key(part: Described) -> str:
 
 def _seen(part: Described) -> str:
     values = part.part.values
+    elements = re.search(r"\[(\d+):(\d+)\]$", part.path)
+    if elements is not None and part.path != part.part.path:
+        values = tuple(value[int(elements[1]) : int(elements[2])] for value in values)
     texts = [short(value) for value in values[: 1 if part.part.length is not None else _EXAMPLES]]
     return ", ".join(texts) + (", …" if len(values) > len(texts) else "")
