@@ -647,3 +647,33 @@ def test_programs_that_the_tests_start_as_processes_are_watched_there(tmp_path: 
     assert "calls 1 callables" in told
     (found,) = operations(tmp_path).values()
     assert (found.target, [one.name for one in found.arguments]) == ("robot:Arm.move_by", ["x"])
+
+
+def test_objects_that_are_called_and_have_no_name_are_reached(tmp_path: Path) -> None:
+    files = {
+        "robot.py": """
+            class Proxy:
+                def __call__(self, value): return value
+
+            class Arm:
+                def move_by(self, x): ...
+        """,
+        "mission.py": """
+            from robot import Arm, Proxy
+
+            class Mission:
+                def __init__(self):
+                    self.close = Proxy()
+
+                def run(self, home=False):
+                    lift = Proxy()
+                    Arm().move_by(0.5)
+                    if home:
+                        self.park(1)
+                    return self.close(lift(True))
+        """,
+        "tests/test_mission.py": "import mission\ndef test_it(): assert mission.Mission().run()\n",
+    }
+    propose(write(tmp_path, files))
+    text = (tmp_path / "robot.toml").read_text(encoding="utf-8")
+    assert text.partition("no test reaches")[2].splitlines()[1:] == ["#   mission.py:12  self.park"]

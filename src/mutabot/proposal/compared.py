@@ -12,6 +12,9 @@ from typing import Any
 from .layout import Layout, parsed
 
 _NO_ROBOTS = frozenset({*sys.stdlib_module_names, "numpy", "np", "pytest", "math3d"})
+#: client libraries of ROS, and what of them is an operation when it is called by the library's name
+_CLIENT_LIBRARIES = frozenset({"rospy", "rclpy", "actionlib", "tf2_ros", "tf"})
+_OPERATIONS = frozenset({"get_param", "get_param_cached", "wait_for_message"})
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,7 @@ def _is_plain(names: Sequence[str], own: set[str]) -> bool:
     return (
         (len(names) == 1 and (hasattr(builtins, last) or last in own))
         or names[0] in _NO_ROBOTS
+        or (names[0] in _CLIENT_LIBRARIES and last not in _OPERATIONS)
         or last.startswith("_")
         or last[:1].isupper()
         or any(hasattr(kind, last) for kind in (list, dict, str, set))

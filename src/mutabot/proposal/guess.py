@@ -81,6 +81,11 @@ class Setting:
     constants: Sequence[Any] = ()
 
 
+def is_complete(guess: Guess) -> bool:
+    """Whether a vocabulary takes it as it is: a label needs all its values."""
+    return guess.table.get("kind") != "label" or "values" in guess.table
+
+
 def guess_argument(name: str, setting: Setting) -> Guess:
     """What an argument means; an empty guess if its name says nothing."""
     stem, unit = split_unit(name.lower())

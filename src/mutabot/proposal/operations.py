@@ -9,7 +9,7 @@ from typing import Any
 
 from .commands import MESSAGES, patterns_of
 from .compared import with_compared
-from .guess import Guess, Setting, guess_argument, guess_reading
+from .guess import Guess, Setting, guess_argument, guess_reading, is_complete
 from .nodes import commands_of, is_read, tells_commands
 from .observed import Part, SeenCall, part_of
 from .sequences import guess_elements
@@ -76,11 +76,6 @@ class Proposal:
             return any(guess.table for _, guess in self.patterns)  # else nothing can be misread
         complete = any(is_complete(guess) for guess in [*self.arguments.values(), *self.result.values()])
         return complete or bool(self.patterns) or self.is_plain or _is_command(self.call)
-
-
-def is_complete(guess: Guess) -> bool:
-    """Whether a vocabulary takes it as it is: a label needs all its values."""
-    return guess.table.get("kind") != "label" or "values" in guess.table
 
 
 def proposals(

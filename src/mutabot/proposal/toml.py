@@ -6,8 +6,7 @@ import json
 import re
 from typing import Any
 
-from .guess import Guess
-from .operations import is_complete
+from .guess import Guess, is_complete
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 #: the longest text that is shown as an example

@@ -79,10 +79,11 @@ def uses(raw: Iterable[Mapping[str, Any]]) -> list[Use]:
         if name not in _OWN and not name.startswith(_OWN_BEGINNINGS):
             key = (one["form"], name, one["of_tests"], one["is_called_back"])
             found.setdefault(key, []).append(one)
-    return [_use(several, Form(form), *rest) for (form, *rest), several in found.items()]
+    return [_use(several) for several in found.values()]
 
 
-def _use(several: Sequence[Mapping[str, Any]], form: Form, name: str, *sides: bool) -> Use:
+def _use(several: Sequence[Mapping[str, Any]]) -> Use:
+    first = several[0]
     sites: dict[tuple[str, int], int] = {}
     for one in several:
         for file, line, count in one["sites"]:
@@ -90,9 +91,15 @@ def _use(several: Sequence[Mapping[str, Any]], form: Form, name: str, *sides: bo
     seen = tuple((file, line, count) for (file, line), count in sites.items())
     types = [one[side]["type"] for one in several for side in ("written", "read") if one[side]["type"]]
     return Use(
-        form, name, *sides, seen, next((found for found in map(_whole, types) if found), ""),
-        _parts([one["written"] for one in several]), _parts([one["read"] for one in several]),
-    )  # fmt: skip
+        form=Form(first["form"]),
+        name=_ANONYMOUS.sub("_*", first["name"]),
+        of_tests=first["of_tests"],
+        is_called_back=first["is_called_back"],
+        sites=seen,
+        type=next((found for found in map(_whole, types) if found), ""),
+        written=_parts([one["written"] for one in several]),
+        read=_parts([one["read"] for one in several]),
+    )
 
 
 def _whole(kind: str) -> str:

@@ -1,0 +1,276 @@
+"""``mutabot init``: entries by name from what was seen to pass, and what the fields of messages mean."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.inside.watching.message import Parts, type_of
+from mutabot.model.named import Form
+from mutabot.proposal.named.entries import entries
+from mutabot.proposal.named.meanings import Place, meaning
+from mutabot.proposal.named.seen import Part, uses
+from mutabot.proposal.named.text import entry_text
+from mutabot.proposal.vocabulary_text import vocabulary_text
+from mutabot.vocabulary import load
+
+POSE, POINT, ROTATION = "geometry_msgs/Pose", "geometry_msgs/Point", "geometry_msgs/Quaternion"
+VECTOR, TWIST = "geometry_msgs/Vector3", "geometry_msgs/Twist"
+
+
+def part(path: str, *within: tuple[str, str], kind: str = "float64", values: Any = (0.5,)) -> Part:
+    length = len(values[0]) if isinstance(values[0], list) else None
+    return Part(path, within, kind, tuple(values), length)
+
+
+def raw_part(path: str, within: list[tuple[str, str]], kind: str, values: list[Any]) -> dict[str, Any]:
+    return {"path": path, "within": within, "type": kind, "values": values, "length": None, "count": 1}
+
+
+def raw(form: str, name: str, **more: Any) -> dict[str, Any]:
+    nothing = {"type": "", "times": 0, "parts": []}
+    usual = {"of_tests": False, "is_called_back": False, "sites": [["mission.py", 7, 1]]}
+    return {"form": form, "name": name, **usual, "written": nothing, "read": nothing, **more}
+
+
+def passed(kind: str, *parts: dict[str, Any]) -> dict[str, Any]:
+    return {"type": kind, "times": 1, "parts": list(parts)}
+
+
+def place(form: Form, name: str, *, is_written: bool = False) -> Place:
+    (use,) = uses([raw(form, name)])
+    return Place.of(use, (), is_written=is_written)
+
+
+MOVED = {"kind": "translation", "axis": "y", "unit": "m"}
+SPEED = "unit: m stands for m/s, and rad for rad/s, if it is a speed"
+
+
+@pytest.mark.parametrize(
+    ("name", "sent", "table", "checks"),
+    [
+        ("/goal", part("p.y", (POSE, "position"), (POINT, "y")), {**MOVED, "mode": "to"}, ["mode"]),
+        ("/arm/move_by", part("p.y", (POINT, "y")), {**MOVED, "mode": "by"}, []),
+        ("/cmd_vel", part("l.y", (TWIST, "linear"), (VECTOR, "y")), {**MOVED, "mode": "by"}, [SPEED]),
+        (
+            "/cmd_vel",
+            part("a.z", (TWIST, "angular"), (VECTOR, "z")),
+            {"kind": "rotation", "axis": "z", "unit": "rad", "mode": "by"},
+            [SPEED],
+        ),
+        ("/goal", part("o", (POSE, "orientation"), kind=ROTATION), {"kind": "quaternion"}, []),
+        ("/arm/wait", part("data", ("std_msgs/Float64", "data")), {"kind": "duration", "unit": "s"}, []),
+        (
+            "/lamp",
+            part("data", ("std_msgs/Bool", "data"), kind="bool", values=(True,)),
+            {"kind": "output", "values": [False, True]},
+            [],
+        ),
+        (
+            "/gripper/close",
+            part("data", ("std_srvs/SetBoolRequest", "data"), kind="bool", values=(True,)),
+            {"kind": "opening", "values": [False, True]},
+            [],
+        ),
+    ],
+)
+def test_what_is_sent_means_what_ros_says(
+    name: str, sent: Part, table: dict[str, Any], checks: list[str]
+) -> None:
+    (guess,) = meaning(sent, place(Form.PUBLISH, name, is_written=True)).values()
+    assert (guess.table, guess.checks) == (table, checks)
+
+
+@pytest.mark.parametrize(
+    ("read", "table"),
+    [
+        (part("p.x", (POSE, "position"), (POINT, "x")), {"kind": "position", "axis": "x", "unit": "m"}),
+        (
+            part("t.x", ("geometry_msgs/Transform", "translation"), (VECTOR, "x")),
+            {"kind": "position", "axis": "x", "unit": "m"},
+        ),
+        (part("r", ("sensor_msgs/Range", "range")), {"kind": "distance", "unit": "m"}),
+        (
+            part("theta", ("geometry_msgs/Pose2D", "theta")),
+            {"kind": "orientation", "axis": "z", "unit": "rad"},
+        ),
+        (
+            part("position", ("sensor_msgs/JointState", "position"), values=([0.1, 0.2],)),
+            {"kind": "angle", "axis": "j1..j2", "unit": "rad"},
+        ),
+        (
+            part("data", ("std_msgs/Int32", "data"), values=(4, 7)),
+            {"kind": "label", "values": [4, 7]},
+        ),
+    ],
+)
+def test_what_is_read_means_what_ros_says(read: Part, table: dict[str, Any]) -> None:
+    (guess,) = meaning(read, place(Form.RECEIVE, "/it")).values()
+    assert guess.table == table
+
+
+@pytest.mark.parametrize(
+    "read",
+    [
+        part("twist.linear.x", (TWIST, "linear"), (VECTOR, "x")),  # a speed: no reading is of that kind
+        part("wrench.force.x", ("geometry_msgs/Wrench", "force"), (VECTOR, "x")),
+        part("level", ("sensor_msgs/BatteryState", "percentage")),
+        part("code", ("vendor_msgs/State", "code"), values=(3,)),
+        part("data", ("std_msgs/Int32", "data"), values=(9,)),
+    ],
+)
+def test_nothing_is_made_up_where_nothing_tells(read: Part) -> None:
+    assert meaning(read, place(Form.RECEIVE, "/it")) == {}
+
+
+def test_poses_and_joints_of_a_vendor_are_told_by_the_names_of_services() -> None:
+    pose = part("pose", ("arm_msgs/MoveRequest", "pose"), values=([282.0, 187.9, 404.5, 3.1, 0.0, -1.5],))
+    line = meaning(pose, place(Form.CALL, "/arm/move_line", is_written=True))
+    assert {path: guess.table.get("unit") for path, guess in line.items()} == {
+        "pose[0:3]": "mm",
+        "pose[3:6]": None,
+    }
+    angles = part("pose", ("arm_msgs/MoveRequest", "pose"), values=([0.1, 0.2, 0.3, 0.4, 0.5, 0.6],))
+    joint = meaning(angles, place(Form.CALL, "/arm/move_joint", is_written=True))
+    assert joint["pose[0:6]"].table["axis"] == "j1..j6"
+    assert joint["pose[0:6]"].table["unit"] == "rad"
+
+
+def everything() -> list[dict[str, Any]]:
+    flag = raw_part("data", [("std_srvs/SetBoolRequest", "data")], "bool", [True])
+    success = raw_part("success", [("std_srvs/SetBoolResponse", "success")], "bool", [True])
+    stamped = "geometry_msgs/PoseStamped"
+    header = [(stamped, "header"), ("std_msgs/Header", "frame_id")]
+    frame = raw_part("header.frame_id", header, "string", ["base"])
+    x = raw_part("pose.position.x", [(stamped, "pose"), (POSE, "position"), (POINT, "x")], "float64", [0.5])
+    turn = raw_part("pose.orientation", [(stamped, "pose"), (POSE, "orientation")], ROTATION, [])
+    odd = raw_part("speed", [("vendor_msgs/Odd", "speed")], "float32", [math.inf, 3.0])
+    reached = raw_part("code", [("vendor_msgs/Go_Result", "code")], "int8", [1])
+    to = raw_part("target", [("vendor_msgs/Go_Goal", "target")], "float64", [0.25])
+    return [
+        raw("publish", "/arm/goal", written=passed(stamped, frame, x, turn)),
+        raw("publish", "/odd", written=passed("vendor_msgs/Odd", odd)),
+        raw(
+            "call",
+            "/gripper/close",
+            written=passed("std_srvs/SetBoolRequest", flag),
+            read=passed("std_srvs/SetBoolResponse", success),
+        ),
+        raw("goal", "/go", written=passed("vendor_msgs/Go_Goal", to)),
+        raw("result", "/go", read=passed("vendor_msgs/Go_Result", reached)),
+        raw("parameter", "/robot", read=passed("str", raw_part("", [], "str", ["left", "right"]))),
+        raw("parameter", "/use_sim_time", read=passed("bool", raw_part("", [], "bool", [True]))),
+        raw("tick", "Mission.on_time"),
+        raw("sleep", "/mission_4711_1700000000000", sites=[["mission.py", 9, 12]]),
+        raw("transform", "base → tool", read=passed("geometry_msgs/TransformStamped")),
+        raw("receive", "/tests/wait", of_tests=True, read=passed(stamped, x)),
+        raw("receive", "/tests/hear", of_tests=True, is_called_back=True, read=passed(stamped, x)),
+        raw("publish", "/tests/send", of_tests=True, written=passed(stamped, x)),
+    ]
+
+
+def test_a_vocabulary_takes_the_entries_as_they_are(tmp_path: Path) -> None:
+    text = vocabulary_text([], [], ["mission.py"], named=entries(uses(everything())))
+    (tmp_path / "robot.toml").write_text(text, encoding="utf-8")
+    found = {one.target: one for one in load(["robot.toml"], tmp_path).operations}
+    mains = {"publish", "receive", "call", "goal", "parameter", "tick", "sleep", "transform"}
+    assert [target for target in found if target.partition(" ")[0] in mains] == [
+        "publish /arm/goal",
+        "publish /odd",
+        "call /gripper/close",
+        "goal /go",
+        "parameter /robot",
+        "tick Mission.on_time",
+        "sleep /mission_*",
+        "transform base → tool",
+        "receive /tests/wait",  # what the tests wait for, not what they send or hear in callbacks
+    ]
+    goal = found["publish /arm/goal"].named
+    assert goal is not None
+    assert goal.type == "geometry_msgs/PoseStamped"
+
+
+def test_what_is_guessed_and_what_nothing_tells_stands_there() -> None:
+    texts = {entry.name: entry_text(entry) for entry in entries(uses(everything()))}
+    assert texts["/arm/goal"].splitlines() == [
+        "[[operation]]  # seen: 1 message, first at mission.py:7",
+        'topic = "/arm/goal"',
+        'direction = "publish"',
+        'type = "geometry_msgs/PoseStamped"',
+        'fields."header.frame_id" = { kind = "frame_id" }  # guess; seen: "base"',
+        'fields."pose.position.x" = { kind = "translation", axis = "x", unit = "m", frame = "base", '
+        'mode = "to" }  # guess; check the mode; seen: 0.5',
+        'fields."pose.orientation" = { kind = "quaternion" }  # guess',
+    ]
+    assert texts["/odd"].splitlines()[-1] == "# nothing tells what this means: fields.speed (float32; 3)"
+    assert texts["/gripper/close"].splitlines()[-1].startswith('# refused = { path = "success"')
+    assert texts["/go"].splitlines()[2] == 'type = "vendor_msgs/Go"'
+    assert texts["/go"].splitlines()[-1].endswith("goal.target (float64; 0.25), result.code (int8; 1)")
+    assert "12 turns" in texts["/mission_*"]
+
+
+def test_what_several_processes_saw_is_one_entry() -> None:
+    first = raw("parameter", "/side", read=passed("str", raw_part("", [], "str", ["left"])))
+    second = raw("parameter", "/side", read=passed("str", raw_part("", [], "str", ["right"])))
+    (entry,) = entries(uses([first, second]))
+    assert 'value = { kind = "label", values = ["left", "right"] }' in entry_text(entry)
+    assert "seen: 2 readings" in entry_text(entry)
+
+
+class Time:
+    def __init__(self, secs: int = 0, nsecs: int = 0) -> None:
+        self.secs, self.nsecs = secs, nsecs
+
+
+class Header:
+    """As ROS 1 makes its messages."""
+
+    __slots__ = ["frame_id", "stamp"]
+    _type, _slot_types = "std_msgs/Header", ["string", "time"]
+
+    def __init__(self) -> None:
+        self.stamp, self.frame_id = Time(2, 500_000_000), "base"
+
+
+class Path1:
+    """As ROS 1 makes its messages."""
+
+    __slots__ = ["header", "headers", "numbers"]
+    _type, _slot_types = "nav_msgs/Path", ["std_msgs/Header", "std_msgs/Header[]", "float64[]"]
+
+    def __init__(self) -> None:
+        self.header, self.numbers, self.headers = Header(), [1.0, 2.0], [Header()]
+
+
+class Flag:
+    """As ROS 2 makes its messages."""
+
+    _data = True
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        return {"data": "boolean"}
+
+    @property
+    def data(self) -> bool:
+        return self._data
+
+
+def test_messages_of_both_generations_are_described_without_their_packages() -> None:
+    parts = Parts()
+    parts.see(Path1())
+    found = {one["path"]: (one["type"], one["values"]) for one in parts.data()["parts"]}
+    assert found == {
+        "header.stamp": ("time", [2.5]),
+        "header.frame_id": ("string", ["base"]),
+        "numbers": ("float64[]", [[1.0, 2.0]]),
+        "headers[-1].stamp": ("time", [2.5]),
+        "headers[-1].frame_id": ("string", ["base"]),
+    }
+    assert type_of(Flag()) == f"{__name__.partition('.')[0]}/Flag"
+    flag = Parts()
+    flag.see(Flag())
+    assert flag.data()["parts"][0]["within"] == [(type_of(Flag()), "data")]
