@@ -10,7 +10,7 @@ import pytest
 
 from mutabot.inside.watching.message import Parts, type_of
 from mutabot.model.named import Form
-from mutabot.proposal.named.entries import entries
+from mutabot.proposal.named.entries import entries, unused
 from mutabot.proposal.named.meanings import Place, meaning
 from mutabot.proposal.named.seen import Part, uses
 from mutabot.proposal.named.text import entry_text
@@ -218,6 +218,17 @@ def test_what_several_processes_saw_is_one_entry() -> None:
     (entry,) = entries(uses([first, second]))
     assert 'value = { kind = "label", values = ["left", "right"] }' in entry_text(entry)
     assert "seen: 2 readings" in entry_text(entry)
+
+
+def test_what_is_set_up_and_never_used_is_told() -> None:
+    found = uses(
+        [
+            raw("subscribe", "/heard"), raw("receive", "/heard", is_called_back=True),
+            raw("subscribe", "/never"), raw("subscribe", "/tf"), raw("subscribe", "/of_tests", of_tests=True),
+            raw("client", "/go"), raw("goal", "/go"), raw("advertise", "/go/cancel"),
+        ]
+    )  # fmt: skip
+    assert [(one.line, one.callee) for one in unused(found)] == [(7, "receive /never")]
 
 
 class Time:

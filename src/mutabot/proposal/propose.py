@@ -13,7 +13,7 @@ from mutabot.vocabulary import load
 from .compared import Unreached, compared_with, unreached
 from .known import Known, known_vocabularies
 from .layout import look
-from .named.entries import Entry, entries
+from .named.entries import Entry, entries, unused
 from .nodes import commands_of, tells_commands
 from .observed import LIMIT, Observed, SeenCall, observe
 from .operations import proposals
@@ -56,7 +56,10 @@ class _Look:
         self._add_readings(rest, groups)
         if not self.found and not self.known and not self.named:
             self._fall_back()
-        self.unreached: list[Unreached] = unreached(self.layout, self._reached())
+        self.unreached: list[Unreached] = [
+            *unused(self.seen.names),
+            *unreached(self.layout, self._reached()),
+        ]
 
     @property
     def vocabulary(self) -> list[str]:
@@ -233,11 +236,11 @@ def _told(found: _Look) -> list[str]:
 def _counted(found: _Look) -> str:
     mine, rest = _by_side([call for call in found.seen.calls if call.sites])
     calls = sum(call.count for call in mine)
-    names = {(use.form, use.name) for use in found.seen.names if not use.of_tests}
+    names = {(entry.key, entry.name) for entry in found.named if not entry.of_tests}
     return (
         f"the program calls {len(mine)} callables, {calls} times"
         + (f", the tests {len(rest)} more" if rest else "")
-        + (f"; it does {len(names)} things under names of ROS" if names else "")
+        + (f", and uses {len(names)} names of ROS" if names else "")
     )
 
 

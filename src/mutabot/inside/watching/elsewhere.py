@@ -1,4 +1,7 @@
-"""Watching goes on in the processes that the tests start; each writes what it saw when it ends."""
+"""Watching goes on in the processes that the tests start; each writes what it saw.
+
+It does so now and then and at its end: it may be killed.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,10 @@ import json
 import os
 import signal
 import sys
+import threading
+import time
 from collections.abc import Mapping
+from contextlib import suppress
 from types import FrameType
 from typing import Any
 
@@ -20,6 +26,8 @@ from .watch import Watch
 
 _ORDER = "order.json"
 _SEEN = ".seen.json"
+#: least seconds between two writings of what was seen so far, for processes that are killed
+_PAUSE = 0.5
 
 
 def watch_elsewhere(path: str, order: Mapping[str, Any]) -> str:
@@ -42,7 +50,19 @@ def join(folder: str) -> None:
     """Watch this process, which turned out to be of interest."""
     with open(os.path.join(folder, _ORDER), encoding="utf-8") as file:
         order = json.load(file)
-    watch = Watch(order["program"], order["tests"])
+    written = [time.monotonic()]
+    writing = threading.Lock()
+
+    def pulse() -> None:
+        if time.monotonic() - written[0] > _PAUSE and writing.acquire(blocking=False):
+            try:
+                written[0] = time.monotonic()
+                with suppress(RuntimeError):  # another thread sees something new in the midst of it
+                    write()
+            finally:
+                writing.release()
+
+    watch = Watch(order["program"], order["tests"], pulse)
     watch.install()
     hook_script()
     leave = os._exit

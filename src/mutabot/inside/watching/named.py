@@ -11,19 +11,22 @@ import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any
 
 from mutabot.inside.targets.messages import Messages
 from mutabot.inside.targets.target import Handler, Where
-from mutabot.model.named import MAIN, WRITTEN, Form
+from mutabot.model.named import MAIN, SETTING_UP, WRITTEN, Form
 
 from .message import Parts
 
 #: uses of one name whose messages are looked at; more are only counted
 _MOST = 300
 _LOOKED_AT = MAIN | {Form.FEEDBACK, Form.RESULT}
+#: whether something is done under a name here: only the outermost counts, as in a campaign
+_under_way: ContextVar[bool] = ContextVar("mutabot_watched_name", default=False)
 
 
 @dataclass
@@ -47,21 +50,25 @@ class NamesSeen(Messages):
         place_of: file for people, line, and whether it is on the tests' side, of a frame or the nearest one
             around it; None if it is nobody's.
         passed: told of each use: calls that are under way lead to it.
+        pulse: called now and then, while nothing is held.
     """
 
     def __init__(
         self,
         place_of: Callable[[FrameType | None, Where | None], tuple[str, int, bool] | None],
         passed: Callable[[], None],
+        pulse: Callable[[], None],
     ) -> None:
-        self._place_of, self._passed = place_of, passed
+        self._place_of, self._passed, self._pulse = place_of, passed, pulse
         self._uses: dict[tuple[Form, str, bool, bool], _Use] = {}
         self._lock = threading.RLock()
         super().__init__(lambda target, finding: None)
 
     def find(self, form: Form, name: str, node: str | None) -> Handler | None:
-        """What looks at a use; None where something is set up."""
+        """What looks at a use; None where something is set up, which is noted at once."""
         self._passed()
+        if form in SETTING_UP and not _under_way.get():
+            self._use(form, name, self._place_of(sys._getframe(1), None), False)
         if form not in _LOOKED_AT:
             return None
 
@@ -72,13 +79,19 @@ class NamesSeen(Messages):
             kwargs: dict[str, Any],
             where: Where | None = None,
         ) -> Any:
+            if _under_way.get():
+                return wrapped(*args, **kwargs)
             is_called_back = where is not None and where.code is not None
             use = self._use(form, name, self._place_of(sys._getframe(1), where), is_called_back)
             if use is not None and args:
                 self._look(use.written, args[0])
             if inspect.iscoroutinefunction(wrapped):
                 return self._awaited(use, wrapped(*args, **kwargs))
-            result = wrapped(*args, **kwargs)
+            token = _under_way.set(True)
+            try:
+                result = wrapped(*args, **kwargs)
+            finally:
+                _under_way.reset(token)
             self._answer(use, result)
             return result
 
@@ -106,6 +119,7 @@ class NamesSeen(Messages):
         """The use that a place is one of, if it is to be looked at."""
         if place is None:
             return None
+        self._pulse()
         file, line, of_tests = place
         with self._lock:
             key = (form, name, of_tests, is_called_back)

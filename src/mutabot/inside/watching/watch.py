@@ -10,6 +10,7 @@ import functools
 import inspect
 import os
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -77,10 +78,13 @@ class Watch:
 
     Args:
         program, tests: real paths to names for people.
+        pulse: called whenever something is seen, while nothing is held.
     """
 
-    def __init__(self, program: dict[str, str], tests: dict[str, str]) -> None:
-        self._program, self._tests = program, tests
+    def __init__(
+        self, program: dict[str, str], tests: dict[str, str], pulse: Callable[[], None] = lambda: None
+    ) -> None:
+        self._program, self._tests, self._pulse = program, tests, pulse
         self._places: list[tuple[str, int]] = []
         self._numbers: dict[tuple[str, int], int] = {}
         self._seen: dict[tuple[str, bool], _Seen] = {}
@@ -91,7 +95,7 @@ class Watch:
 
     def install(self) -> None:
         """Watch what is imported from now on."""
-        self._names = NamesSeen(self._place_of, self._leads)
+        self._names = NamesSeen(self._place_of, self._leads, self._pulse)
         setattr(builtins, METHOD, self.method)
         setattr(builtins, NAME, self.named)
         setattr(builtins, READ, self.read)
@@ -229,6 +233,7 @@ class Watch:
         """Count a call; whether its values are to be looked at."""
         if seen.of_tests and (seen.own or seen.callee.file in self._tests):
             return False
+        self._pulse()
         seen.sites[place] = seen.sites.get(place, 0) + 1
         seen.looked_at += 1
         return seen.looked_at <= MOST_CALLS
