@@ -17,6 +17,7 @@ from mutabot.proposal.named.text import entry_text
 from mutabot.proposal.vocabulary_text import vocabulary_text
 from mutabot.vocabulary import load
 
+HEADER = "std_msgs/Header"
 POSE, POINT, ROTATION = "geometry_msgs/Pose", "geometry_msgs/Point", "geometry_msgs/Quaternion"
 VECTOR, TWIST = "geometry_msgs/Vector3", "geometry_msgs/Twist"
 
@@ -119,6 +120,8 @@ def test_what_is_read_means_what_ros_says(read: Part, table: dict[str, Any]) -> 
         part("wrench.force.x", ("geometry_msgs/Wrench", "force"), (VECTOR, "x")),
         part("level", ("sensor_msgs/BatteryState", "percentage")),
         part("code", ("vendor_msgs/State", "code"), values=(3,)),
+        part("header.stamp", (HEADER, "stamp"), kind="time", values=(0.0,)),  # nobody has set it
+        part("position", ("vendor_msgs/State", "position"), values=([],)),
         part("data", ("std_msgs/Int32", "data"), values=(9,)),
     ],
 )
@@ -218,6 +221,13 @@ def test_what_several_processes_saw_is_one_entry() -> None:
     (entry,) = entries(uses([first, second]))
     assert 'value = { kind = "label", values = ["left", "right"] }' in entry_text(entry)
     assert "seen: 2 readings" in entry_text(entry)
+
+
+def test_an_entry_that_no_vocabulary_takes_is_a_comment() -> None:
+    (entry,) = entries(uses([raw("sleep", "/mission")]))
+    entry.is_taken = False
+    text = vocabulary_text([], [], ["mission.py"], named=[entry])
+    assert all(line.startswith("#") for line in text.splitlines() if line)
 
 
 def test_what_is_set_up_and_never_used_is_told() -> None:

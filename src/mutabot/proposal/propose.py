@@ -164,7 +164,7 @@ def _refuse_existing(root: Path) -> None:
 
 
 def _loadable(found: _Look) -> str:
-    """The vocabulary's text; what would not load, by a wrong guess, is left out or a comment."""
+    """The vocabulary's text; what would not load, by a wrong guess, is a comment."""
     text = _text(found)
     if not (found.found or found.named) or _loads(text):
         return text
@@ -173,7 +173,8 @@ def _loadable(found: _Look) -> str:
     kept = [proposal for proposal in found.found if _loads(vocabulary_text([proposal], [], found.program))]
     dropped = [proposal for proposal in found.found if proposal not in kept]
     found.found, found.others = kept, [*dropped, *found.others]
-    found.named = [one for one in found.named if _loads(vocabulary_text([], [], found.program, named=[one]))]
+    for entry in found.named:
+        entry.is_taken = _loads(vocabulary_text([], [], found.program, named=[entry]))
     return _text(found)
 
 
@@ -248,7 +249,7 @@ def _about_vocabulary(found: _Look) -> str:
     commented = len(found.others) + len(found.unreached)
     more = "1 more call stands" if commented == 1 else f"{commented} more calls stand"
     also = f"; {more} there as comments" if commented else ""
-    count = len(found.named) + len(found.found)
+    count = sum(entry.is_taken for entry in found.named) + len(found.found)
     if count:
         noun = "operation" if count == 1 else "operations"
         return f"wrote {VOCABULARY} with {count} {noun}, guessed from names and values{also}"

@@ -29,9 +29,10 @@ def vocabulary_text(
     blocks = [
         f"# Proposed by `mutabot init` from {', '.join(program)}. What things mean is guessed from names\n"
         "# and values: correct what is wrong, and take out what is no operation. `mutabot check` tries it.",
-        *(entry_text(entry) for entry in named),
+        *(entry_text(entry) for entry in named if entry.is_taken),
         *(operation_text(proposal) for proposal in found),
     ]
+    blocks += [_commented(entry_text(entry)) for entry in named if not entry.is_taken]
     if others:
         blocks.append(
             "# Also called, but nothing shows what it means to the robot. For what is an operation, take\n"

@@ -25,6 +25,8 @@ _FULL_TURN = 6.5
 def by_name(part: Part, words: Sequence[str], *, is_written: bool) -> dict[str, Guess]:
     """What a part means, by path; an empty guess for a path of which nothing tells."""
     own = part.within[-1][1] if part.within else ""
+    if part.length == 0:
+        return {}
     if part.length is not None:
         return _elements(part, own, words, is_written=is_written)
     values = [value for value in part.values if value is not None]

@@ -71,6 +71,7 @@ class Entry:
         type: as far as it is known.
         uses: what was seen.
         parts: what passes there.
+        is_taken: whether a vocabulary takes it; a wrong guess may be why not.
     """
 
     key: str
@@ -79,6 +80,7 @@ class Entry:
     type: str = ""
     uses: list[Use] = field(default_factory=list)
     parts: list[Described] = field(default_factory=list)
+    is_taken: bool = True
 
     @property
     def files(self) -> list[str]:

@@ -17,6 +17,7 @@ from .seen import Part, Use
 
 Meant = dict[str, Guess]
 
+_HEADER = "std_msgs/Header"
 _POINTS = frozenset({"geometry_msgs/Point", "geometry_msgs/Point32"})
 _TRANSLATION = ("geometry_msgs/Transform", "translation")
 #: holders of speeds, which a program sends to move something; read, no kind of quantity fits them
@@ -87,25 +88,25 @@ def meaning(part: Part, place: Place) -> Meant:
 
 def is_nothing(part: Part, place: Place) -> bool:
     """Whether a part is not worth asking about: what the middleware itself writes, and words for people."""
+    if part.within and part.within[-1][0] in (_HEADER, "std_msgs/MultiArrayLayout"):
+        return True
     if any(isinstance(value, str) for value in part.values):
         return not place.is_written and bool(part.within) and part.within[-1] != ("std_msgs/String", "data")
     if part.type in ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration"):
-        return True
-    if part.within and part.within[-1][0] == "std_msgs/Header":
         return True
     return part.type.startswith(_BYTES) or (not part.values and not part.length)
 
 
 def _header(part: Part, place: Place) -> Meant | None:
-    if any(part.values):
-        for name, kind in (("frame_id", "frame_id"), ("stamp", "stamp")):
-            if _is_header(part, name):
-                return {part.path: Guess({"kind": kind})}
-    return None
+    if not part.within or part.within[-1][0] != _HEADER:
+        return None
+    name = part.within[-1][1]
+    is_set = name in ("frame_id", "stamp") and any(part.values)
+    return {part.path: Guess({"kind": name})} if is_set else {}
 
 
 def _is_header(part: Part, name: str) -> bool:
-    return bool(part.within) and part.within[-1] == ("std_msgs/Header", name)
+    return bool(part.within) and part.within[-1] == (_HEADER, name)
 
 
 def _quaternion(part: Part, place: Place) -> Meant | None:

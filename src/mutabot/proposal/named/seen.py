@@ -18,7 +18,14 @@ _ANONYMOUS = re.compile(r"_\d+_\d{10,}(?=/|$)")
 _OWN = frozenset(
     {"/use_sim_time", "use_sim_time", "start_type_description_service", "/rosout_disable_topics_generation"}
 )
-_OWN_BEGINNINGS = ("/run_id", "/tcp_keepalive", "/enable_statistics", "/statistics_", "qos_overrides.")
+_OWN_BEGINNINGS = (
+    "/actionlib_client_",
+    "/run_id",
+    "/tcp_keepalive",
+    "/enable_statistics",
+    "/statistics_",
+    "qos_overrides.",
+)
 
 
 @dataclass(frozen=True)
