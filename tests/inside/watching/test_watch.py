@@ -44,7 +44,7 @@ def test_an_ordinary_program_does_what_it_did(monkeypatch: pytest.MonkeyPatch) -
     expected = plain.results()
     watched, watch = run(source, str(ORDINARY), monkeypatch)
     assert repr(watched.results()) == repr(expected)
-    assert watch.data()
+    assert watch.data()["calls"]
 
 
 def test_exceptions_and_private_names_pass_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -92,7 +92,7 @@ def test_what_cannot_be_looked_at_disturbs_nothing(monkeypatch: pytest.MonkeyPat
     assert module.go(wild, wild) is wild
     assert module.go(wild, mock) is mock
     assert module.go(mock, 1) is mock.set_x.return_value
-    assert [call["sites"] for call in watch.data()] == [[["own.py", 1, 2]]]
+    assert [call["sites"] for call in watch.data()["calls"]] == [[["own.py", 1, 2]]]
 
 
 @pytest.mark.parametrize(
