@@ -13,7 +13,8 @@ import pytest
 
 from mutabot.border.processes import VARIABLE
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.waiting import PERIOD, Waiting
+from mutabot.campaign.workers import waiting
+from mutabot.campaign.workers.waiting import Waiting
 from mutabot.model import Verdict
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
 
@@ -44,6 +45,8 @@ TESTS = """
         run(Arm())
     """
 SLEEP = "import time; time.sleep(60)"
+#: seconds between two looks here: the kernel counts in hundredths
+PERIOD = 0.2
 
 
 @dataclass
@@ -65,32 +68,39 @@ def test_mutants_that_only_wait_leave_their_places_to_others(tmp_path: Path) -> 
     assert sum(one.wall for one in found) / taken > request.jobs  # so many at a time, on average
 
 
+@pytest.fixture
+def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(waiting, "PERIOD", PERIOD)
+
+
+@pytest.mark.usefixtures("_quick")
 def test_where_one_runs_at_a_time_it_is_one(tmp_path: Path) -> None:
-    waiting = Waiting(1)
-    assert waiting.has_place([])
-    end = time.monotonic() + 5 * PERIOD
+    places = Waiting(1)
+    assert places.has_place([])
+    end = time.monotonic() + 6 * PERIOD
     while time.monotonic() < end:
-        assert not waiting.has_place([Process(os.getpid(), tmp_path)])
+        assert not places.has_place([Process(os.getpid(), tmp_path)])
         time.sleep(PERIOD / 2)
 
 
 @pytest.mark.parametrize(("code", "waits"), [(SLEEP, True), ("while True: pass", False)])
 @pytest.mark.parametrize("is_below", [False, True])
+@pytest.mark.usefixtures("_quick")
 def test_what_works_below_a_worker_counts(tmp_path: Path, code: str, waits: bool, is_below: bool) -> None:
     worker = subprocess.Popen([sys.executable, "-c", SLEEP])
     mark = {VARIABLE: str(tmp_path)} if is_below else {}
     other = subprocess.Popen([sys.executable, "-c", code], env=mark, start_new_session=True)
     try:
-        waiting = Waiting(2)
+        places = Waiting(2)
         both = [
             Process(worker.pid if is_below else other.pid, tmp_path),
             Process(other.pid, tmp_path / "none"),
         ]
-        end = time.monotonic() + 5 * PERIOD
+        end = time.monotonic() + 10 * PERIOD
         has_place = False
         while not has_place and time.monotonic() < end:
-            has_place = waiting.has_place(both)
-            time.sleep(0.1)
+            has_place = places.has_place(both)
+            time.sleep(PERIOD / 2)
     finally:
         worker.kill()
         other.kill()
