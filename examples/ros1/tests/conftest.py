@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import socket
 import subprocess
 import sys
 import time
@@ -79,9 +78,7 @@ def nodes(*commands: tuple[str, ...]) -> Iterator[list[subprocess.Popen[bytes]]]
 @contextlib.contextmanager
 def master() -> Iterator[None]:
     """A master on a port that nobody uses, for this process and all that it starts."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = 32000 + os.getpid() % 700  # none of those that Linux gives to connections
     os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
     os.environ["ROS_IP"] = "127.0.0.1"
     started = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL)

@@ -345,8 +345,9 @@ TURN = """
         client.wait_for_server()
         client.send_goal(TestGoal(goal=angle), feedback_cb=on_feedback, done_cb=on_end)
         if not angle:
+            until(lambda: client.get_state() == 1)  # one that has not begun may be recalled
             client.cancel_goal()
-        client.wait_for_result()
+        assert client.wait_for_result(rospy.Duration(20))
         return read, client.get_result().result, client.get_state()
 """
 
@@ -381,7 +382,7 @@ def test_feedback_is_misread(make: Making, turning: list[int]) -> None:
 def test_cancelling_is_a_site(make: Making, turning: list[int]) -> None:
     stage = make(TURN, ACTION)
     _, _, state = stage.run(stage.session(), "run", 0)
-    assert state == 2
+    assert state in (2, 8)  # preempted or recalled: the server decides
     assert ("cancel /cell/turn", "client.cancel_goal()") in places(stage)
 
 

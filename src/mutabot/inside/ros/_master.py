@@ -26,6 +26,8 @@ _PATIENCE = 20.0
 _PAUSE = 0.005
 _TRIES = 5
 _LOCAL = "127.0.0.1"
+#: below those that Linux gives to connections
+_PORTS = range(12000, 32000)
 _PROGRAM = """
 import ctypes, os, signal, sys
 ctypes.CDLL(None).prctl(1, signal.SIGKILL, 0, 0, 0)  # end with the parent, which is there still
@@ -85,8 +87,8 @@ def start(home: str) -> Master:
     os.environ.update({ADDRESS: _LOCAL, LOGS: os.path.join(folder, "log"), HOME: folder})
     os.environ.pop("ROS_HOSTNAME", None)  # it would go before the address
     said = ""
-    for _ in range(_TRIES):
-        port = _free_port()
+    for number in range(_TRIES):
+        port = _free_port(number)
         os.environ[URI] = f"http://{_LOCAL}:{port}"
         log = os.path.join(folder, "master.txt")
         master = Master(os.environ[URI], _process(port, log))
@@ -100,11 +102,27 @@ def start(home: str) -> Master:
     )
 
 
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind((_LOCAL, 0))
-        port: int = probe.getsockname()[1]
-        return port
+def _free_port(number: int) -> int:
+    """A port that nobody uses now, another one for each number.
+
+    It is none of those that the system gives to who asks for any: until the master has it, a connection of
+    another node could take it, even one that asks whether the master is there.
+    """
+    start = os.getpid() * _TRIES + number
+    for port in (_PORTS[(start + step) % len(_PORTS)] for step in range(len(_PORTS))):
+        with socket.socket() as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as the master does
+            if _can_have(probe, port):
+                return port
+    raise MasterError(f"no port from {_PORTS[0]} to {_PORTS[-1]} is free")
+
+
+def _can_have(probe: socket.socket, port: int) -> bool:
+    try:
+        probe.bind((_LOCAL, port))
+    except OSError:
+        return False
+    return True
 
 
 def _process(port: int, log: str) -> subprocess.Popen[bytes]:
@@ -119,10 +137,11 @@ def _process(port: int, log: str) -> subprocess.Popen[bytes]:
 
 
 def _comes_up(process: subprocess.Popen[bytes], port: int) -> bool:
+    from ._asking import pid_of_master  # noqa: PLC0415  # see there
+
     end = time.monotonic() + _PATIENCE
     while process.poll() is None and time.monotonic() < end:
-        with socket.socket() as probe:
-            if probe.connect_ex((_LOCAL, port)) == 0:
-                return True
+        if pid_of_master(f"http://{_LOCAL}:{port}") == process.pid:
+            return True
         time.sleep(_PAUSE)
     return False
