@@ -21,7 +21,7 @@ from mutabot.border.lines import SiteSeen
 from mutabot.inside.calls.activation import Activation
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.session import Session
-from mutabot.inside.targets.delivery import Waiting, deliver
+from mutabot.inside.targets.delivery import deliver, wait_for
 from mutabot.inside.targets.means import Means
 from mutabot.inside.targets.messages import Messages
 from mutabot.inside.targets.target import Where
@@ -57,7 +57,6 @@ class Client:
     cancelled: list[Any] = field(default_factory=list)
     jumped: float = 0.0
     _due: list[tuple[float, int, Callable[[], object]]] = field(default_factory=list)
-    _waiting: Waiting = field(default_factory=Waiting)
 
     def publish(self, name: str, message: Any) -> None:
         """Send a message."""
@@ -114,7 +113,7 @@ class Client:
 
         handler = self._find(Form.RECEIVE, name)
         where = Where(node=NODE, means=self._means)
-        return wait() if handler is None else self._waiting.wait_for(handler, wait, where)
+        return wait() if handler is None else wait_for(handler, wait, where)
 
     def set_up(self, form: Form, **settings: Any) -> None:
         """Set something up."""

@@ -16,7 +16,7 @@ from typing import Any
 
 from mutabot.inside.calls.passing import is_under_way
 from mutabot.inside.processes.member import note_node
-from mutabot.inside.targets.delivery import Waiting, anew, deliver
+from mutabot.inside.targets.delivery import anew, deliver, wait_for
 from mutabot.inside.targets.messages import Messages
 from mutabot.inside.targets.target import Finding
 from mutabot.model import Operation
@@ -64,7 +64,6 @@ class _Topics:
 
     def __init__(self, messages: Messages) -> None:
         self._messages = messages
-        self._waiting: dict[tuple[str, str], Waiting] = {}
 
     def hook(self, patches: Patches, rospy: Any) -> None:
         patches.put(rospy.Publisher, "__init__", self._advertise)
@@ -155,8 +154,7 @@ class _Topics:
         def wait() -> Any:
             return original(topic, topic_type, None if end is None else max(0.0, end - time.monotonic()))
 
-        waiting = self._waiting.setdefault((name, node.name()), Waiting())
-        return waiting.wait_for(handler, anew(wait, _is_latched), node.where())
+        return wait_for(handler, anew(wait, _is_latched), node.where())
 
 
 class _Services:

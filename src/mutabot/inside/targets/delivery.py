@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import inspect
 import time
-from collections import deque
 from collections.abc import Awaitable, Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -55,32 +54,24 @@ def deliver(
     return returned[-1] if returned else None
 
 
-@dataclass(slots=True)
-class Waiting:
-    """Messages of one name that a node waits for: what is more than one is there when it waits again."""
+def wait_for(handler: Handler, wait: Callable[[], Any], where: Where, instance: Any = None) -> Any:
+    """What a program receives that waits for one message; ``wait`` waits for the next and returns it.
 
-    held: deque[Any] = field(default_factory=deque)
-
-    def wait_for(self, handler: Handler, wait: Callable[[], Any], where: Where, instance: Any = None) -> Any:
-        """What the program receives; ``wait`` waits for the next message and returns it.
-
-        A message that is lost is waited past, so ``wait`` may be called again: it keeps the time-out of the
-        whole, and raises what the program is to see when that is over.
-        """
-        if self.held:
-            return self.held.popleft()
-        while True:
-            received = handler(wait, instance, (), {}, where)
-            if not isinstance(received, Delivery):
-                return received
-            for late, part in received.parts:
-                self.held.append(part)
-                if late:
-                    _done(_means(where).sleep(late))
-            if self.held:
-                return self.held.popleft()
-            where = replace(where, is_again=True)
-            time.sleep(_PAUSE)
+    A message that is lost is waited past, so ``wait`` may be called again: it keeps the time-out of the
+    whole, and raises what the program is to see when that is over. Who has a message waits no more: what
+    would come after it comes to nobody, since the next wait subscribes anew.
+    """
+    while True:
+        received = handler(wait, instance, (), {}, where)
+        if not isinstance(received, Delivery):
+            return received
+        if received.parts:
+            late, part = received.parts[0]
+            if late:
+                _done(_means(where).sleep(late))
+            return part
+        where = replace(where, is_again=True)
+        time.sleep(_PAUSE)
 
 
 def anew(wait: Callable[[], Any], is_kept: Callable[[Any], bool]) -> Callable[[], Any]:

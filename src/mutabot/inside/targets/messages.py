@@ -10,7 +10,7 @@ What hooks keep to, so that all operators mean the same in every middleware:
   later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps. All of it by the
   clock of the node, so that simulated time counts.
 - What comes by itself (``COMING``: messages, feedback, ticks of a timer) goes through ``delivery``:
-  ``deliver`` calls the program's callback, ``Waiting.wait_for`` stands around a wait. A handler's own result
+  ``deliver`` calls the program's callback, ``wait_for`` stands around a wait. A handler's own result
   may be a ``Delivery`` there and nowhere else.
 - An answer that is late or never comes is the handler's matter: it awaits ``means.sleep`` and ``means.lost``.
 - What sets something up is ``wrapped(name=…, depth=…)`` with the arguments of ``SETTING_UP``, as they come

@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any
 
 from mutabot.inside.ros._patches import Patches, code_of
-from mutabot.inside.targets.delivery import Waiting, anew, deliver
+from mutabot.inside.targets.delivery import anew, deliver, wait_for
 from mutabot.inside.targets.messages import Messages
 from mutabot.inside.targets.target import Handler
 from mutabot.model.named import Form
@@ -51,7 +51,6 @@ def _hook_callback(patches: Patches, kind: Any, topics: _Topics) -> None:
 class _Topics:
     def __init__(self, messages: Messages) -> None:
         self._messages = messages
-        self._waiting: dict[tuple[str, str | None], Waiting] = {}
 
     def advertise(
         self, original: Any, node: Any, msg_type: Any, topic: Any, qos_profile: Any, **kwargs: Any
@@ -155,10 +154,8 @@ class _Topics:
         try:
             if handler is None:
                 return True, waited()
-            waiting = self._waiting.setdefault((name, node_name), Waiting())
             another = anew(waited, lambda message: _is_kept(kwargs.get("qos_profile")))
-            message = another() if not waiting.held else None
-            return True, waiting.wait_for(handler, _first(message, another), _nodes.where(node))
+            return True, wait_for(handler, _first(another(), another), _nodes.where(node))
         except _Nothing:
             return False, None
 
