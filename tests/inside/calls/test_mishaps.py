@@ -79,8 +79,11 @@ def heard(stage: ClientStage, operator: str, variant: str = "") -> list[Any]:
 
 def waited(stage: ClientStage, operator: str, variant: str = "") -> Any:
     """What a program gets that waits for two messages of four."""
-    coming = [SimpleNamespace(gap=gap) for gap in (0.1, 0.2, 0.3, 0.4)]
-    return stage.mutated(WAIT, operator, variant, coming=coming)[0]
+    return stage.mutated(WAIT, operator, variant, coming=coming())[0]
+
+
+def coming() -> list[Any]:
+    return [SimpleNamespace(gap=gap) for gap in (0.1, 0.2, 0.3, 0.4)]
 
 
 def test_what_is_dropped_reaches_nobody(stage: ClientStage) -> None:
@@ -116,8 +119,13 @@ def test_a_request_that_is_lost_is_never_answered(stage: ClientStage) -> None:
 def test_a_duplicate_comes_twice(stage: ClientStage) -> None:
     assert sent(stage, "duplicate")[:3] == [(0.0, 1.0), (0.0, 1.0), (0.0, 2.0)]
     assert heard(stage, "duplicate")[:3] == [(0.0, 0.1), (0.0, 0.1), (1.0, 0.2)]
-    # each wait subscribes anew: the second copy finds nobody
-    assert waited(stage, "duplicate") == [0.1, 0.2]
+
+
+def test_who_waits_for_one_message_hears_no_second(stage: ClientStage) -> None:
+    result, _, activation = stage.mutated(WAIT, "duplicate", coming=coming())
+    assert result == [0.1, 0.2]
+    assert (activation.evidence.hits, activation.evidence.acted) == (2, 0)
+    assert activation.evidence.away == {"who waits for one message hears no second": 2}
 
 
 @pytest.mark.parametrize("fresh", [True, False])
@@ -155,7 +163,12 @@ def test_who_waits_for_a_late_answer_waits_longer(stage: ClientStage) -> None:
 def test_messages_change_places(stage: ClientStage) -> None:
     assert [x for _, x in sent(stage, "reorder", fresh=False)] == [2.0, 1.0, 4.0, 3.0]
     assert [gap for _, gap in heard(stage, "reorder")] == [0.2, 0.1]
-    assert waited(stage, "reorder") == [0.2, 0.4]  # those that come after them find nobody
+
+
+def test_a_message_that_comes_after_the_one_waited_for_is_lost(stage: ClientStage) -> None:
+    result, _, activation = stage.mutated(WAIT, "reorder", coming=coming())
+    assert result == [0.2, 0.4]
+    assert activation.evidence.acted == 2
 
 
 def test_a_goal_is_cancelled_once_it_is_sent(stage: ClientStage) -> None:

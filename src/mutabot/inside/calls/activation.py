@@ -101,6 +101,7 @@ class Activation:
             if self._idle is not None:
                 passage.call = replace(passage.call, idle=self._answer(self._idle, door, call))
             reply = await passed(passage, self._middleware, performer.proceed)
+            reply = passage.received = mishaps.heard_of(passage.call, reply)
             self.note(passage)
             last = passage.answered[-1] if passage.answered else None
             handed = mishaps.hand_over(passage.call, reply, partial(door.result, passage.call, original=last))

@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from typing import Any, NoReturn
 
@@ -20,6 +21,7 @@ from .keeping import copied
 
 #: says to a process that it was begun anew, by its id, which stays the same
 RESTARTED = "MUTABOT_RESTARTED"
+_NO_SECOND = "who waits for one message hears no second"
 _FOLDER = os.getcwd()
 
 
@@ -65,6 +67,15 @@ async def after(call: Call, result: Any) -> None:
     cancel = _means(call).cancel if Mishap.CANCELLED in call.mishaps else None
     if cancel is not None:
         await cancel(result)
+
+
+def heard_of(call: Call, reply: Reply) -> Reply:
+    """What the program hears of a reply: who waits for one message hears no other after it."""
+    means: Means | None = call.payload.means
+    if means is None or not means.once or not reply.more:
+        return reply
+    first = replace(reply.parts[0], more=()) if reply.parts else reply
+    return first.as_is(_NO_SECOND)
 
 
 def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Callable[[], Awaitable[Any]]:

@@ -58,15 +58,15 @@ def wait_for(handler: Handler, wait: Callable[[], Any], where: Where, instance: 
     """What a program receives that waits for one message; ``wait`` waits for the next and returns it.
 
     A message that is lost is waited past, so ``wait`` may be called again: it keeps the time-out of the
-    whole, and raises what the program is to see when that is over. Who has a message waits no more: what
-    would come after it comes to nobody, since the next wait subscribes anew.
+    whole, and raises what the program is to see when that is over. Who has a message waits no more, and the
+    next wait subscribes anew: a mutant can let nothing come after it (``Means.once``).
     """
+    where = replace(where, means=replace(_means(where), once=True))
     while True:
         received = handler(wait, instance, (), {}, where)
         if not isinstance(received, Delivery):
             return received
-        if received.parts:
-            late, part = received.parts[0]
+        for late, part in received.parts:
             if late:
                 _done(_means(where).sleep(late))
             return part

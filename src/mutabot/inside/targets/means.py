@@ -34,6 +34,7 @@ class Means:
             raises, or waits as long as it would; None for what has no answer.
         cancel: cancels what the call has begun, given what it returned; None for what cannot be cancelled.
         jump: lets the program's clock jump by so many seconds; None where it cannot.
+        once: whether the program waits for one message: what comes after it comes to nobody.
     """
 
     sleep: Callable[[float], Awaitable[None]] = _sleep
@@ -42,3 +43,4 @@ class Means:
     cancel: Callable[[Any], Awaitable[None]] | None = None
     jump: Callable[[float], None] | None = None
     goes_out: Callable[[float, Callable[[], object]], None] = _later
+    once: bool = False
