@@ -10,9 +10,12 @@ REPORTS := $(VENV)/.reports
 ROS1   := $(VENV)-ros1
 ROS2   := $(VENV)-ros2
 
+# what builds the documentation's site
+SITE   := $(VENV)-site
+
 of_ros  = $(wildcard tests/*/test_ros$(1)*.py tests/*/*/test_ros$(1)*.py)
 
-.PHONY: demo test whole check format docs comparison bench stress judged shipped foreign clean
+.PHONY: demo test whole check format docs site comparison bench stress judged shipped foreign clean
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
@@ -47,6 +50,12 @@ docs: $(READY)
 	$(RUN) tools/make_classical_page.py
 	$(RUN) tools/make_comparison_page.py
 	$(RUN) tools/make_design_page.py
+
+## build the documentation as a site, in site/; what would be a dead link there is an error
+site: $(SITE)/.ready
+	$(SITE)/bin/sphinx-build --quiet --fresh-env --fail-on-warning --keep-going -b html \
+	    -c tools/site -d $(SITE)/doctrees . site
+	@echo "open site/index.html"
 
 ## compare the families of operators on the examples (of the largest a tenth of the mutants), and write
 ## docs/comparison.md from it
@@ -121,6 +130,12 @@ $(REPORTS): $(READY) requirements-reports.lock tools/schemas.py
 	$(RUN) tools/schemas.py
 	@touch $@
 
+# The environment of the project makes it: that one knows where Debian keeps venv.
+$(SITE)/.ready: requirements-site.lock | $(READY)
+	$(RUN) -m venv --clear $(SITE)
+	$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -r requirements-site.lock
+	@touch $@
+
 # Debian's rospy. Where it is not installed, its tests skip themselves.
 $(ROS1)/.ready: $(READY) tools/beside.py tools/see_rospy.py
 	@$(RUN) tools/beside.py $(ROS1)
@@ -135,4 +150,4 @@ $(ROS2)/.ready: $(READY) tools/beside.py requirements-ros2.lock
 	@touch $@
 
 clean:
-	rm -rf $(VENV) $(VENV)-shipped $(ROS1) $(ROS2) examples/*/.mutabot .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(VENV)-shipped $(ROS1) $(ROS2) $(SITE) site examples/*/.mutabot .mypy_cache .ruff_cache .pytest_cache
