@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import re
-import tomllib
 from pathlib import Path
 from types import ModuleType
 
@@ -44,11 +42,3 @@ def test_every_mutant_made_by_hand_changes_the_program_and_leaves_it_one(name: s
         edited = text.replace(edit["old"], edit["new"], 1)
         assert edited != text, edit
         compile(edited, name, "exec")
-
-
-@pytest.mark.parametrize("page", sorted(PAGES.glob("*.md")), ids=lambda page: page.stem)
-def test_every_table_on_a_recipe_page_is_one(page: Path) -> None:
-    text = page.read_text(encoding="utf-8")
-    for block in re.findall(r"(?:^ {4}.*\n|^\n(?= {4}))+", text, re.MULTILINE):
-        if "[[" in block or "program =" in block:
-            tomllib.loads(re.sub(r"^ {2,}", "", block, flags=re.MULTILINE))

@@ -1,7 +1,7 @@
 """The pages of the documentation: which there are, how they are grouped, and what stands in them.
 
-The Markdown files are the source of all of it; the navigation is the table under `Documentation` in README.md.
-Used by the site (``tools/site/conf.py``) and by the tests.
+The Markdown files are the source of all of it; the navigation is the table under `Documentation` in
+README.md. Used by the site (``tools/site/conf.py``) and by the tests.
 """
 
 from __future__ import annotations
@@ -11,6 +11,8 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 from markdown_it import MarkdownIt
@@ -53,6 +55,7 @@ def navigation() -> dict[str, list[tuple[str, str]]]:
     return groups
 
 
+@cache
 def tokens_of(text: str) -> list[Token]:
     """A page's text as CommonMark with tables, which is what GitHub and the site read."""
     return _MARKDOWN.parse(text)
@@ -87,7 +90,7 @@ def anchors(text: str) -> list[str]:
     seen: Counter[str] = Counter()
     found = []
     tokens = tokens_of(text)
-    for before, token in zip(tokens, tokens[1:], strict=False):
+    for before, token in pairwise(tokens):
         if before.type != "heading_open":
             continue
         title = "".join(child.content for child in token.children or () if child.type != "image")
@@ -109,7 +112,6 @@ def _inner(text: str) -> Iterator[Token]:
 
 
 def _links(token: Token) -> Iterator[tuple[str, str]]:
-    children = token.children or []
-    for child, title in zip(children, children[1:], strict=False):
+    for child, title in pairwise(token.children or ()):
         if child.type == "link_open":
             yield title.content, str(child.attrs["href"])

@@ -62,19 +62,3 @@ def test_a_message_on_the_page_is_one_of_ours(message: str) -> None:
 def test_the_page_explains_each_message_once() -> None:
     found = quoted()
     assert len(found) == len(set(found)) > 40
-
-
-def test_every_link_of_the_page_leads_somewhere() -> None:
-    for name in ("troubleshooting", "tutorial"):
-        page = ROOT / "docs" / f"{name}.md"
-        for target in re.findall(r"\]\(([^)]+)\)", page.read_text(encoding="utf-8")):
-            file, _, anchor = target.partition("#")
-            other = page.parent / file if file else page
-            assert other.is_file(), target
-            assert not anchor or anchor in anchors(other), target
-
-
-def anchors(page: Path) -> set[str]:
-    """The headings of a page as links name them."""
-    headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}

@@ -14,7 +14,6 @@ from typing import Any
 TOOLS = Path(__file__).parents[1]
 sys.path.insert(0, str(TOOLS))
 
-from docutils import nodes  # noqa: E402
 from sphinx import addnodes  # noqa: E402
 from sphinx.application import Sphinx  # noqa: E402
 from sphinx.transforms.post_transforms import SphinxPostTransform  # noqa: E402
@@ -22,7 +21,7 @@ from sphinx.transforms.post_transforms import SphinxPostTransform  # noqa: E402
 import pages  # noqa: E402
 
 project = html_title = "Mutabot"
-copyright = "the authors of Mutabot"  # noqa: A001
+copyright = "the authors of Mutabot"
 extensions = ["myst_parser", "sphinx_copybutton"]
 source_suffix = {".md": "markdown"}
 root_doc = Path(pages.HOME).stem
