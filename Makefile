@@ -15,7 +15,7 @@ SITE   := $(VENV)-site
 
 of_ros  = $(wildcard tests/*/test_ros$(1)*.py tests/*/*/test_ros$(1)*.py)
 
-.PHONY: demo test whole check format docs site comparison bench stress judged shipped foreign clean
+.PHONY: demo test whole check format docs site pictures comparison bench stress judged shipped foreign clean
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
@@ -56,6 +56,10 @@ site: $(SITE)/.ready
 	$(SITE)/bin/sphinx-build --quiet --fresh-env --fail-on-warning --keep-going -b html \
 	    -c tools/site -d $(SITE)/doctrees . site
 	@echo "open site/index.html"
+
+## draw the pictures of the cell in docs/img again, without a screen
+pictures: $(READY)
+	MUJOCO_GL=$${MUJOCO_GL:-osmesa} $(RUN) tools/make_pictures.py
 
 ## compare the families of operators on the examples (of the largest a tenth of the mutants), and write
 ## docs/comparison.md from it

@@ -75,14 +75,14 @@ def codes(text: str) -> list[str]:
     return [child.content for child in _inner(text) if child.type == "code_inline"]
 
 
-def targets(text: str) -> list[str]:
-    """Where links lead, and which pictures are shown."""
-    return [
-        str(child.attrs[name])
-        for child in _inner(text)
-        for kind, name in (("link_open", "href"), ("image", "src"))
-        if child.type == kind
-    ]
+def links(text: str) -> list[str]:
+    """Where a page's links lead."""
+    return [str(child.attrs["href"]) for child in _inner(text) if child.type == "link_open"]
+
+
+def pictures(text: str) -> list[str]:
+    """Which pictures a page shows."""
+    return [str(child.attrs["src"]) for child in _inner(text) if child.type == "image"]
 
 
 def anchors(text: str) -> list[str]:

@@ -19,7 +19,8 @@ def text_of(page: str) -> str:
 
 
 def relative_targets(page: str) -> list[str]:
-    return [target for target in pages.targets(text_of(page)) if not _SCHEME.match(target)]
+    text = text_of(page)
+    return [target for target in pages.links(text) + pages.pictures(text) if not _SCHEME.match(target)]
 
 
 def fault(page: str, target: str) -> str:
@@ -100,3 +101,10 @@ def test_a_page_begins_with_its_one_title() -> None:
         levels = [token.tag for token in pages.tokens_of(text_of(page)) if token.type == "heading_open"]
         assert levels[0] == "h1", page
         assert levels.count("h1") == 1, page
+
+
+def test_the_gallery_has_every_picture_once() -> None:
+    pictures = {path.relative_to(pages.ROOT).as_posix() for path in (pages.ROOT / "docs" / "img").iterdir()}
+    gallery = "docs/gallery.md"
+    shown = [pages.leads_to(gallery, target)[0] for target in pages.pictures(text_of(gallery))]
+    assert sorted(shown) == sorted(pictures)

@@ -1,0 +1,50 @@
+"""Draw the pictures of the cell in docs/img.
+
+Use: ``make pictures``, or ``MUJOCO_GL=egl python tools/make_pictures.py [FOLDER]``; docs/cell.md says what
+that needs. The drawn pixels differ a little from one graphics library to another.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from mutabot.cells import Cell, render
+
+ROOT = Path(__file__).parents[1]
+#: its box is red
+SEED = 2
+WIDTH, HEIGHT = 800, 560
+
+
+def main(folder: Path) -> None:
+    """Write all of them."""
+    with Cell(SEED) as cell:
+        render(cell, folder / "cell.png", width=WIDTH, height=HEIGHT, azimuth=134.0, distance=3.1)
+    _before_the_box_is_let_go(folder / "place.png")
+
+
+def _before_the_box_is_let_go(picture: Path) -> None:
+    """The published program, when it opens the gripper above the table."""
+    sys.path.insert(0, str(ROOT / "examples" / "paper"))
+    import kinova  # noqa: PLC0415
+    import mission  # noqa: PLC0415
+
+    original = kinova.Gripper.command
+
+    def command(gripper: kinova.Gripper, position: float) -> None:
+        if cell.gripper.holding():
+            render(
+                cell, picture, width=WIDTH, height=HEIGHT, azimuth=43.0, elevation=-22.0,
+                distance=2.0, look_at=(-0.12, 0.25, 1.0),
+            )  # fmt: skip
+        original(gripper, position)
+
+    kinova.Gripper.command = command
+    with Cell(SEED) as cell:
+        kinova.connect(cell)
+        mission.run()
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "img")
