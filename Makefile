@@ -53,6 +53,7 @@ docs: $(READY)
 
 ## build the documentation as a site, in site/; what would be a dead link there is an error
 site: $(SITE)/.ready
+	rm -rf site
 	$(SITE)/bin/sphinx-build --quiet --fresh-env --fail-on-warning --keep-going -b html \
 	    -c tools/site -d $(SITE)/doctrees . site
 	@echo "open site/index.html"

@@ -11,10 +11,12 @@ import pytest
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
+from mutabot.cli.app import main
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
+from pages import blocks
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "scales"
 ROUNDS = 1
@@ -153,6 +155,21 @@ def test_the_readme_explains_every_survivor(journal: Journal) -> None:
     assert [survivor for survivor in survivors if f"`{survivor}`" not in readme] == []
     killed = sum(end.startswith("killed") for end in EXPECTED.values())
     assert f"{killed}/{killed + len(survivors)}" in readme
+
+
+def test_the_page_on_reading_a_report_quotes_what_is_printed(
+    project: Path, journal: Journal, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "100")
+    number = next(one.number for one in journal.mutants() if short(one.id).endswith("drop/{height}:opposite"))
+    assert main(["-C", str(project), "results"]) == 0
+    assert main(["-C", str(project), "show", str(number)]) == 0
+    printed = {line.rstrip() for line in capsys.readouterr().out.splitlines()}
+    page = blocks((EXAMPLE.parents[1] / "docs" / "reading-a-report.md").read_text(encoding="utf-8"))
+    quotes = [block for block in page if "survivors, the" in block.text or "Who looked" in block.text]
+    assert len(quotes) == 2
+    for line in (line for block in quotes for line in block.text.splitlines()):
+        assert line in printed or line.strip() in {"", "…"}
 
 
 def test_the_campaign_leaves_the_project_as_it_was(project: Path, journal: Journal) -> None:

@@ -33,8 +33,9 @@ myst_heading_anchors = 6
 highlight_language = "text"
 
 html_theme = "furo"
-html_static_path = ["."]
+html_static_path = ["static"]
 html_css_files = ["style.css"]
+html_js_files = ["reach.js"]
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
