@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from mutabot.model import Clock, Kind, Mode, Operation, Probe, Quantity, Vocabul
 from mutabot.model.values.answer import restore
 from mutabot.vocabulary import load
 from mutabot.vocabulary.load import shipped
+from pages import blocks
 
 PAGE = Path(package.__file__).parents[3] / "docs" / "vocabulary.md"
 
@@ -89,8 +89,8 @@ def test_the_example_of_the_design_means_what_it_says(tmp_path: Path) -> None:
 
 
 def test_the_example_of_the_documentation_loads(tmp_path: Path) -> None:
-    (example,) = re.findall(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
-    vocabulary = loaded(tmp_path, example)
+    example = next(block for block in blocks(PAGE.read_text(encoding="utf-8")) if block.language == "toml")
+    vocabulary = loaded(tmp_path, example.text)
     assert [operation.name for operation in vocabulary.operations][:2] == ["Arm.move_by", "Arm.tool_pose"]
     pose = vocabulary.operation("robot:Arm.tool_pose")
     assert pose is not None

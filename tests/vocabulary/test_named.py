@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
-from textwrap import dedent
 
 import pytest
 
@@ -15,6 +13,7 @@ from mutabot.model import Mode, Operation, Vocabulary
 from mutabot.model.named import Form, Named, settings_of
 from mutabot.operators.operator import with_operation
 from mutabot.vocabulary import load
+from pages import blocks
 
 PAGE = Path(package.__file__).parents[3] / "docs" / "vocabulary.md"
 X = '{ kind = "translation", axis = "x", unit = "m", mode = "to" }'
@@ -187,11 +186,10 @@ def test_a_wrong_entry_is_refused_with_place_and_remedy(text: str, words: list[s
 
 @pytest.mark.parametrize("first", ['topic = "/arm/goal"', 'call = "cell:Robot.send"'])
 def test_the_examples_of_the_page_load(first: str, tmp_path: Path) -> None:
-    page = PAGE.read_text("utf-8")
-    start = page.index(f"    [[operation]]\n    {first}")
-    example = re.split(r"\n\n(?=\S)", page[start:])[0]
+    texts = [block.text for block in blocks(PAGE.read_text("utf-8"))]
+    (example,) = (text for text in texts if text.startswith(f"[[operation]]\n{first}"))
     reading = 'call = "cell:Robot.where"\nresult = { kind = "position", axis = "x", unit = "m" }\n'
-    vocabulary = loaded(tmp_path, f"{dedent(example)}\n[[operation]]\n{reading}")
+    vocabulary = loaded(tmp_path, f"{example}\n[[operation]]\n{reading}")
     assert len(vocabulary.operations) > 1
 
 
