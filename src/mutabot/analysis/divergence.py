@@ -31,7 +31,7 @@ def explain(mutant: Mutant, outcomes: Sequence[Outcome], vocabulary: Vocabulary 
     quantity = quantity_of(mutant, vocabulary)
     survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
     if survivors:
-        worst = max(survivors, key=lambda one: (one.distance or 0.0, one.way or 0.0))
+        worst = max(survivors, key=worst_of)
         return f"{change_text(mutant, worst, quantity) or mutant.description}; {_world_text(worst)}"
     verdict, _ = Counter(one.verdict for one in outcomes).most_common(1)[0]
     if any(one.verdict is Verdict.NOT_COVERED for one in outcomes):
@@ -56,6 +56,20 @@ def rank(outcomes: Sequence[Outcome]) -> float:
     return max((one.distance or 0.0 for one in survivors), default=0.0)
 
 
+def worst_of(outcome: Outcome) -> float:
+    """How far the world was from the original's at the worst moment, in multiples of the tolerance.
+
+    What went the same way at other times is not far.
+    """
+    recorded = max((one.worst for one in outcome.diverged), default=0.0)
+    return max(outcome.distance or 0.0, outcome.way or 0.0, recorded)
+
+
+def story_of(outcome: Outcome) -> str:
+    """What happened in the worst of its tests, in a sentence; empty if nothing tells."""
+    return next((one.story for one in outcome.diverged if one.story), "")
+
+
 def is_indistinguishable(outcomes: Sequence[Outcome]) -> bool:
     """Whether the mutant survived somewhere and never looked other than the original."""
     survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
@@ -71,6 +85,9 @@ def _verb(quantity: Quantity | None) -> str:
 def _world_text(outcome: Outcome) -> str:
     if outcome.indistinguishable:
         return f"nothing differs{_extent_text(outcome)} (indistinguishable)"
+    story = story_of(outcome)
+    if story:
+        return story
     if outcome.divergence:
         return outcome.divergence[0]
     if outcome.gaps:

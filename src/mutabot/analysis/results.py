@@ -26,7 +26,7 @@ from mutabot.journal.records import (
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
 from mutabot.model.selector import fits
 
-from .divergence import explain, is_indistinguishable, quantity_of, rank
+from .divergence import explain, is_indistinguishable, quantity_of, rank, worst_of
 from .score import Group, KillRate, RoundScores, groups_of
 
 #: mutants that are named where a text fits several
@@ -72,6 +72,12 @@ class MutantResult:
     def way(self) -> float:
         """How far the way of its survivors' tests was from the original's, in multiples of the tolerance."""
         return max((one.way or 0.0 for one in self.outcomes), default=0.0)
+
+    @property
+    def worst(self) -> float:
+        """How far its survivors were from the original at the worst moment, in multiples of the tolerance."""
+        survivors = (one for one in self.outcomes if one.verdict is Verdict.SURVIVED)
+        return max(map(worst_of, survivors), default=0.0)
 
     @property
     def indistinguishable(self) -> bool:
@@ -132,11 +138,9 @@ class Results:
 
     @property
     def survivors(self) -> list[MutantResult]:
-        """Mutants that some round lets through, the farthest from the original first."""
+        """Mutants that some round lets through, the farthest from the original at any moment first."""
         found = [result for result in self.mutants if result.is_survivor]
-        return sorted(
-            found, key=lambda one: (-one.distance, -one.way, one.indistinguishable, one.mutant.number)
-        )
+        return sorted(found, key=lambda one: (-one.worst, one.indistinguishable, one.mutant.number))
 
     def with_verdict(self, *verdicts: Verdict) -> list[tuple[MutantResult, Outcome]]:
         """Each mutant with its first outcome of one of these verdicts, by number."""

@@ -86,6 +86,7 @@ class Job:
         no_oracle: whether all checks are switched off.
         private_files: whether the process is to keep to itself what it does to files.
         oracle_nodes: resolved names of the tests' own nodes, in which ``*`` stands for any text.
+        evidence: whether to record what the world does while tests run.
     """
 
     root: str
@@ -108,6 +109,7 @@ class Job:
     no_oracle: bool = False
     private_files: bool = True
     oracle_nodes: tuple[str, ...] = ()
+    evidence: bool = False
 
 
 def job_file(home: str | os.PathLike[str]) -> Path:

@@ -56,6 +56,8 @@ class TestEnd:
         not_along: why not, or None.
         checks: the checks of the tests that were made, and what they compared.
         more_checks: how many further ones were made.
+        recording: what the world did, as ``evidence.recording.to_text`` writes it; None if that was not asked
+            for.
     """
 
     __test__ = False  # not a test class, whatever pytest may think of the name
@@ -94,6 +96,7 @@ class TestEnd:
     not_along: str | None = None
     checks: tuple[Check, ...] = ()
     more_checks: int = 0
+    recording: str | None = None
 
     @property
     def lasting(self) -> str:

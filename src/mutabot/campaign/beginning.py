@@ -24,6 +24,7 @@ from mutabot.journal.lock import at_work
 
 from . import executors
 from .campaign import Campaign
+from .evidence import Evidence
 from .request import Progress, Request
 
 #: remarks that are told where there are no mutants
@@ -48,7 +49,9 @@ def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
         yield opened
 
 
-def begin(request: Request, executor: Executor, progress: Progress) -> tuple[Campaign, list[Result]]:
+def begin(
+    request: Request, executor: Executor, progress: Progress, evidence: Evidence | None = None
+) -> tuple[Campaign, list[Result]]:
     """Take the baseline. Returns the campaign and the raw results of the baseline.
 
     Raises what ``take_baseline`` raises, and ConfigurationError for orientations that the original lacks.
@@ -59,7 +62,7 @@ def begin(request: Request, executor: Executor, progress: Progress) -> tuple[Cam
     )  # fmt: skip
     refuse_unfit(baseline, request.vocabulary)
     note_ranges(baseline, request.vocabulary, progress)
-    return Campaign(request, baseline, executor, progress), results
+    return Campaign(request, baseline, executor, progress, evidence), results
 
 
 def selected(campaign: Campaign, plan: Plan) -> Plan:

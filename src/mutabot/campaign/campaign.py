@@ -11,6 +11,7 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.site_names import Sources
 from mutabot.campaign.workers.executor import Executor
 
+from .evidence import Evidence
 from .request import Progress, Request
 
 
@@ -24,6 +25,7 @@ class Campaign:
             its own methods alone.
         executor: runs tasks.
         progress: is told what is going on.
+        evidence: what is recorded; None if nothing is.
         sources: names the sites that workers report.
     """
 
@@ -31,6 +33,7 @@ class Campaign:
     baseline: Baseline
     executor: Executor
     progress: Progress
+    evidence: Evidence | None = None
     sources: Sources = field(init=False)
 
     def __post_init__(self) -> None:

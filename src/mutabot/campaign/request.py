@@ -40,6 +40,7 @@ class Request:
         order: how many mutants are one: 1 or 2.
         pairs: how many mutants of the second order to plant.
         journal: name of the journal's file in mutabot's folder.
+        evidence: whether to record what the world does while tests run.
     """
 
     configuration: Configuration
@@ -65,6 +66,7 @@ class Request:
     order: int = 1
     pairs: int = 200
     journal: str = JOURNAL
+    evidence: bool = False
 
     @property
     def root(self) -> Path:
@@ -94,6 +96,7 @@ class Request:
             no_oracle=self.no_oracle,
             private_files=self.configuration.private_files,
             oracle_nodes=self.configuration.oracle_nodes,
+            evidence=self.evidence,
             **details,
         )
 

@@ -35,6 +35,7 @@ from mutabot.journal.records import DRAWING, OPERATORS, REACHING
 from mutabot.model import LeftOut, Mutant
 
 from .beginning import at_it, begin, selected
+from .evidence import Evidence, recorded, without_recording
 from .request import Progress, Request
 from .sink import Sink
 
@@ -56,8 +57,12 @@ def run_campaign(request: Request, progress: Progress) -> Path:
         Journal.prepare(request.journal_path, meta=_meta(request)) as journal,
     ):
         try:
-            with _disk_told(request), at_it(request, progress) as opened:
-                _run(request, opened, progress, journal)
+            with (
+                _disk_told(request),
+                at_it(request, progress) as opened,
+                recorded(request, progress) as evidence,
+            ):
+                _run(request, opened, progress, journal, evidence)
             journal.set_meta("seconds", time.monotonic() - started)
             journal.finish("complete")
         except BaseException as error:
@@ -67,15 +72,25 @@ def run_campaign(request: Request, progress: Progress) -> Path:
     return request.journal_path
 
 
-def _run(request: Request, opened: Executor, progress: Progress, journal: Journal) -> None:
+def _run(
+    request: Request,
+    opened: Executor,
+    progress: Progress,
+    journal: Journal,
+    evidence: Evidence | None,
+) -> None:
     started = time.monotonic()
     before = Snapshot.take(request.root)
     with OpenedFiles(request.root, before.folders) as watch:
-        campaign, results = begin(request, opened, progress)
+        campaign, results = begin(request, opened, progress, evidence)
     baseline = campaign.baseline
     whole = make_plan(baseline, request.vocabulary, request.families)
     plan = selected(campaign, whole)
     _write_beginning(journal, request, results, plan, whole)
+    if evidence is not None:
+        evidence.begin(
+            [(one.task.key.round, one.task.key.repetition, one.ends) for one in results], whole.mutants
+        )
     journal.set_meta(OPERATORS, summaries(plan.mutants))
     journal.set_meta(REACHING, to_data(reaching(baseline, plan.mutants)))
     _note_unstable(baseline, progress)
@@ -171,7 +186,7 @@ def _write_beginning(
     journal.begin(_meta(request))
     for result in results:
         for end in result.ends:
-            journal.add_test(result.task.key.round, result.task.key.repetition, end)
+            journal.add_test(result.task.key.round, result.task.key.repetition, without_recording(end))
     numbers = numbered(whole.mutants, request.selection, left_out=whole.left_out)
     known = [mutant for mutant, _ in journal.known()]
     carried = carry(known, request, plan.mutants, [*whole.mutants, *numbers])

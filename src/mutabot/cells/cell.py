@@ -19,6 +19,7 @@ from .monitors import Condition, Monitors, Values
 from .scene import Box, Scene
 from .sensors import Sensors, true_box_position, true_box_tilt, true_tool_pose, true_tool_position
 from .simulation import Simulation
+from .telling import tell_of
 
 _current: weakref.ref[Cell] | None = None
 
@@ -93,6 +94,7 @@ class Cell:
         arm, gripper, sensors: as the robot program uses them.
         truth: the exact state, for tests and monitors only.
         simulation: the clock and the physics; `simulation.tick` is the one way time advances.
+        feed: what the cell tells mutabot while a test is recorded; a test may tell more by it.
     """
 
     def __init__(
@@ -114,6 +116,7 @@ class Cell:
         self.gripper = Gripper(self.simulation, draws, grip_force, finger_speed)
         self.sensors = Sensors(self.simulation, draws, placed.boxes, numbers)
         self.truth = Truth(self.simulation, placed.boxes)
+        self.feed = tell_of(self.simulation, placed)
         self.monitors = Monitors(self.simulation, self.truth.world)
         _current = weakref.ref(self)
 

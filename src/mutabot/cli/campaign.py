@@ -91,7 +91,7 @@ def run(
     request = request_of(
         context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
         sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
-        fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
+        fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline, evidence=True,
     )  # fmt: skip
     with progress_shown() as progress:
         journal_path = run_campaign(request, progress)

@@ -66,6 +66,7 @@ def request_of(
         pairs=given.get("pairs") or configuration.pairs,
         every_test=bool(given.get("every_test")),
         no_oracle=bool(given.get("no_oracle")),
+        evidence=bool(given.get("evidence")) and configuration.evidence > 0,
     )
 
 

@@ -23,6 +23,7 @@ from mutabot.inside.readings.along import Along, Rehearsal, rehearse
 from mutabot.inside.readings.clock import ClockReader
 from mutabot.inside.readings.instances import Instances
 from mutabot.inside.readings.probes import Reading, take
+from mutabot.inside.readings.recording import TestRecording
 from mutabot.inside.targets.interception import Interception
 from mutabot.inside.targets.target import Finding, Handler
 from mutabot.inside.text.returns import Returns
@@ -52,6 +53,7 @@ class Session:
         branch: id of the mutant that this process was forked to be; None in all others.
         text: the program text, if it is instrumented.
         returns: what the program returns to its tests; None if that is not noted.
+        recording: what the world does while the test runs.
         test: node id of the running test.
         parts: the mutants of which its own consists that changed something in it; that of the text has no
             name.
@@ -65,6 +67,7 @@ class Session:
     interception: Interception = field(init=False)
     passing: Passing = field(init=False)
     inspection: Inspection = field(init=False)
+    recording: TestRecording = field(init=False)
     instances: Instances = field(default_factory=Instances)
     along: Along = field(init=False)
     rehearsal: Rehearsal = field(default_factory=Rehearsal)
@@ -80,6 +83,8 @@ class Session:
 
     def __post_init__(self) -> None:
         self.recorder = Recorder(self._site_seen)
+        self.recording = TestRecording()
+        self.recorder.clock = self.recording.clock
         self.along = Along(partial(self._read_probes, along=True))
         self.inspection = Inspection(self.job.vocabulary, self.job.inspect, self._send)
         self.interception = Interception(self.inspection.target_is_wrong)
@@ -241,6 +246,8 @@ class Session:
             branch = trunk.fork_at_place if trunk is not None else None
             self.text.start_test(test, branch, trunk.places() if trunk is not None else {})
         self._start_activations()
+        has_clock = self.job.vocabulary.clock is not None
+        self.recording.start(self.job.evidence, self._simulated, is_simulated=has_clock)
 
     def _look_again(self) -> None:
         """What the program has made since the last test."""
@@ -268,6 +275,7 @@ class Session:
         if self.returns is not None:
             self.returns.stop()
         self.along.stop()
+        self.recording.stop()
         reading, self.rehearsal = rehearse(self._read_probes)
         self.instances.start()  # what the program is done with may go
         return reading
@@ -335,10 +343,16 @@ class Session:
     def _acted(self, part: str) -> None:
         """A part of the mutant changed something; the one of the program text has no name."""
         self.parts.add(part)
+        self.recording.note_fault(
+            len(self.recorder.trace), self.recorder.began if part else self.recording.clock()
+        )
         if self.text is not None and self.text.is_mutant and not self.text.has_acted:
             return
         if all(activation.mutant.id in self.parts for activation in self.activations):
             self.pipe.send(Acted(self.test, self.branch))
+
+    def _simulated(self) -> float | None:
+        return self.meter.simulated if self.meter is not None else None
 
     def _in_mutated_call(self, began: bool) -> None:
         self.pipe.send(MutatedCall(self.test, began, self.branch))

@@ -21,6 +21,7 @@ from .call import Proceed as Proceed
 from .call import Reply as Reply
 from .check import Check as Check
 from .check import Looked as Looked
+from .diverged import Diverged as Diverged
 from .mutant import Mutant as Mutant
 from .operation import Case as Case
 from .operation import Clock as Clock

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .check import Looked
+from .diverged import Diverged
 from .verdict import By, Verdict
 
 
@@ -104,6 +105,8 @@ class Outcome:
         stuck: where it was when its wall-clock time was up: its innermost calls; None if that is not known.
         repeats: how often it was run once more in a fresh process and had the same verdict.
         looked: of a survivor, the tests that ran it and what they checked.
+        diverged: how the recordings of its tests differ from the original's, the worst first; empty if they
+            do not, or if there are none.
     """
 
     mutant: str
@@ -136,6 +139,7 @@ class Outcome:
     stuck: str | None = None
     repeats: int = 0
     looked: tuple[Looked, ...] = ()
+    diverged: tuple[Diverged, ...] = ()
 
 
 def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:

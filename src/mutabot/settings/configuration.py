@@ -28,16 +28,30 @@ _WILD = re.compile(r"[*?\[]")
 
 def parse_memory(value: Any) -> Any:
     """Bytes in a text such as ``4 GB`` or ``512 MiB``; whole numbers are bytes already."""
-    if isinstance(value, str):
-        match = _MEMORY.fullmatch(value)
-        if match is None:
-            raise _fault(f"{value!r} is no amount of memory; write it like '4 GB'")
-        unit = match[2].lower().removesuffix("b")
-        base = 1024 if unit.endswith("i") else 1000
-        value = round(float(match[1]) * base ** _PREFIXES[unit.removesuffix("i")])
+    if isinstance(value, str) and _MEMORY.fullmatch(value) is None:
+        raise _fault(f"{value!r} is no amount of memory; write it like '4 GB'")
+    value = _bytes_in(value)
     if isinstance(value, int) and not isinstance(value, bool) and value < _LEAST_MEMORY:
         raise _fault(f"{value} bytes are too little for Python and pytest; write it like '4 GB'")
     return value
+
+
+def _bytes_in(value: Any) -> Any:
+    match = _MEMORY.fullmatch(value) if isinstance(value, str) else None
+    if match is None:
+        return value
+    unit = match[2].lower().removesuffix("b")
+    base = 1024 if unit.endswith("i") else 1000
+    return round(float(match[1]) * base ** _PREFIXES[unit.removesuffix("i")])
+
+
+def _parse_size(value: Any) -> Any:
+    """The same for room on a disk, of which there may be none at all."""
+    if isinstance(value, str) and _MEMORY.fullmatch(value) is None:
+        raise _fault(f"{value!r} is no amount of room; write it like '200 MB', or 0 for none")
+    if isinstance(value, int) and not isinstance(value, bool) and value < 0:
+        raise _fault(f"{value} bytes are less than nothing; write it like '200 MB', or 0 for none")
+    return _bytes_in(value)
 
 
 def _fault(text: str) -> PydanticCustomError:
@@ -148,6 +162,13 @@ class Settings(BaseModel):
     namespace; where the system refuses it, you are told if it matters.
 
         private_files = false
+    """
+    evidence: Annotated[int, BeforeValidator(_parse_size)] = 200_000_000
+    """How much is kept of what the robot did: where tool and objects were, what was
+    commanded and read, of the original and of mutants that differ from it; see
+    [evidence](evidence.md). If room is short, that of survivors stays. 0 records nothing.
+
+        evidence = "1 GB"
     """
     memory: Annotated[int, BeforeValidator(parse_memory)] = 4_000_000_000
     """Address space of a process, as

@@ -236,7 +236,9 @@ def _add_round(
         else:
             baseline.skipped += end.outcome == "skipped"
             good.append(test)
-            baseline.ends[round, test] = replace(end, wall=max([end.wall, *(o.wall for o in others if o)]))
+            baseline.ends[round, test] = replace(
+                end, wall=max([end.wall, *(o.wall for o in others if o)]), recording=None
+            )
             baseline.observations[round, test] = observed[0][test]
             for again, found in zip(others, observed[1:], strict=True):
                 if again is not None:

@@ -14,7 +14,7 @@ from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.model import Mutant, Outcome, Verdict
 
 from .engine import Trial
-from .judge import Death, Run, judge
+from .judge import Death, Run, judged
 
 #: the engine that is the reference
 REPLAY = "replay"
@@ -31,7 +31,7 @@ def replay(campaign: Campaign, trials: Iterable[Trial], engine: str = REPLAY) ->
     for result in campaign.executor.run(replace(one, begins_warm=engine != REPLAY) for one in tasks):
         yield from _drain(uncovered)
         run = replace(run_of(result, campaign.sources), engine=engine)
-        outcome = judge(campaign, run)
+        outcome = judged(campaign, run)
         if outcome.verdict is Verdict.SURVIVED and baseline.must_widen(run.mutant, run.round, run.ends):
             widened.append((run.mutant, run.round))
         else:

@@ -14,6 +14,9 @@ from mutabot.model.outcome import added
 
 #: tests of a survivor whose checks are kept
 _MOST_LOOKED = 20
+#: tests of which it is kept how they differ from the original's
+_MOST_DIVERGED = 5
+_RECORDED = frozenset({Verdict.SURVIVED, Verdict.KILLED, Verdict.TIMEOUT, Verdict.REFUSED})
 
 Ruling = tuple[Verdict, TestEnd | None, str | None]
 
@@ -67,6 +70,20 @@ class Run:
     shared: float | None = None
     engine: str = "replay"
     problem: str | None = None
+
+
+def judged(campaign: Campaign, run: Run) -> Outcome:
+    """The outcome of a run, whose recordings are kept as far as they differ from the original's."""
+    outcome = judge(campaign, run)
+    if campaign.evidence is None or outcome.verdict not in _RECORDED:
+        return outcome
+    restless = campaign.baseline.restless
+    ends = [end for end in run.ends if (run.round, end.test) not in restless]
+    survived = outcome.verdict is Verdict.SURVIVED
+    found = campaign.evidence.take(run.mutant.id, run.round, ends, survived=survived)[:_MOST_DIVERGED]
+    is_elsewhere = any(one.apart for one in found)
+    same = False if is_elsewhere and outcome.indistinguishable else outcome.indistinguishable
+    return replace(outcome, diverged=found, indistinguishable=same)
 
 
 def judge(campaign: Campaign, run: Run) -> Outcome:

@@ -32,7 +32,7 @@ from mutabot.model import Instrumentation, Mutant, Outcome, Verdict
 
 from .engine import Remainder, Trial
 from .fresh import wall_limit, without_tests
-from .judge import Death, Run, judge
+from .judge import Death, Run, judged
 
 #: seconds without any word from a trunk, beyond what its tests and branches may take
 _PATIENCE = 60.0
@@ -267,6 +267,8 @@ class _Trunk:
             self._passed.add(end.test)
             found = observation(end, self._trunk_places)
             self._baseline.compare_runs(self._round, end, found, self._campaign.request.vocabulary)
+            if self._campaign.evidence is not None:
+                self._campaign.evidence.add_again(self._round, end)
             self._take_undiverged(end, found, undiverged)
         else:
             self._failed.add(end.test)
@@ -279,7 +281,7 @@ class _Trunk:
         """The trunk has run its test for these mutants too, up to the end."""
         for mutant in hits.keys() & self._open.keys():
             branches = self._open[mutant]
-            own = replace(end, hits=hits[mutant], acted=0, wall=0.0, cpu=0.0, trace=())
+            own = replace(end, hits=hits[mutant], acted=0, wall=0.0, cpu=0.0, trace=(), recording=None)
             branches.take(BranchEnd(mutant, own, (), end.simulated))
             branches.observations[end.test] = found
 
@@ -305,7 +307,7 @@ class _Trunk:
                 break
         run.observations = branches.observations
         run.wall = sum(end.wall for end in run.ends)
-        outcome = judge(self._campaign, run)
+        outcome = judged(self._campaign, run)
         survived = outcome.verdict is Verdict.SURVIVED
         if survived and self._baseline.must_widen(run.mutant, run.round, run.ends):
             return  # to replay

@@ -141,6 +141,7 @@ class Passing:
         __tracebackhide__ = True
         token = _under_way.set(True)
         reply: Reply | None = None
+        began = self._recorder.began = self._recorder.clock()
         try:
             # 1. The door reads which command it is, and the values it writes.
             call = door.call(*made)
@@ -166,7 +167,7 @@ class Passing:
                 return result
             finally:
                 # 5. Whatever came of it is noted.
-                self._note(site, call, reply)
+                self._note(site, call, reply, began)
         finally:
             try:  # noqa: SIM105  # quicker than a context manager, at every call
                 _under_way.reset(token)
@@ -209,14 +210,14 @@ class Passing:
             raise
         return door.reply(call, result)
 
-    def _note(self, site: tuple[Span, Role], call: Call, reply: Reply | None) -> None:
+    def _note(self, site: tuple[Span, Role], call: Call, reply: Reply | None, began: float | None) -> None:
         """Trace a call that is over; ``reply`` is the robot's last one, None if the call raised."""
         span, role = site
         pattern = call.pattern.text if call.pattern is not None else None
         read = reply.values if reply is not None else {}
         is_wanted = self._recorder.answers is not None and reply is not None
         returned = Returned(reply.payload, here(call)) if reply is not None and is_wanted else None
-        self._recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned)
+        self._recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned, began)
         if call.is_command:
             self._along.after(len(self._recorder.trace))
         if self.on_end is not None:

@@ -7,12 +7,19 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.border.lines import SiteSeen
+from mutabot.evidence.recording import Told
 from mutabot.model import Role, Span
 
 from .answers import Answers, Returned
 
 #: hits per test that are reported with their values; a test is compared and planned from these
 TRACE_LIMIT = 5000
+#: of these, how many are recorded with their times
+_TOLD = 2000
+
+
+def _no_clock() -> float | None:
+    return None
 
 
 @dataclass(slots=True)
@@ -26,6 +33,9 @@ class Recorder:
         truncated: whether hits were left out of the trace.
         sites: all sites reached so far, in the order of their indexes.
         on_hit: told of each hit, as it is in the trace; None while nobody asks.
+        clock: tells the time, s; None where it is not noted.
+        when: when each hit of the trace began and ended, s.
+        began: when the call that is under way began, s.
     """
 
     on_site: Callable[[SiteSeen], None]
@@ -34,11 +44,14 @@ class Recorder:
     truncated: bool = False
     sites: list[SiteSeen] = field(default_factory=list)
     on_hit: Callable[[int, Any, Any, Any], None] | None = None
+    clock: Callable[[], float | None] = _no_clock
+    when: list[tuple[float | None, float | None]] = field(default_factory=list)
+    began: float | None = None
     _indexes: dict[SiteSeen, int] = field(default_factory=dict)
 
     def start(self) -> None:
         """A new test begins."""
-        self.trace = []
+        self.trace, self.when = [], []
         self.truncated = False
         if self.answers is not None:
             self.answers.start()
@@ -52,14 +65,16 @@ class Recorder:
         written: Mapping[str, Any],
         read: Mapping[str, Any],
         returned: Returned | None,
+        began: float | None = None,
     ) -> None:
-        """One call at a site has been made; ``returned`` is None if it raised."""
+        """One call at a site has been made; ``returned`` is None if it raised, ``began`` is in s."""
         if len(self.trace) >= TRACE_LIMIT:
             self.truncated = True
             return
         index = self.index_of(SiteSeen(-1, span, operation, pattern, role is Role.ORACLE))
         answer = self.answers.note(index, returned) if self.answers is not None else None
         self.trace.append((index, _frozen(written), _frozen(read), answer))
+        self.when.append((began, self.clock()))
         if self.on_hit is not None:
             self.on_hit(*self.trace[-1])
 
@@ -72,6 +87,16 @@ class Recorder:
             self.sites.append(replace(seen, index=index))
             self.on_site(self.sites[-1])
         return index
+
+    def told(self) -> list[Told]:
+        """The calls of the running test with their times, as far as they are recorded."""
+        found = []
+        for hit, (began, ended) in zip(self.trace[:_TOLD], self.when, strict=False):
+            site, (_, written, read, _) = self.sites[hit[0]], hit
+            place = f"{site.span.file}:{site.span.line}"
+            role = Role.ORACLE if site.oracle else Role.PROGRAM
+            found.append(Told(began, ended, site.operation, place, site.pattern, written, read, role))
+        return found
 
     def sites_of_trace(self) -> tuple[SiteSeen, ...]:
         """The sites that the running test's trace refers to."""

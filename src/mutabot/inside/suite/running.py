@@ -196,6 +196,7 @@ class Running:
             not_along=session.rehearsal.why_not,
             checks=self.looks.checks if self.session.job.record else (),
             more_checks=self.looks.more,
+            recording=session.recording.text(session.recorder.told()),
         )
 
     def _footprint(self) -> Footprint | None:

@@ -1,0 +1,130 @@
+"""What is recorded of a campaign: kept where it differs from the original, and what that says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+
+from mutabot.border.test_end import TestEnd
+from mutabot.evidence.divergence import Seen, diverged, noise_between
+from mutabot.evidence.recording import bytes_of, from_bytes
+from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
+from mutabot.model import Diverged, Mutant
+
+from .request import Progress, Request
+
+#: recordings of the original that are held to compare with
+_HELD = 64
+#: problems that are told
+_SHOWN = 3
+
+
+@dataclass
+class Evidence:
+    """The recordings of a campaign.
+
+    Args:
+        recordings: where they are kept.
+
+    Attributes:
+        left_out: how many found no room.
+        problems: what could not be recorded, one line each.
+    """
+
+    recordings: Recordings
+    left_out: int = 0
+    problems: dict[str, None] = field(default_factory=dict)
+    _noise: dict[tuple[int, str], Mapping[str, float]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._original = lru_cache(_HELD)(self._read_original)
+
+    def begin(self, runs: Iterable[tuple[int, int, Iterable[TestEnd]]], mutants: Iterable[Mutant]) -> None:
+        """The baseline is taken.
+
+        Args:
+            runs: round, repetition, and the ends of the tests.
+            mutants: all that the program has; what was recorded of others makes way.
+        """
+        self.recordings.keep_only({mutant.id for mutant in mutants})
+        for round, repetition, ends in sorted(runs, key=lambda run: run[:2]):
+            if repetition == 0:
+                self._add_original(round, ends)
+            else:
+                for end in ends:
+                    self.add_again(round, end)
+
+    def _add_original(self, round: int, ends: Iterable[TestEnd]) -> None:
+        """What an earlier campaign recorded of the original makes way."""
+        self.recordings.forget(ORIGINAL, round)
+        for end in ends:
+            if end.recording is not None:
+                self._add(ORIGINAL, round, end, Rank.ORIGINAL)
+                self.problems.update(dict.fromkeys(_seen(end).recording.problems))
+
+    def add_again(self, round: int, end: TestEnd) -> None:
+        """A further run of the original: how far things are apart without any fault."""
+        original = self._original(round, end.test)
+        if original is not None and end.recording is not None:
+            found = noise_between(original, _seen(end))
+            if any(found.values()):
+                self._noise[round, end.test] = found
+
+    def take(
+        self, mutant: str, round: int, ends: Iterable[TestEnd], *, survived: bool
+    ) -> tuple[Diverged, ...]:
+        """Keep what differs of a mutant's tests. Returns how it does, the worst first."""
+        found = []
+        self.recordings.forget(mutant, round)
+        for end in ends:
+            original = self._original(round, end.test)
+            if original is None or end.recording is None:
+                continue
+            noise = self._noise.get((round, end.test))
+            one = diverged(end.test, original, _seen(end), noise, is_cut=end.outcome == "failed")
+            if one is not None:
+                self._add(mutant, round, end, Rank.SURVIVOR if survived else Rank.OTHER)
+                found.append(one)
+        return tuple(sorted(found, key=lambda one: -one.worst))
+
+    def _add(self, mutant: str, round: int, end: TestEnd, rank: Rank) -> None:
+        assert end.recording is not None
+        if not self.recordings.add(mutant, round, end.test, rank, bytes_of(end.recording)):
+            self.left_out += 1
+
+    def _read_original(self, round: int, test: str) -> Seen | None:
+        data = self.recordings.data(ORIGINAL, round, test)
+        return Seen(from_bytes(data)) if data is not None else None
+
+
+@contextmanager
+def recorded(request: Request, progress: Progress) -> Iterator[Evidence | None]:
+    """The recordings of a campaign, if any are asked for; says at the end what is missing."""
+    if not request.evidence:
+        yield None
+        return
+    limit = request.configuration.evidence
+    with Recordings.to_write(request.journal_path, limit) as recordings:
+        evidence = Evidence(recordings)
+        try:
+            yield evidence
+        finally:
+            for problem in list(evidence.problems)[:_SHOWN]:
+                progress.note(problem)
+            if evidence.left_out:
+                progress.note(
+                    f"{evidence.left_out} recordings found no room in {limit / 1e6:.0f} MB and were left "
+                    "out: set `evidence` to more"
+                )
+
+
+def without_recording(end: TestEnd) -> TestEnd:
+    """The end of a test for the journal, which has recordings beside it."""
+    return end if end.recording is None else replace(end, recording=None)
+
+
+def _seen(end: TestEnd) -> Seen:
+    assert end.recording is not None
+    return Seen(from_bytes(bytes_of(end.recording)))

@@ -1,0 +1,158 @@
+"""The feed: by which a simulator, or a node that hears of one, tells where things are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from math import floor
+from typing import Any
+
+from . import tape as tapes
+from .recording import Block, Kind
+from .tape import Tape
+
+Triple = tuple[float, float, float]
+#: seconds that a new simulation in the same test comes after the one before
+_GAP = 1e-3
+
+
+@dataclass(slots=True)
+class _Source:
+    name: str
+    kind: Kind
+    read: Callable[[], Any]
+    unit: str = ""
+    size: Triple | None = None
+
+
+class Feed:
+    """Tells where tool and objects are, at a fixed rate of simulated time, while a test is recorded.
+
+    Outside a campaign ``tick`` does nothing, and costs next to nothing. What is told is only read: it must
+    change nothing in the simulation and draw no random number.
+
+    Args:
+        time: gives the simulated time, s. If it goes back (an episode begins anew), it is counted on.
+        rate: moments per simulated second.
+    """
+
+    def __init__(self, time: Callable[[], float], *, rate: float = 10.0) -> None:
+        if not rate > 0:
+            raise ValueError(f"a rate of {rate!r} per second; it must be above 0, such as 10")
+        self._time, self._interval = time, 1.0 / rate
+        self._sources: list[_Source] = []
+        self._blocks: list[Block] = []
+        self._touching: Callable[[], Iterable[tuple[str, str]]] | None = None
+        self._tape: Tape | None = None
+        self._before: frozenset[tuple[str, str]] = frozenset()
+        self._offset = self._last = self._due = 0.0
+
+    def pose(self, name: str, read: Callable[[], Sequence[float]], *, size: Triple | None = None) -> None:
+        """Something with a place and an orientation.
+
+        Args:
+            read: gives x, y, z in m and the quaternion w, x, y, z: seven numbers, world frame.
+            size: edge lengths in m, if it is about a box.
+        """
+        self._sources.append(_Source(name, Kind.POSE, read, "", size))
+
+    def point(self, name: str, read: Callable[[], Sequence[float]], *, size: Triple | None = None) -> None:
+        """Something with a place; ``read`` gives x, y, z in m, world frame."""
+        self._sources.append(_Source(name, Kind.POINT, read, "", size))
+
+    def value(self, name: str, read: Callable[[], float], *, unit: str = "") -> None:
+        """One number, such as the opening of a gripper or the margin of a monitor."""
+        self._sources.append(_Source(name, Kind.VALUE, read, unit))
+
+    def contacts(self, read: Callable[[], Iterable[tuple[str, str]]]) -> None:
+        """What touches what: ``read`` gives the pairs of names that touch each other now."""
+        self._touching = read
+
+    def block(self, name: str, centre: Triple, size: Triple, colour: Sequence[float] | None = None) -> None:
+        """A box that never moves, such as a table: middle and edge lengths in m, world frame."""
+        self._blocks.append(
+            Block(name, _triple(centre), _triple(size), None if colour is None else tuple(colour))
+        )
+
+    def note(self, text: str) -> None:
+        """Something worth telling happens now."""
+        tape = self._present()
+        if tape is not None:
+            tape.note(self._offset + self._time(), "note", text)
+
+    def tick(self) -> None:
+        """Simulated time has passed: to be called after each step, or whenever something is heard."""
+        tape = tapes.running()
+        if tape is None:
+            return
+        now = self._time()
+        if tape is not self._tape:
+            self._begin(tape, now)
+        elif now < self._last:
+            self._go_on(tape, now)
+        self._last = now
+        if now >= self._due:
+            step = self._interval * tape.coarseness
+            self._due = (floor(now / step + 1e-9) + 1) * step
+            self._sample(tape, self._offset + now)
+
+    def _present(self) -> Tape | None:
+        tape = tapes.running()
+        if tape is not None and tape is not self._tape:
+            self._begin(tape, self._time())
+        return tape
+
+    def _begin(self, tape: Tape, now: float) -> None:
+        """The first word in a test: a simulation that is there already begins at 0 as well."""
+        self._tape = tape
+        is_first = not tape.recording.times
+        self._offset = -now if is_first else tape.end + _GAP - now
+        self._last = self._due = now
+        self._before = frozenset()
+        for block in self._blocks:
+            tape.block(block)
+        tape.told_by(lambda: self._offset + self._time())
+
+    def _go_on(self, tape: Tape, now: float) -> None:
+        """The simulated time went back: what comes now comes after all that was."""
+        self._offset = tape.end + _GAP - now
+        self._due = now
+        self._before = frozenset()
+
+    def _sample(self, tape: Tape, now: float) -> None:
+        for source in self._sources:
+            track = tape.track(source.name, source.kind, source.unit, source.size)
+            length = len(track.values)
+            try:
+                if source.kind is Kind.VALUE:
+                    track.values.append(source.read())
+                else:
+                    track.values.extend(source.read())
+                told = len(track.values) - length
+                why = f"{told} numbers instead of {track.kind.width}" if told != track.kind.width else ""
+            except Exception as error:  # the user's code may fail in any way, and his test must go on
+                why = f"{type(error).__name__}: {error}"
+            if why:
+                del track.values[length:]
+                tape.problem(f"{source.name} cannot be recorded: {why}")
+        tape.close_moment(now)
+        if self._touching is not None:
+            self._note_contacts(tape, now, self._touching)
+
+    def _note_contacts(self, tape: Tape, now: float, read: Callable[[], Iterable[tuple[str, str]]]) -> None:
+        try:
+            touching = frozenset((one, other) if one < other else (other, one) for one, other in read())
+        except Exception as error:  # as above
+            tape.problem(f"contacts cannot be recorded: {type(error).__name__}: {error}")
+            return
+        if touching == self._before:
+            return
+        for what, pairs in (("part", self._before - touching), ("touch", touching - self._before)):
+            for pair in sorted(pairs):
+                tape.note(now, what, ", ".join(pair))
+        self._before = touching
+
+
+def _triple(numbers: Sequence[float]) -> Triple:
+    x, y, z = numbers
+    return float(x), float(y), float(z)

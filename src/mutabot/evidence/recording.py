@@ -1,0 +1,232 @@
+"""A recording: where tool and objects were over time, what touched what, what was told and read.
+
+Plain data, made in the robot program's process and read outside of it. The standard library is enough.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import sys
+import zlib
+from array import array
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+#: single precision: a position of some metres to a micrometre
+_TYPE = "f"
+
+
+class Kind(StrEnum):
+    """What the numbers of a track are."""
+
+    POSE = "pose"
+    POINT = "point"
+    VALUE = "value"
+
+    @property
+    def width(self) -> int:
+        """Numbers at each moment: x, y, z in m, for a pose followed by the quaternion w, x, y, z."""
+        return {Kind.POSE: 7, Kind.POINT: 3, Kind.VALUE: 1}[self]
+
+
+@dataclass(slots=True)
+class Track:
+    """One thing over time.
+
+    Attributes:
+        name: what it is, such as ``tool``.
+        kind: what the numbers are.
+        values: ``kind.width`` numbers per moment, one moment after the other; NaN where it was not there.
+        unit: of a value; positions are in m, in the world's frame.
+        size: edge lengths of its box in m, of an object that has one; to draw it and to see how near it was.
+    """
+
+    name: str
+    kind: Kind
+    values: array[float]
+    unit: str = ""
+    size: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A box that never moves: a table, a conveyor, a wall. In m, world frame, edges along the axes.
+
+    Attributes:
+        name: what it is.
+        centre: its middle.
+        size: edge lengths.
+        colour: red, green, blue, opacity from 0 to 1; None for no wish.
+    """
+
+    name: str
+    centre: tuple[float, float, float]
+    size: tuple[float, float, float]
+    colour: tuple[float, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """Something that happened.
+
+    Attributes:
+        time: s.
+        what: ``touch`` and ``part`` of two bodies, or ``note``.
+        text: which bodies (``box, table``), or the simulator's own words.
+    """
+
+    time: float
+    what: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A call of an operation.
+
+    Attributes:
+        began, ended: s; None without a clock.
+        operation: its name in the vocabulary.
+        place: ``file:line`` of the call.
+        pattern: which text command it was, or None.
+        written, read: values by quantity.
+        role: ``program`` or ``oracle``.
+    """
+
+    began: float | None
+    ended: float | None
+    operation: str
+    place: str
+    pattern: str | None
+    written: Mapping[str, Any]
+    read: Mapping[str, Any]
+    role: str = "program"
+
+
+@dataclass(slots=True)
+class Recording:
+    """What was seen of one test.
+
+    Attributes:
+        times: moments at which the tracks were read, s since the test's first simulated moment.
+        tracks: by name.
+        blocks: what stands around.
+        moments: what happened, in its order.
+        calls: operations, in their order.
+        fault: when the mutant changed something for the first time, s; None if it did not, or without a
+            clock.
+        faulty_call: how many calls had been made by then; None if it did not.
+        is_simulated: whether the times are simulated; else they are of the wall clock.
+        problems: what could not be read, one line each.
+    """
+
+    times: array[float] = field(default_factory=lambda: array("d"))
+    tracks: dict[str, Track] = field(default_factory=dict)
+    blocks: tuple[Block, ...] = ()
+    moments: list[Moment] = field(default_factory=list)
+    calls: list[Told] = field(default_factory=list)
+    fault: float | None = None
+    faulty_call: int | None = None
+    is_simulated: bool = True
+    problems: list[str] = field(default_factory=list)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it holds nothing."""
+        return not (self.times or self.calls or self.moments)
+
+
+def to_bytes(recording: Recording) -> bytes:
+    """The recording as compressed bytes, to be kept."""
+    head = json.dumps(_head(recording), default=_plain, separators=(",", ":")).encode()
+    numbers = (recording.times, *(track.values for track in recording.tracks.values()))
+    data = b"".join([len(head).to_bytes(4, "little"), head, *map(_little, numbers)])
+    return zlib.compress(data, 1)
+
+
+def from_bytes(data: bytes) -> Recording:
+    """What ``to_bytes`` made. Raises ValueError for anything else."""
+    try:
+        data = zlib.decompress(data)
+        end = 4 + int.from_bytes(data[:4], "little")
+        head = json.loads(data[4:end])
+        count = head["count"]
+        times, end = _numbers("d", data, end, count)
+        tracks = {}
+        for name, kind, unit, size in head["tracks"]:
+            values, end = _numbers(_TYPE, data, end, count * Kind(kind).width)
+            tracks[name] = Track(name, Kind(kind), values, unit, _triple(size))
+        return Recording(
+            times,
+            tracks,
+            tuple(_block(*one) for one in head["blocks"]),
+            [Moment(*one) for one in head["moments"]],
+            [Told(*one) for one in head["calls"]],
+            head["fault"],
+            head["faulty_call"],
+            head["is_simulated"],
+            head["problems"],
+        )
+    except (zlib.error, LookupError, TypeError) as error:
+        raise ValueError(f"no recording: {error}") from error
+
+
+def to_text(recording: Recording) -> str:
+    """The recording as a line of ASCII, for the pipe to the controller."""
+    return base64.b85encode(to_bytes(recording)).decode()
+
+
+def bytes_of(text: str) -> bytes:
+    """What ``to_bytes`` would have made of the recording that ``to_text`` made this text of."""
+    return base64.b85decode(text)
+
+
+def _head(recording: Recording) -> dict[str, Any]:
+    return {
+        "count": len(recording.times),
+        "tracks": [(one.name, one.kind, one.unit, one.size) for one in recording.tracks.values()],
+        "blocks": [(one.name, one.centre, one.size, one.colour) for one in recording.blocks],
+        "moments": [(one.time, one.what, one.text) for one in recording.moments],
+        "calls": [
+            (one.began, one.ended, one.operation, one.place, one.pattern, one.written, one.read, one.role)
+            for one in recording.calls
+        ],
+        "fault": recording.fault,
+        "faulty_call": recording.faulty_call,
+        "is_simulated": recording.is_simulated,
+        "problems": recording.problems,
+    }
+
+
+def _little(numbers: array[float]) -> bytes:
+    if sys.byteorder == "little":
+        return numbers.tobytes()
+    numbers = numbers[:]
+    numbers.byteswap()
+    return numbers.tobytes()
+
+
+def _numbers(kind: str, data: bytes, start: int, count: int) -> tuple[array[float], int]:
+    """So many numbers from there on, and where they end."""
+    numbers: array[float] = array(kind)
+    end = start + count * numbers.itemsize
+    numbers.frombytes(data[start:end])
+    if sys.byteorder == "big":
+        numbers.byteswap()
+    return numbers, end
+
+
+def _block(name: str, centre: Any, size: Any, colour: Any) -> Block:
+    return Block(name, tuple(centre), tuple(size), None if colour is None else tuple(colour))
+
+
+def _triple(numbers: Any) -> tuple[float, float, float] | None:
+    return None if numbers is None else (numbers[0], numbers[1], numbers[2])
+
+
+def _plain(value: Any) -> Any:
+    """What stands for a value that JSON does not know."""
+    return value.tolist() if hasattr(value, "tolist") else repr(value)

@@ -1,0 +1,137 @@
+"""The tape of the running test: what feeds write on, and the session reads.
+
+There is one per process. Outside a campaign, and between tests, there is none and feeds do nothing.
+"""
+
+from __future__ import annotations
+
+import time
+from array import array
+from collections.abc import Callable
+
+from .recording import Block, Kind, Moment, Recording, Track
+
+#: moments from which on only every second one is kept, and half as many are taken from then on
+_MOST_MOMENTS = 4000
+_MOST_EVENTS = 2000
+_NAN = float("nan")
+#: s: tells times of the wall clock from simulated ones
+_WALL = 1.0
+
+
+class Tape:
+    """What is recorded of one test.
+
+    Attributes:
+        recording: it, so far.
+        coarseness: how many times its interval a feed is to wait between two moments.
+        clock: what tells the simulated time, s; None as long as no feed or simulator has told any.
+        is_simulated: whether its times are simulated.
+    """
+
+    def __init__(self) -> None:
+        self.recording = Recording()
+        self.coarseness = 1
+        self.clock: Callable[[], float | None] | None = None
+        self.is_simulated = False
+        self._began = time.monotonic()
+
+    @property
+    def now(self) -> float:
+        """The time, to be given to ``seconds`` when the test is over.
+
+        Nobody knows before whether anything will tell the simulated time. Until something does, it is that of
+        the wall clock, below zero so that it is known for what it is.
+        """
+        told = self._told()
+        return self._began - time.monotonic() - _WALL if told is None else told
+
+    def seconds(self, time: float | None) -> float | None:
+        """What a time means: seconds since the test began, simulated if there are any."""
+        if time is None or time >= 0.0:
+            return time
+        return 0.0 if self.is_simulated else -time - _WALL
+
+    def told_by(self, clock: Callable[[], float]) -> None:
+        """From now on this tells the simulated time, s."""
+        self.clock, self.is_simulated = clock, True
+
+    def _told(self) -> float | None:
+        return self.clock() if self.clock is not None else None
+
+    @property
+    def end(self) -> float:
+        """The last moment on it, s; 0 if there is none."""
+        return self.recording.times[-1] if self.recording.times else 0.0
+
+    def track(self, name: str, kind: Kind, unit: str, size: tuple[float, float, float] | None) -> Track:
+        """The track of this name; a new one was not there before now."""
+        found = self.recording.tracks.get(name)
+        if found is None:
+            values = array("f", [_NAN]) * (kind.width * len(self.recording.times))
+            found = self.recording.tracks[name] = Track(name, kind, values, unit, size)
+        return found
+
+    def close_moment(self, now: float) -> None:
+        """All tracks have been read at this moment, bar those of other feeds."""
+        times = self.recording.times
+        times.append(now)
+        for track in self.recording.tracks.values():
+            missing = track.kind.width * len(times) - len(track.values)
+            if missing:
+                track.values.extend([_NAN] * missing)
+        if len(times) >= _MOST_MOMENTS:
+            self._thin()
+
+    def note(self, now: float, what: str, text: str) -> None:
+        """Something happened."""
+        if len(self.recording.moments) < _MOST_EVENTS:
+            self.recording.moments.append(Moment(now, what, text))
+        else:
+            last = self.recording.moments[-1].time
+            self.problem(f"more than {_MOST_EVENTS} events in a test: those after {last:.4g} s are left out")
+
+    def block(self, block: Block) -> None:
+        """Something that stands around."""
+        if block not in self.recording.blocks:
+            self.recording.blocks = (*self.recording.blocks, block)
+
+    def problem(self, text: str) -> None:
+        """Something cannot be recorded."""
+        if text not in self.recording.problems:
+            self.recording.problems.append(text)
+
+    def _thin(self) -> None:
+        """Keep every second moment."""
+        recording = self.recording
+        count = len(recording.times)
+        recording.times = recording.times[::2]
+        for track in recording.tracks.values():
+            width = track.kind.width
+            kept: array[float] = array("f")
+            for number in range(0, count, 2):
+                kept.extend(track.values[number * width : (number + 1) * width])
+            track.values = kept
+        self.coarseness *= 2
+
+
+_tape: Tape | None = None
+
+
+def running() -> Tape | None:
+    """The tape of the running test; None if nothing is recorded."""
+    return _tape
+
+
+def begin() -> Tape:
+    """A test begins that is to be recorded."""
+    global _tape  # noqa: PLW0603  # simulators know this module, not an object of ours
+    _tape = Tape()
+    return _tape
+
+
+def stop() -> Tape | None:
+    """Nothing is recorded from now on. Returns what was."""
+    global _tape  # see above
+    found, _tape = _tape, None
+    return found

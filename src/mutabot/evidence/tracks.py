@@ -1,0 +1,185 @@
+"""Tracks side by side: how far things were from where they are in the original, at the same time."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import acos, degrees, dist, inf, isnan
+
+from mutabot.model.diverged import Apart, Near
+
+from .path import Point, aside, simple
+from .recording import Block, Kind, Recording, Track
+
+#: differences that count as the same: m, degrees, and the share of a value's own range
+LENGTH, ANGLE, SHARE = 0.001, 0.5, 0.01
+#: what the name of an orientation ends with
+TURNED = " turned"
+#: how much closer than in the original an approach must be to be told, m
+_CLOSER = 0.005
+
+
+@dataclass(frozen=True)
+class Path:
+    """Where one thing was over time.
+
+    Attributes:
+        track: its numbers.
+        times: when, s.
+    """
+
+    track: Track
+    times: Sequence[float]
+
+    @cached_property
+    def rows(self) -> list[tuple[float, ...]]:
+        """The numbers of each moment at which it was there."""
+        width, values = self.track.kind.width, self.track.values
+        rows = (tuple(values[number * width : (number + 1) * width]) for number in range(len(self.times)))
+        return [row for row in rows if not isnan(row[0])]
+
+    @cached_property
+    def when(self) -> list[float]:
+        """The moments at which it was there."""
+        width, values = self.track.kind.width, self.track.values
+        return [time for number, time in enumerate(self.times) if not isnan(values[number * width])]
+
+    @cached_property
+    def points(self) -> list[Point]:
+        """Its positions, m."""
+        return [(row[0], row[1], row[2]) for row in self.rows]
+
+    @cached_property
+    def outline(self) -> list[Point]:
+        """The same with fewer points, to half of the tolerance."""
+        return simple(self.points, LENGTH / 2)
+
+    def at(self, time: float) -> int:
+        """The number of the row that holds at a time: the last one before or at it, else the first."""
+        return max(0, bisect_right(self.when, time + 1e-6) - 1)
+
+
+def paths_of(recording: Recording) -> dict[str, Path]:
+    """Everything that was tracked, by name, if it was ever there."""
+    found = {name: Path(track, recording.times) for name, track in recording.tracks.items()}
+    return {name: path for name, path in found.items() if path.rows}
+
+
+def differences(
+    original: dict[str, Path],
+    mutant: dict[str, Path],
+    noise: Mapping[str, float] | None = None,
+    until: float = inf,
+) -> list[Apart]:
+    """What was apart by more than its tolerance, worst first.
+
+    Args:
+        noise: by how much each is apart in equal runs of the original.
+        until: s from when on nothing is compared.
+    """
+    found = []
+    for name in original.keys() & mutant.keys():
+        before, after = original[name], mutant[name]
+        if before.track.kind is not after.track.kind:
+            continue
+        for measure in _measures(before):
+            tolerance = max(measure.tolerance, 2.0 * (noise or {}).get(measure.name, 0.0))
+            one = _apart(measure, before, after, tolerance, until)
+            if one is not None:
+                found.append(one)
+    return sorted(found, key=lambda one: (-one.worst, one.name))
+
+
+def noise_of(one: dict[str, Path], other: dict[str, Path]) -> dict[str, float]:
+    """By how much each thing is apart in two equal runs."""
+    return {
+        measure.name: max((gap for _, gap in _gaps(measure, one[name], other[name])), default=0.0)
+        for name in one.keys() & other.keys()
+        for measure in _measures(one[name])
+    }
+
+
+def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Sequence[Block]) -> list[Near]:
+    """Closest approaches that are closer than in the original, closest first."""
+    found = []
+    for name in original.keys() & mutant.keys():
+        if original[name].track.kind is Kind.VALUE:
+            continue
+        for block in blocks:
+            least, at = _least(mutant[name], block)
+            before, _ = _least(original[name], block)
+            if least < before - _CLOSER:
+                found.append(Near(name, block.name, least, at, before))
+    return sorted(found, key=lambda one: (one.distance, one.body, one.obstacle))
+
+
+@dataclass(frozen=True, slots=True)
+class _Measure:
+    """One way to tell two rows apart."""
+
+    name: str
+    unit: str
+    tolerance: float
+    between: Callable[[Sequence[float], Sequence[float]], float]
+    is_position: bool = False
+
+
+def _measures(path: Path) -> Iterator[_Measure]:
+    track = path.track
+    if track.kind is Kind.VALUE:
+        values = [row[0] for row in path.rows]
+        tolerance = SHARE * (max(values) - min(values)) or 1e-6
+        yield _Measure(track.name, track.unit, tolerance, lambda one, other: abs(one[0] - other[0]))
+        return
+    yield _Measure(track.name, "m", LENGTH, lambda one, other: dist(one[:3], other[:3]), True)
+    if track.kind is Kind.POSE:
+        yield _Measure(f"{track.name}{TURNED}", "deg", ANGLE, _turned)
+
+
+def _turned(one: Sequence[float], other: Sequence[float]) -> float:
+    """The angle between two orientations, deg."""
+    dot = abs(sum(a * b for a, b in zip(one[3:7], other[3:7], strict=True)))
+    return degrees(2.0 * acos(min(1.0, dot)))
+
+
+def _gaps(measure: _Measure, before: Path, after: Path) -> Iterator[tuple[float, float]]:
+    """Time and difference, at all moments of either; what has ended stays as it was."""
+    between, rows, others = measure.between, before.rows, after.rows
+    for time in sorted({*before.when, *after.when}):
+        one, other = rows[before.at(time)], others[after.at(time)]
+        yield time, 0.0 if one == other else between(one, other)
+
+
+def _apart(measure: _Measure, before: Path, after: Path, tolerance: float, until: float) -> Apart | None:
+    gaps = [(time, gap) for time, gap in _gaps(measure, before, after) if time <= until]
+    first = next((time for time, gap in gaps if gap > tolerance), None)
+    if first is None:
+        return None
+    at, largest = max(gaps, key=lambda one: one[1])
+    beside = _aside(measure, before, after)
+    return Apart(measure.name, measure.unit, first, largest, at, gaps[-1][1], beside, tolerance)
+
+
+def _aside(measure: _Measure, before: Path, after: Path) -> float | None:
+    """How far something went where it never is in the original."""
+    if measure.is_position:
+        return max(aside(one, before.outline) for one in after.outline)
+    if before.track.kind is not Kind.VALUE:
+        return None
+    usual = [row[0] for row in before.rows]
+    least, most = min(usual), max(usual)
+    return max(max(0.0, least - row[0], row[0] - most) for row in after.rows)
+
+
+def _least(path: Path, block: Block) -> tuple[float, float]:
+    """The least distance of a path from a block, m, and when."""
+    size = path.track.size or (0.0, 0.0, 0.0)
+    half = [0.5 * (one + other) for one, other in zip(size, block.size, strict=True)]
+    found = (
+        (sum(max(0.0, abs(x - c) - h) ** 2 for x, c, h in zip(point, block.centre, half, strict=True)), time)
+        for point, time in zip(path.points, path.when, strict=True)
+    )
+    square, time = min(found)
+    return float(square**0.5), time

@@ -1,0 +1,58 @@
+"""The recording of the running test: what feeds tell of the world."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from mutabot.evidence import tape as tapes
+from mutabot.evidence.recording import Told, to_text
+from mutabot.evidence.tape import Tape
+
+
+class TestRecording:
+    """The recording of the running test; nothing is recorded where it is not asked for."""
+
+    __test__ = False
+
+    def __init__(self) -> None:
+        self._tape: Tape | None = None
+
+    def start(self, is_wanted: bool, clock: Callable[[], float | None], *, is_simulated: bool) -> None:
+        """A test begins.
+
+        Args:
+            clock: tells its simulated time, s, as long as no feed does.
+            is_simulated: whether it is known that there is such a time.
+        """
+        tapes.stop()
+        self._tape = tapes.begin() if is_wanted else None
+        if self._tape is not None:
+            self._tape.clock, self._tape.is_simulated = clock, is_simulated
+
+    def stop(self) -> None:
+        """The test is over; its world may be taken down."""
+        tapes.stop()
+
+    def clock(self) -> float | None:
+        """The time, as the tape has it; None where nothing is recorded."""
+        tape = tapes.running()
+        return tape.now if tape is not None else None
+
+    def note_fault(self, calls: int, time: float | None) -> None:
+        """The mutant has changed something, for the first time or once more, after so many calls."""
+        if self._tape is not None and self._tape.recording.faulty_call is None:
+            self._tape.recording.faulty_call = calls
+            self._tape.recording.fault = time
+
+    def text(self, calls: Sequence[Told]) -> str | None:
+        """All of it and the calls, as ``TestEnd.recording``; None where nothing is recorded."""
+        if self._tape is None:
+            return None
+        tape, recording = self._tape, self._tape.recording
+        recording.is_simulated = tape.is_simulated
+        recording.fault = tape.seconds(recording.fault)
+        recording.calls = [
+            replace(one, began=tape.seconds(one.began), ended=tape.seconds(one.ended)) for one in calls
+        ]
+        return to_text(recording)

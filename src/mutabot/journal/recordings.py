@@ -1,0 +1,157 @@
+"""Recordings of a campaign: a file beside the journal, which may be deleted at any time.
+
+A recording is one row, compressed: nothing is lost when a campaign is killed, what is no longer wanted makes
+room, and reports read one without the others. Of a mutant only what differs from the original is kept.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from enum import IntEnum
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from .database import connect, connect_to_read, guarded
+
+_TABLE = """
+CREATE TABLE IF NOT EXISTS recording (
+    mutant TEXT, round INTEGER, test TEXT, rank INTEGER, size INTEGER, data BLOB,
+    PRIMARY KEY (mutant, round, test)
+) WITHOUT ROWID
+"""
+#: stands for the original in the place of a mutant's id
+ORIGINAL = ""
+
+
+class Rank(IntEnum):
+    """What goes last when room is needed."""
+
+    OTHER = 0
+    SURVIVOR = 1
+    ORIGINAL = 2
+
+
+def recordings_path(journal: Path) -> Path:
+    """Where the recordings of a journal's campaigns lie."""
+    return journal.with_name(f"{journal.stem}-evidence.sqlite")
+
+
+class Recordings:
+    """The file, opened; use as a context manager. Every method raises JournalError when it cannot be used.
+
+    Attributes:
+        path: the file.
+    """
+
+    def __init__(self, path: Path, connection: sqlite3.Connection, limit: int = 0) -> None:
+        self.path, self._connection, self._limit = path, connection, limit
+        self._copy: object = None
+        self._used = 0
+
+    @classmethod
+    def to_write(cls, journal: Path, limit: int) -> Recordings:
+        """Those of this journal, to add to; the file is made if there is none.
+
+        Args:
+            limit: bytes that all recordings together may take.
+        """
+        path = recordings_path(journal)
+        with guarded(path):
+            found = cls(path, connect(path), limit)
+            found._connection.execute("PRAGMA auto_vacuum = INCREMENTAL")
+            found._connection.execute(_TABLE)
+            found._used = found._total()
+        return found
+
+    @classmethod
+    def to_read(cls, journal: Path) -> Recordings | None:
+        """Those of this journal; None if there are none."""
+        path = recordings_path(journal)
+        if not path.is_file():
+            return None
+        with guarded(path):
+            connection, copy = connect_to_read(path)
+            found = cls(path, connection)
+            found._copy = copy
+        return found
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._connection.close()
+
+    @property
+    def used(self) -> int:
+        """Bytes of all recordings together."""
+        return self._used
+
+    def forget(self, mutant: str, round: int) -> None:
+        """Drop what is there of a mutant, or of the original, in a round."""
+        self._change("DELETE FROM recording WHERE mutant = ? AND round = ?", mutant, round)
+
+    def add(self, mutant: str, round: int, test: str, rank: Rank, data: bytes) -> bool:
+        """Add one; of lower ranks, others make room for it. Returns whether there was room."""
+        if self._used + len(data) > self._limit and not self._make_room(rank, len(data)):
+            return False
+        with guarded(self.path):
+            self._connection.execute(
+                "INSERT OR REPLACE INTO recording VALUES (?, ?, ?, ?, ?, ?)",
+                (mutant, round, test, int(rank), len(data), data),
+            )
+        self._used += len(data)
+        return True
+
+    def tests(self, mutant: str, round: int) -> tuple[str, ...]:
+        """The tests of which there is one."""
+        rows = self._rows("SELECT test FROM recording WHERE mutant = ? AND round = ?", mutant, round)
+        return tuple(test for (test,) in rows)
+
+    def data(self, mutant: str, round: int, test: str) -> bytes | None:
+        """One, as ``evidence.recording.to_bytes`` wrote it; None if there is none."""
+        rows = self._rows(
+            "SELECT data FROM recording WHERE mutant = ? AND round = ? AND test = ?", mutant, round, test
+        )
+        return bytes(rows[0][0]) if rows else None
+
+    def keep_only(self, mutants: set[str]) -> None:
+        """Drop those of all other mutants."""
+        for (mutant,) in self._rows("SELECT DISTINCT mutant FROM recording WHERE mutant != ''"):
+            if mutant not in mutants:
+                self._change("DELETE FROM recording WHERE mutant = ?", mutant)
+
+    def _make_room(self, rank: Rank, size: int) -> bool:
+        for lower in range(rank):
+            rows = self._rows(
+                "SELECT mutant, round, test, size FROM recording WHERE rank = ? ORDER BY size DESC", lower
+            )
+            for mutant, round, test, freed in rows:
+                if self._used + size <= self._limit:
+                    break
+                with guarded(self.path):
+                    self._connection.execute(
+                        "DELETE FROM recording WHERE mutant = ? AND round = ? AND test = ?",
+                        (mutant, round, test),
+                    )
+                self._used -= freed
+        self._change("PRAGMA incremental_vacuum")
+        return self._used + size <= self._limit
+
+    def _change(self, statement: str, *values: object) -> None:
+        with guarded(self.path):
+            self._connection.execute(statement, values)
+            self._used = self._total()
+
+    def _total(self) -> int:
+        return int(self._rows("SELECT coalesce(sum(size), 0) FROM recording")[0][0])
+
+    def _rows(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
+        with guarded(self.path):
+            return self._connection.execute(statement, values).fetchall()
