@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.model.check import Check
+from mutabot.model.seen.check import Check
 from mutabot.model.verdict import By
 
 from .footprint import Footprint

@@ -19,7 +19,7 @@ from .monitors import Condition, Monitors, Values
 from .scene import Box, Scene
 from .sensors import Sensors, true_box_position, true_box_tilt, true_tool_pose, true_tool_position
 from .simulation import Simulation
-from .telling import tell_of
+from .telling.feed import tell_of
 
 _current: weakref.ref[Cell] | None = None
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from math import inf
 from typing import Any
 
-from mutabot.model.diverged import Apart, Diverged
+from mutabot.model.seen.diverged import Apart, Diverged
 from mutabot.model.values.quantity import told_apart, value_text
 
 from .recording import Recording, Told

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Protocol
 
-from mutabot.model.diverged import Apart, Near
+from mutabot.model.seen.diverged import Apart, Near
 
 from .recording import Block, Moment, Recording
 from .tracks import TURNED, Path
@@ -155,7 +155,7 @@ def _apart(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[str]:
         if one.unit != "m" and final > one.tolerance:
             yield _ended(one.name, final, one.unit)
         elif final > one.tolerance and strayed > 2.0 * final:
-            yield f"{one.name} was {_amount(strayed)} off its way; ended {_amount(final)} from where it should"
+            yield f"{one.name} was {_amount(strayed)} off its way; ended {_amount(final)} away"
         elif final > one.tolerance:
             yield f"{one.name} ended {_amount(final)} from where it ends in the original"
         elif strayed > one.tolerance and one.unit == "m":

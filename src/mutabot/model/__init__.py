@@ -19,9 +19,6 @@ from .call import Mishap as Mishap
 from .call import NotToldError as NotToldError
 from .call import Proceed as Proceed
 from .call import Reply as Reply
-from .check import Check as Check
-from .check import Looked as Looked
-from .diverged import Diverged as Diverged
 from .mutant import Mutant as Mutant
 from .operation import Case as Case
 from .operation import Clock as Clock
@@ -33,6 +30,9 @@ from .outcome import Compared as Compared
 from .outcome import Kill as Kill
 from .outcome import LeftOut as LeftOut
 from .outcome import Outcome as Outcome
+from .seen.check import Check as Check
+from .seen.check import Looked as Looked
+from .seen.diverged import Diverged as Diverged
 from .site import Role as Role
 from .site import Site as Site
 from .site import Span as Span

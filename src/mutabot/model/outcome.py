@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from .check import Looked
-from .diverged import Diverged
+from .seen.check import Looked
+from .seen.diverged import Diverged
 from .verdict import By, Verdict
 
 

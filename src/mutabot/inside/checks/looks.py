@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from mutabot.model.check import Check
+from mutabot.model.seen.check import Check
 
 from .helpers import margin_of_helper
 from .margins import in_words, margin, of_tolerance

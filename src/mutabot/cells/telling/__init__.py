@@ -1,0 +1,1 @@
+"""What the cell tells mutabot of itself while a test is recorded."""
