@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,8 @@ import pytest
 from analysis import samples
 from mutabot.analysis.results import read_results
 from mutabot.journal.journal import Journal
-from mutabot.model import Outcome, Verdict
+from mutabot.model import Diverged, Outcome, Verdict
+from mutabot.model.seen.diverged import Apart, Near
 from mutabot.report.as_json import dumps, results_data
 from mutabot.report.terminal.listing import plan_data
 
@@ -47,6 +49,19 @@ DRAWING = {
     }
 }
 DOCUMENT = Path(__file__).parents[2] / "docs" / "json.md"
+
+
+DIVERGED = (
+    Diverged(
+        test="tests/test_box.py::test_it",
+        at=1.5,
+        what="box is not where it is in the original",
+        story="box ended 0.3 m from where it ends in the original",
+        apart=(Apart("box", "m", 1.5, 0.5, 2.0, 0.3, 0.4, 0.001),),
+        near=(Near("box", "table", 0.01, 2.5, 0.1),),
+        fault=1.0,
+    ),
+)
 
 
 def data(path: Path, **changes: Any) -> Any:
@@ -149,9 +164,14 @@ def test_the_plan_has_the_same_keys_for_a_mutant(tmp_path: Path) -> None:
 
 def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
     documented = set(re.findall(r"^\| `(\w+)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE))
-    found = data(tmp_path, **SECOND_LOOK, **DRAWING)
+    outcomes = tuple(
+        replace(one, diverged=DIVERGED) if one.verdict is Verdict.SURVIVED else one
+        for one in samples.OUTCOMES
+    )
+    found = data(tmp_path, outcomes=outcomes, **SECOND_LOOK, **DRAWING)
     outcomes = [one for mutant in found["mutants"] for one in mutant["rounds"]]
     all_looked = [looked for one in outcomes for looked in one.get("looked", ())]
+    diverged = [one for outcome in outcomes for one in outcome.get("diverged", ())]
     parts = [found, *found["mutants"], *found["groups"], *found["rounds"], *found["left_out"]]
     parts += [
         *found["controls"],
@@ -165,6 +185,7 @@ def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
         *found["baseline"],
         *outcomes,
         *(one for looked in all_looked for one in (looked, *looked["checks"])),
+        *(one for found in diverged for one in (found, *found["apart"], *found["near"])),
         *(one["compared"] for one in outcomes if one.get("compared")),
     ]
     assert {key for part in parts for key in part} == documented

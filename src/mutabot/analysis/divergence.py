@@ -59,10 +59,12 @@ def rank(outcomes: Sequence[Outcome]) -> float:
 def worst_of(outcome: Outcome) -> float:
     """How far the world was from the original's at the worst moment, in multiples of the tolerance.
 
-    What went the same way at other times is not far.
+    What was recorded of the world tells more than probes do, of which one may be a clock: what went the same
+    way at other times is not far.
     """
-    recorded = max((one.worst for one in outcome.diverged), default=0.0)
-    return max(outcome.distance or 0.0, outcome.way or 0.0, recorded)
+    if any(one.apart for one in outcome.diverged):
+        return max(one.worst for one in outcome.diverged)
+    return max(outcome.distance or 0.0, outcome.way or 0.0)
 
 
 def story_of(outcome: Outcome) -> str:

@@ -29,7 +29,7 @@ def replay(
     from mutabot.journal.reader import JournalReader
     from mutabot.report.as_json import replayed_data
     from mutabot.report.terminal.console import make_console
-    from mutabot.report.terminal.detail import print_replayed
+    from mutabot.report.terminal.mutant.detail import print_replayed
 
     path = find_journal(context.obj)
     with JournalReader.open(path) as journal:

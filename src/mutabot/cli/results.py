@@ -25,11 +25,13 @@ def show(
 ) -> None:
     """Show everything about one mutant."""
     from mutabot.analysis.results import find_mutant, read_results
+    from mutabot.analysis.stored.evidence import StoredEvidence
     from mutabot.journal.reader import JournalReader
     from mutabot.report.terminal.console import make_console
-    from mutabot.report.terminal.detail import print_mutant
+    from mutabot.report.terminal.mutant.detail import print_mutant
 
-    with JournalReader.open(find_journal(context.obj)) as journal:
+    path = find_journal(context.obj)
+    with JournalReader.open(path) as journal:
         found = read_results(journal, earlier=True)
         result = find_mutant(found, mutant)
         is_there = not result.outdated or result.mutant.family in found.meta.get("families", ())
@@ -39,4 +41,5 @@ def show(
 
         print_json(result_data(result))
     else:
-        print_mutant(make_console(), result, source)
+        with StoredEvidence(path) as evidence:
+            print_mutant(make_console(), result, source, evidence)

@@ -14,6 +14,8 @@ from .tape import Tape
 Triple = tuple[float, float, float]
 #: seconds that a new simulation in the same test comes after the one before
 _GAP = 1e-3
+#: by so much may sums of time steps be off
+_HAIR = 1e-6
 
 
 @dataclass(slots=True)
@@ -91,9 +93,9 @@ class Feed:
         elif now < self._last:
             self._go_on(tape, now)
         self._last = now
-        if now >= self._due:
+        if now >= self._due - _HAIR:
             step = self._interval * tape.coarseness
-            self._due = (floor(now / step + 1e-9) + 1) * step
+            self._due = (floor(now / step + _HAIR) + 1) * step
             self._sample(tape, self._offset + now)
 
     def _present(self) -> Tape | None:
@@ -112,6 +114,13 @@ class Feed:
         for block in self._blocks:
             tape.block(block)
         tape.told_by(lambda: self._offset + self._time())
+        tape.at_end.append(lambda: self._finish(tape))
+
+    def _finish(self, tape: Tape) -> None:
+        """The test is over: where everything ended."""
+        now = self._offset + self._time()
+        if tape is self._tape and now > tape.end + _HAIR:
+            self._sample(tape, now)
 
     def _go_on(self, tape: Tape, now: float) -> None:
         """The simulated time went back: what comes now comes after all that was."""

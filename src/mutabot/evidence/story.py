@@ -114,10 +114,10 @@ def _let_go(mutant: _Contacts, original: _Contacts, told: Told, usual: Told) -> 
             continue
         height, name = _height(held, loose, told)
         before = _height(held, due, usual)[0] if due is not None else None
-        above = f", {_amount(height)} above {name}" if height is not None else ""
+        above = f", {amount(height)} above {name}" if height is not None else ""
         is_meant = due is not None and _calls_at(loose, told) & _calls_at(due, usual)
         if is_meant and height is not None and before is not None and abs(height - before) > _HIGHER:
-            yield f"{held} was let go at {loose:.1f} s{above}, in the original {_amount(before)}"
+            yield f"{held} was let go at {loose:.1f} s{above}, in the original {amount(before)}"
         elif not is_meant and loose < (original.end if due is None else due) - _EARLIER:
             yield f"{held} slipped from {holder} at {loose:.1f} s{above}"
 
@@ -155,11 +155,11 @@ def _apart(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[str]:
         if one.unit != "m" and final > one.tolerance:
             yield _ended(one.name, final, one.unit)
         elif final > one.tolerance and strayed > 2.0 * final:
-            yield f"{one.name} was {_amount(strayed)} off its way; ended {_amount(final)} away"
+            yield f"{one.name} was {amount(strayed)} off its way; ended {amount(final)} away"
         elif final > one.tolerance:
-            yield f"{one.name} ended {_amount(final)} from where it ends in the original"
+            yield f"{one.name} ended {amount(final)} from where it ends in the original"
         elif strayed > one.tolerance and one.unit == "m":
-            yield f"{one.name} was {_amount(strayed)} off its way" + (
+            yield f"{one.name} was {amount(strayed)} off its way" + (
                 ", and ended where it should" if is_whole else ""
             )
 
@@ -167,8 +167,8 @@ def _apart(apart: Sequence[Apart], *, is_whole: bool) -> Iterator[str]:
 def _ended(name: str, final: float, unit: str) -> str:
     thing = name.removesuffix(TURNED)
     if thing != name:
-        return f"{thing} ended turned by {_amount(final, unit)}"
-    return f"{name} ended {_amount(final, unit)} off"
+        return f"{thing} ended turned by {amount(final, unit)}"
+    return f"{name} ended {amount(final, unit)} off"
 
 
 def _close(near: Sequence[Near], contacts: _Contacts) -> Iterator[str]:
@@ -176,8 +176,8 @@ def _close(near: Sequence[Near], contacts: _Contacts) -> Iterator[str]:
         pair = ", ".join(sorted((one.body, one.obstacle)))
         if one.distance < _CLOSE and pair not in contacts.spans:
             yield (
-                f"{one.body} came within {_amount(one.distance)} of {one.obstacle} at {one.at:.1f} s, "
-                f"in the original {_amount(one.original)}"
+                f"{one.body} came within {amount(one.distance)} of {one.obstacle} at {one.at:.1f} s, "
+                f"in the original {amount(one.original)}"
             )
 
 
@@ -220,8 +220,8 @@ def _partner(pair: str, thing: str) -> str:
     return other if one == thing else one
 
 
-def _amount(value: float, unit: str = "m") -> str:
+def amount(value: float, unit: str = "m") -> str:
     """``40 mm``, ``0.31 m``, ``12 deg``."""
     if unit == "m" and value < 0.1:
-        return f"{1e3 * value:.2g} mm"
+        return f"{1e3 * value if value >= 1e-4 else 0:.2g} mm"
     return f"{value:.3g} {unit}".strip()

@@ -27,6 +27,7 @@ class Tape:
         coarseness: how many times its interval a feed is to wait between two moments.
         clock: what tells the simulated time, s; None as long as no feed or simulator has told any.
         is_simulated: whether its times are simulated.
+        at_end: what is to be done once more when the test is over, while its world is still there.
     """
 
     def __init__(self) -> None:
@@ -34,6 +35,7 @@ class Tape:
         self.coarseness = 1
         self.clock: Callable[[], float | None] | None = None
         self.is_simulated = False
+        self.at_end: list[Callable[[], None]] = []
         self._began = time.monotonic()
 
     @property
@@ -51,6 +53,15 @@ class Tape:
         if time is None or time >= 0.0:
             return time
         return 0.0 if self.is_simulated else -time - _WALL
+
+    def finish(self) -> None:
+        """The test is over."""
+        for last in self.at_end:
+            try:
+                last()
+            except Exception as error:  # the user's code may fail in any way
+                self.problem(f"the end of a test cannot be recorded: {type(error).__name__}: {error}")
+        self.at_end.clear()
 
     def told_by(self, clock: Callable[[], float]) -> None:
         """From now on this tells the simulated time, s."""

@@ -124,6 +124,7 @@ def result_data(result: MutantResult) -> dict[str, Any]:
         "survivor": result.is_survivor,
         "indistinguishable": result.indistinguishable,
         "distance": result.distance if result.is_survivor else None,
+        "worst": result.worst if result.is_survivor else None,
         "why": result.why,
         "earlier": result.earlier,
         "outdated": result.outdated,
@@ -253,6 +254,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "stuck": outcome.stuck,
         "repeats": outcome.repeats,
         "looked": [to_data(one) for one in outcome.looked],
+        "diverged": [{**to_data(one), "worst": one.worst} for one in outcome.diverged],
     }
 
 

@@ -32,6 +32,9 @@ class TestRecording:
 
     def stop(self) -> None:
         """The test is over; its world may be taken down."""
+        tape = tapes.running()
+        if tape is not None:
+            tape.finish()
         tapes.stop()
 
     def clock(self) -> float | None:

@@ -29,8 +29,8 @@ from .console import (
     short_place,
 )
 from .errors import error_lines
-from .looked import unlooked_lines
 from .marks import legend, mark_of, marks_in
+from .mutant.looked import unlooked_lines
 from .repeats import repeat_lines
 
 #: verdicts outside the score that a user should look at, in this order

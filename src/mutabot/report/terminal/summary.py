@@ -14,7 +14,7 @@ from mutabot.model import Verdict
 from .campaign import RATES, group_name, sample_lines, survivor_lines, title, trust_lines
 from .console import between, heading, make_table, percent
 from .errors import error_lines
-from .looked import unlooked_lines
+from .mutant.looked import unlooked_lines
 
 #: survivors that are shown
 _SURVIVORS = 10

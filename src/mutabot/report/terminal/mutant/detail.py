@@ -14,23 +14,32 @@ from rich.text import Text
 from mutabot.analysis.divergence import change_text
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import KillRate
+from mutabot.analysis.stored.evidence import StoredEvidence
 from mutabot.journal.records import Replayed
 from mutabot.model import Kind, Mutant, Outcome, Quantity
 from mutabot.model.outcome import end_in_words
+from mutabot.report.terminal.console import between, heading, make_table, percent, plain
+from mutabot.report.terminal.marks import mark_of
 
-from .console import between, heading, make_table, percent, plain
 from .excerpt import excerpt
+from .happened import happened_parts
 from .looked import looked_parts
-from .marks import mark_of
 
 #: facts that a mutant of the program text has not
 _OF_CALLS = ("operation", "quantity")
 _NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
 
 
-def print_mutant(console: Console, result: MutantResult, source: str | None) -> None:
-    """Print one mutant; ``source`` is the text of its file, or None if it is not known."""
-    for part in _parts(result, source):
+def print_mutant(
+    console: Console, result: MutantResult, source: str | None, evidence: StoredEvidence | None = None
+) -> None:
+    """Print one mutant.
+
+    Args:
+        source: the text of its file, or None if it is not known.
+        evidence: the recordings of its campaign; None without any.
+    """
+    for part in _parts(result, source, evidence):
         console.print(part)
 
 
@@ -54,7 +63,9 @@ def _replayed_line(name: str, outcome: Outcome) -> RenderableType:
     return Padding(Text(plain("\n".join(parts)), overflow="fold"), (0, 0, 0, 2), expand=False)
 
 
-def _parts(result: MutantResult, source: str | None) -> Iterator[RenderableType]:
+def _parts(
+    result: MutantResult, source: str | None, evidence: StoredEvidence | None
+) -> Iterator[RenderableType]:
     mutant = result.mutant
     yield Text(f"Mutant {mutant.number}: {plain(mutant.description)}", style="bold", overflow="fold")
     yield _facts(result)
@@ -70,6 +81,7 @@ def _parts(result: MutantResult, source: str | None) -> Iterator[RenderableType]
         groups.setdefault(_alike(outcome), []).append(number)
     for numbers in groups.values():
         yield from _ended(numbers, result.rounds)
+    yield from happened_parts(result, evidence)
     yield from looked_parts(result)
 
 

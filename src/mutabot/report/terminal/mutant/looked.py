@@ -12,8 +12,7 @@ from rich.text import Text
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.unlooked import unlooked
 from mutabot.model import Check, Looked
-
-from .console import heading, make_table, plain
+from mutabot.report.terminal.console import heading, make_table, plain
 
 #: checks of a test that are shown; the journal and JSON have more
 _MOST = 15

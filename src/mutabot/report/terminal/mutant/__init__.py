@@ -1,0 +1,1 @@
+"""Everything about one mutant on the terminal, section by section."""

@@ -1,0 +1,202 @@
+"""What is recorded of a campaign: of the original, and of mutants that differ from it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from mutabot.analysis.stored.evidence import StoredEvidence
+from mutabot.campaign.run import run_campaign
+from mutabot.journal.journal import Journal
+from mutabot.journal.recordings import recordings_path
+from mutabot.model import Outcome, Verdict
+from tests.campaign.project import Quiet, request_for, write_project
+
+#: an arm that moves at 1 m/s and carries a part, and tells of both
+ROBOT = """
+    from mutabot.evidence import Feed
+
+    class Cell:
+        def __init__(self):
+            self.time, self.x, self.part, self.held = 0.0, 0.0, 0.5, False
+            self.feed = Feed(lambda: self.time)
+            self.feed.point("tool", lambda: (self.x, 0.0, 0.0))
+            self.feed.point("part", lambda: (self.part, 0.0, 0.0), size=(0.1, 0.1, 0.1))
+            self.feed.contacts(lambda: [("part", "gripper")] if self.held else [])
+            self.feed.block("wall", (2.0, 0.0, 0.0), (0.1, 1.0, 1.0))
+
+        def step(self):
+            self.time += 0.05
+            self.feed.tick()
+            return self.time
+
+    class Arm:
+        def __init__(self, cell):
+            self.cell = cell
+
+        def move_by(self, dx):
+            count = round(abs(dx) / 0.05)
+            for _ in range(count):
+                self.cell.x += dx / count
+                if self.cell.held:
+                    self.cell.part = self.cell.x
+                self.cell.step()
+
+        def grip(self, closed):
+            self.cell.held = closed and abs(self.cell.x - self.cell.part) < 0.01
+            self.cell.step()
+
+        def position(self):
+            return self.cell.x
+"""
+VOCABULARY = """
+    clock = { tick = "robot:Cell.step", unit = "s" }
+
+    [[operation]]
+    call = "robot:Arm.move_by"
+    arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
+
+    [[operation]]
+    call = "robot:Arm.grip"
+    arguments.closed = { kind = "opening", values = [false, true] }
+"""
+MISSION = """
+    def run(arm):
+        arm.move_by(0.5)
+        arm.grip(True)
+        arm.move_by(0.5)
+        arm.grip(False)
+        arm.move_by(-0.25)
+"""
+TESTS = """
+    import mission
+    from robot import Arm, Cell
+
+    def test_carries():
+        cell = Cell()
+        mission.run(Arm(cell))
+        assert cell.x > 0.5
+"""
+TEST = "tests/test_mission.py::test_carries"
+
+
+def project(folder: Path, configuration: str = "") -> Path:
+    lines = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\npytest_args = ["-o", "pythonpath=."]\n'
+    return write_project(
+        folder, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY, configuration=lines + configuration
+    )
+
+
+def ran(folder: Path, engine: str = "auto", **details: object) -> dict[str, Outcome]:
+    """The outcomes by mutant, of a campaign that records."""
+    request = replace(request_for(folder, engine=engine), evidence=True, **details)  # type: ignore[arg-type]
+    with Journal.open(run_campaign(request, Quiet())) as journal:
+        return {outcome.mutant.partition("run:")[2]: outcome for outcome in journal.outcomes()}
+
+
+def evidence(folder: Path) -> StoredEvidence:
+    return StoredEvidence(folder / ".mutabot" / "journal.sqlite")
+
+
+@pytest.mark.parametrize("engine", ["replay", "branch"])
+def test_both_engines_tell_the_same_of_what_happened(tmp_path: Path, engine: str) -> None:
+    found = ran(project(tmp_path), engine)
+    dropped = found["arm.grip#2:call:skip"]
+    assert dropped.verdict is Verdict.SURVIVED
+    (diverged,) = dropped.diverged
+    assert diverged.story.startswith("part was never let go by gripper, in the original at 1.1 s")
+    assert diverged.fault == pytest.approx(1.0)
+    assert diverged.is_simulated
+    (part,) = [one for one in diverged.apart if one.name == "part"]
+    assert part.final == pytest.approx(0.25)
+    missed = found["arm.grip#1:call:skip"].diverged[0]
+    assert missed.story.startswith("gripper and part never touched, in the original at ")
+
+
+def test_a_mutant_that_was_killed_is_recorded_up_to_its_end(tmp_path: Path) -> None:
+    folder = project(tmp_path)
+    killed = ran(folder)["arm.move_by#2:dx:reverse"]
+    assert killed.verdict is Verdict.KILLED
+    with evidence(folder) as stored:
+        pair = stored.pair(killed.mutant, 0, TEST)
+    assert pair.original is not None
+    assert pair.mutant is not None
+    assert pair.mutant.faulty_call == 2
+    assert [one.operation for one in pair.mutant.calls] == [one.operation for one in pair.original.calls]
+    assert pair.mutant.tracks["tool"].values[-3] == pytest.approx(-0.25, abs=0.051)
+
+
+def test_what_differs_in_nothing_is_not_kept(tmp_path: Path) -> None:
+    folder = project(tmp_path)
+    same = ran(folder)["arm.grip#2:call:repeat"]
+    again = same.diverged[0]  # it takes a step longer
+    assert again.story == "all went the same way, at other times"
+    mission = (folder / "mission.py").read_text()
+    (folder / "mission.py").write_text(
+        mission.replace("arm.move_by(-0.25)", "arm.move_by(-0.25); arm.move_by(1e-9)")
+    )
+    still = ran(folder)["arm.move_by#4:dx:reverse"]
+    assert (still.verdict, still.diverged) == (Verdict.SURVIVED, ())
+    with evidence(folder) as stored:
+        assert stored.tests(still.mutant, 0) == ()
+        assert stored.tests(again.test and same.mutant, 0) == (TEST,)
+
+
+def test_outcomes_that_are_taken_over_keep_their_recordings(tmp_path: Path) -> None:
+    folder = project(tmp_path)
+    first = ran(folder)
+    path = recordings_path(folder / ".mutabot" / "journal.sqlite")
+    written = path.stat().st_size
+    second = ran(folder)
+    assert second == first
+    assert path.stat().st_size <= 2 * written
+    with evidence(folder) as stored:
+        assert stored.pair(first["arm.grip#2:call:skip"].mutant, 0, TEST).mutant is not None
+
+
+def test_where_room_is_short_survivors_stay_and_the_rest_is_said(tmp_path: Path) -> None:
+    folder = project(tmp_path, 'evidence = "7 kB"\n')
+    request = replace(request_for(folder), evidence=True)
+    progress = Quiet()
+    with Journal.open(run_campaign(request, progress)) as journal:
+        outcomes = journal.outcomes()
+    with evidence(folder) as stored:
+        kept = {one.mutant for one in outcomes if stored.tests(one.mutant, 0)}
+        assert stored.tests("", 0) == (TEST,)
+    ends = {one.mutant: one.verdict for one in outcomes}
+    missing = {name for name, one in ends.items() if name not in kept and one is Verdict.SURVIVED}
+    if any(ends[name] is Verdict.KILLED for name in kept):
+        assert not missing
+    assert any("set `evidence` to more" in line for line in progress.lines)
+    assert all(one.diverged for one in outcomes if one.verdict is Verdict.KILLED)
+
+
+def test_nothing_is_recorded_where_that_is_not_asked_for(tmp_path: Path) -> None:
+    folder = project(tmp_path)
+    with Journal.open(run_campaign(request_for(folder), Quiet())) as journal:
+        assert all(one.diverged == () for one in journal.outcomes())
+    assert not recordings_path(folder / ".mutabot" / "journal.sqlite").exists()
+
+
+def test_a_program_without_a_feed_is_recorded_by_its_calls(tmp_path: Path) -> None:
+    robot = ROBOT.replace("self.feed.tick()", "pass")
+    lines = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\npytest_args = ["-o", "pythonpath=."]\n'
+    folder = write_project(tmp_path, MISSION, TESTS, robot=robot, vocabulary=VOCABULARY, configuration=lines)
+    ran(folder)
+    with evidence(folder) as stored:
+        original = stored.pair("", 0, TEST).original
+    assert original is not None
+    assert not original.times
+    # the clock of the vocabulary tells the time since its first tick
+    assert [one.began for one in original.calls] == pytest.approx([0.0, 0.45, 0.5, 1.0, 1.05])
+
+
+def test_a_feed_that_fails_is_said_once(tmp_path: Path) -> None:
+    robot = ROBOT.replace("(self.part, 0.0, 0.0), size", "(self.part, 0.0), size")
+    lines = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\npytest_args = ["-o", "pythonpath=."]\n'
+    folder = write_project(tmp_path, MISSION, TESTS, robot=robot, vocabulary=VOCABULARY, configuration=lines)
+    progress = Quiet()
+    run_campaign(replace(request_for(folder), evidence=True), progress)
+    assert progress.lines.count("part cannot be recorded: 2 numbers instead of 3") == 1

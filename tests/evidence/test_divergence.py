@@ -1,0 +1,131 @@
+"""How a mutant's world differs from the original's: when, how far, and what happened, in a sentence."""
+
+from __future__ import annotations
+
+import pytest
+
+from mutabot.evidence.divergence import Seen, diverged, noise_between
+from mutabot.evidence.recording import Recording, Told
+from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded, story
+
+#: up from the shelf, over to the table, down, and away
+UP: Place = (0.0, 0.0, 0.825)
+OVER: Place = (1.0, 0.0, 0.325)
+WAY = [SHELF, *line(SHELF, UP, 1.0), *line(UP, OVER, 2.0), *line(OVER, TABLE, 1.0)]
+CARRIED = [*WAY, *line(TABLE, OVER, 1.0)]
+BOX = [*WAY, *[TABLE] * 10]
+HELD, LYING, THERE = ("box", "gripper"), ("box", "shelf"), ("box", "table")
+
+
+def held_until(number: int, lands: int | None = 40) -> object:
+    """Held until a moment; on the table from another one."""
+
+    def touching(now: int) -> set[tuple[str, str]]:
+        found = {LYING} if now == 0 else set()
+        if now < number:
+            found.add(HELD)
+        if lands is not None and now >= lands:
+            found.add(THERE)
+        return found
+
+    return touching
+
+
+ORIGINAL = recorded(CARRIED, BOX, held_until(41), [Told(4.0, 4.2, "arm:open", "mission.py:9", None, {}, {})])  # type: ignore[arg-type]
+
+
+def test_equal_recordings_do_not_differ() -> None:
+    assert apart(ORIGINAL, recorded(CARRIED, BOX, held_until(41), ORIGINAL.calls)) is None  # type: ignore[arg-type]
+
+
+def test_a_box_that_slips_is_told_with_its_height() -> None:
+    fallen: Place = (0.5, 0.0, -2.0)
+    over_shelf = WAY[:16]
+    box = [*over_shelf, *line(over_shelf[-1], fallen, 1.0), *[fallen] * 60][: len(CARRIED)]
+    text = story(ORIGINAL, recorded(CARRIED, box, held_until(16, None), ORIGINAL.calls))  # type: ignore[arg-type]
+    assert text.startswith(
+        "box and table never touched, in the original at 4.0 s; box slipped from gripper at 1.6 s"
+    )
+    assert "box ended" in text
+
+
+def test_a_box_that_is_let_go_too_high_is_not_said_to_slip() -> None:
+    dropped = [*WAY[:31], *[TABLE] * 20][: len(CARRIED)]
+    opened = [Told(3.0, 3.2, "arm:open", "mission.py:9", None, {}, {})]
+    text = story(ORIGINAL, recorded(CARRIED, dropped, held_until(31, 32), opened))  # type: ignore[arg-type]
+    assert "box was let go at 3.1 s, 0.3 m above table, in the original 0 mm" in text
+    assert "slipped" not in text
+
+
+def test_a_box_that_is_held_to_the_end_is_told() -> None:
+    text = story(ORIGINAL, recorded(CARRIED, CARRIED, held_until(99, 40), ORIGINAL.calls))  # type: ignore[arg-type]
+    assert "box was never let go by gripper, in the original at 4.1 s" in text
+
+
+def test_what_is_merely_late_is_no_distance() -> None:
+    late = [CARRIED[0]] * 5 + CARRIED
+    found = apart(recorded(CARRIED), recorded(late))
+    assert found is not None
+    assert found.story == "all went the same way, at other times"
+    assert found.worst <= 1.0
+    (tool,) = found.apart
+    assert tool.largest > 0.1
+    assert tool.aside == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_detour_is_as_far_as_it_leads() -> None:
+    detour = [*CARRIED[:20], *((x, 0.2, z) for x, _, z in CARRIED[20:25]), *CARRIED[25:]]
+    found = apart(recorded(CARRIED), recorded(detour))
+    assert found is not None
+    assert found.apart[0].aside == pytest.approx(0.2, abs=0.01)
+    assert found.story == "tool was 0.2 m off its way, and ended where it should"
+    assert found.at == pytest.approx(2.0, abs=0.11)
+
+
+def test_of_a_test_that_was_cut_only_what_was_is_compared() -> None:
+    found = apart(recorded(CARRIED), recorded(CARRIED[:20]), is_cut=True)
+    assert found is None
+    cut = apart(ORIGINAL, recorded(CARRIED[:20], BOX[:20], held_until(41)), is_cut=True)  # type: ignore[arg-type]
+    assert cut is not None
+    assert cut.story == "the test ended at 1.9 s instead of 5.0 s"
+    assert cut.what == "mission.py:9 open is not called any more"
+
+
+def test_an_approach_that_is_closer_is_told() -> None:
+    low: list[Place] = [(x, 0.0, max(0.03, z - 0.1)) for x, _, z in CARRIED[30:45]]
+    found = apart(recorded([(0.5, 0.0, 0.5)] * 15), recorded(low))
+    assert found is not None
+    nearest = found.near[0]
+    assert (nearest.body, nearest.obstacle) == ("tool", "table")
+    assert nearest.distance == pytest.approx(0.03, abs=1e-6)
+    assert nearest.original > 0.3
+
+
+def test_what_equal_runs_differ_by_is_no_difference() -> None:
+    shaken = [(x, y + 0.004, z) for x, y, z in CARRIED]
+    noise = noise_between(Seen(recorded(CARRIED)), Seen(recorded(shaken)))
+    other = [(x, y - 0.006, z) for x, y, z in CARRIED]
+    assert apart(recorded(CARRIED), recorded(other)) is not None
+    assert diverged("t", Seen(recorded(CARRIED)), Seen(recorded(other)), noise) is None
+
+
+@pytest.mark.parametrize(
+    ("calls", "what"),
+    [
+        ([("arm:move", {"x": 1.0}), ("arm:grip", {})], "m.py:2 grip is called instead of m.py:2 move"),
+        ([("arm:move", {"x": 1.0})], "m.py:2 move is not called any more"),
+        ([("arm:move", {"x": 2.0}), ("arm:move", {"x": 1.0})], "m.py:1 move sends x 2 instead of 1"),
+    ],
+)
+def test_the_first_call_that_differs_is_named(calls: list[tuple[str, dict[str, float]]], what: str) -> None:
+    def told(made: list[tuple[str, dict[str, float]]]) -> Recording:
+        found = [
+            Told(float(number), number + 0.5, name, f"m.py:{number + 1}", None, values, {})
+            for number, (name, values) in enumerate(made)
+        ]
+        return Recording(calls=found)
+
+    original = told([("arm:move", {"x": 1.0}), ("arm:move", {"x": 1.0})])
+    found = apart(original, told(calls))
+    assert found is not None
+    assert found.what == what

@@ -1,0 +1,156 @@
+"""Feeds: what a simulator tells, and that it costs nothing while nobody listens."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from math import isnan
+
+import pytest
+
+from mutabot.evidence import Feed
+from mutabot.evidence import tape as tapes
+from mutabot.evidence.recording import Recording
+from mutabot.evidence.tape import Tape
+
+
+@pytest.fixture
+def tape() -> Iterator[Tape]:
+    yield tapes.begin()
+    tapes.stop()
+
+
+class World:
+    """A clock and a height."""
+
+    def __init__(self, start: float = 0.0) -> None:
+        self.time = start
+        self.height = 0.0
+        self.reads = 0
+
+    def read(self) -> tuple[float, float, float]:
+        self.reads += 1
+        return (0.0, 0.0, self.height)
+
+    def run(self, feed: Feed, seconds: float, step: float = 0.01) -> None:
+        for _ in range(round(seconds / step)):
+            self.time += step
+            self.height += step
+            feed.tick()
+
+
+def heights(recording: Recording, name: str = "tool") -> list[float]:
+    return list(recording.tracks[name].values[2::3])
+
+
+def fed(world: World, rate: float = 10.0) -> Feed:
+    feed = Feed(lambda: world.time, rate=rate)
+    feed.point("tool", world.read)
+    return feed
+
+
+def test_nothing_is_read_while_nothing_is_recorded() -> None:
+    world = World()
+    world.run(fed(world), 1.0)
+    assert world.reads == 0
+
+
+def test_moments_come_at_the_rate_of_simulated_time(tape: Tape) -> None:
+    world = World()
+    world.run(fed(world, rate=5.0), 2.0)
+    times = tape.recording.times
+    assert len(times) == 11
+    steps = [after - before for before, after in pairwise(times[1:])]
+    assert steps == pytest.approx([0.2] * 9)
+
+
+def test_a_world_that_is_there_already_begins_at_zero(tape: Tape) -> None:
+    world = World(start=100.0)
+    world.run(fed(world), 1.0)
+    assert tape.recording.times[0] == 0.0
+    assert tape.recording.times[-1] == pytest.approx(1.0, abs=0.02)
+
+
+def test_a_clock_that_begins_anew_is_counted_on(tape: Tape) -> None:
+    world = World()
+    feed = fed(world)
+    world.run(feed, 1.0)
+    world.time = 0.0
+    world.run(feed, 1.0)
+    times = list(tape.recording.times)
+    assert times == sorted(times)
+    assert times[-1] == pytest.approx(2.0, abs=0.05)
+
+
+def test_a_second_world_of_a_test_comes_after_the_first(tape: Tape) -> None:
+    first, second = World(), World()
+    first.run(fed(first), 1.0)
+    second.run(fed(second), 1.0)
+    assert list(tape.recording.times) == sorted(tape.recording.times)
+    assert len(heights(tape.recording)) == len(tape.recording.times)
+
+
+def test_what_comes_later_was_not_there_before(tape: Tape) -> None:
+    world = World()
+    feed = fed(world)
+    world.run(feed, 0.5)
+    feed.value("opening", lambda: 0.25, unit="m")
+    world.run(feed, 0.5)
+    opening = tape.recording.tracks["opening"].values
+    assert len(opening) == len(tape.recording.times)
+    assert isnan(opening[0])
+    assert opening[-1] == 0.25
+
+
+def test_long_tests_are_thinned_evenly(tape: Tape) -> None:
+    world = World()
+    world.run(fed(world), 1000.0, step=0.1)
+    times = tape.recording.times
+    assert 2000 <= len(times) < 4000
+    steps = {round(after - before, 6) for before, after in pairwise(times[5:-5])}
+    assert max(steps) <= 2 * min(steps) + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("read", "why"),
+    [
+        (lambda: (1.0, 2.0), "2 numbers instead of 3"),
+        (lambda: 1 / 0, "ZeroDivisionError: division by zero"),
+        (lambda: "far", "TypeError"),
+    ],
+)
+def test_what_cannot_be_read_is_said_and_the_test_goes_on(tape: Tape, read: object, why: str) -> None:
+    world = World()
+    feed = fed(world)
+    feed.point("box", read)  # type: ignore[arg-type]  # what users may do
+    world.run(feed, 1.0)
+    (problem,) = tape.recording.problems
+    assert problem.startswith("box cannot be recorded: ")
+    assert why in problem
+    assert len(heights(tape.recording)) == len(tape.recording.times)
+    assert all(map(isnan, tape.recording.tracks["box"].values))
+
+
+def test_contacts_are_told_when_they_begin_and_end(tape: Tape) -> None:
+    world = World()
+    feed = fed(world)
+    feed.contacts(lambda: [("box", "arm"), ("arm", "box")] if 0.3 < world.time < 0.6 else [])
+    world.run(feed, 1.0)
+    assert [(one.what, one.text) for one in tape.recording.moments] == [
+        ("touch", "arm, box"),
+        ("part", "arm, box"),
+    ]
+
+
+def test_where_everything_ended_is_told_whenever_that_was(tape: Tape) -> None:
+    world = World()
+    feed = fed(world, rate=1.0)
+    world.run(feed, 2.5)
+    tape.finish()
+    assert heights(tape.recording)[-1] == pytest.approx(2.5)
+    assert tape.recording.times[-1] == pytest.approx(2.49)
+
+
+def test_a_rate_of_nothing_is_refused() -> None:
+    with pytest.raises(ValueError, match="above 0"):
+        Feed(lambda: 0.0, rate=0.0)
