@@ -1,4 +1,4 @@
-"""What does recording cost? Campaigns with evidence and without, in pairs, by their processor time; and its size.
+"""What does recording cost? Campaigns with evidence and without, in pairs, by processor time; and its size.
 
 Use: ``python benchmarks/evidence.py [--pairs 5] [--example paper] [--selection published.txt] [--rounds 5]``.
 """

@@ -29,12 +29,10 @@ class Evidence:
         recordings: where they are kept.
 
     Attributes:
-        left_out: how many found no room.
         problems: what could not be recorded, one line each.
     """
 
     recordings: Recordings
-    left_out: int = 0
     problems: dict[str, None] = field(default_factory=dict)
     _noise: dict[tuple[int, str], Mapping[str, float]] = field(default_factory=dict)
 
@@ -91,8 +89,7 @@ class Evidence:
 
     def _add(self, mutant: str, round: int, end: TestEnd, rank: Rank) -> None:
         assert end.recording is not None
-        if not self.recordings.add(mutant, round, end.test, rank, bytes_of(end.recording)):
-            self.left_out += 1
+        self.recordings.add(mutant, round, end.test, rank, bytes_of(end.recording))
 
     def _read_original(self, round: int, test: str) -> Seen | None:
         data = self.recordings.data(ORIGINAL, round, test)
@@ -113,9 +110,9 @@ def recorded(request: Request, progress: Progress) -> Iterator[Evidence | None]:
         finally:
             for problem in list(evidence.problems)[:_SHOWN]:
                 progress.note(problem)
-            if evidence.left_out:
+            if recordings.dropped:
                 progress.note(
-                    f"{evidence.left_out} recordings found no room in {limit / 1e6:.0f} MB and were left "
+                    f"{recordings.dropped} recordings found no room in {limit / 1e6:.0f} MB and were left "
                     "out: set `evidence` to more"
                 )
 

@@ -46,7 +46,11 @@ class Tape:
         the wall clock, below zero so that it is known for what it is.
         """
         told = self._told()
-        return self._began - time.monotonic() - _WALL if told is None else told
+        return self.at_wall(time.monotonic()) if told is None else told
+
+    def at_wall(self, moment: float) -> float:
+        """A moment of the clock of ``time.monotonic``, as a time."""
+        return self._began - moment - _WALL
 
     def seconds(self, time: float | None) -> float | None:
         """What a time means: seconds since the test began, simulated if there are any."""

@@ -42,12 +42,14 @@ class Recordings:
 
     Attributes:
         path: the file.
+        dropped: how many made room for others, or found none.
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection, limit: int = 0) -> None:
         self.path, self._connection, self._limit = path, connection, limit
         self._copy: object = None
         self._used = 0
+        self.dropped = 0
 
     @classmethod
     def to_write(cls, journal: Path, limit: int) -> Recordings:
@@ -100,6 +102,7 @@ class Recordings:
     def add(self, mutant: str, round: int, test: str, rank: Rank, data: bytes) -> bool:
         """Add one; of lower ranks, others make room for it. Returns whether there was room."""
         if self._used + len(data) > self._limit and not self._make_room(rank, len(data)):
+            self.dropped += 1
             return False
         with guarded(self.path):
             self._connection.execute(
@@ -141,6 +144,7 @@ class Recordings:
                         (mutant, round, test),
                     )
                 self._used -= freed
+                self.dropped += 1
         self._change("PRAGMA incremental_vacuum")
         return self._used + size <= self._limit
 

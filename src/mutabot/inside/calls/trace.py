@@ -90,13 +90,20 @@ class Recorder:
 
     def told(self) -> list[Told]:
         """The calls of the running test with their times, as far as they are recorded."""
-        found = []
-        for hit, (began, ended) in zip(self.trace[:_TOLD], self.when, strict=False):
-            site, (_, written, read, _) = self.sites[hit[0]], hit
-            place = f"{site.span.file}:{site.span.line}"
-            role = Role.ORACLE if site.oracle else Role.PROGRAM
-            found.append(Told(began, ended, site.operation, place, site.pattern, written, read, role))
-        return found
+        return [
+            self.told_of(index, written, read, began, ended)
+            for (index, written, read, _), (began, ended) in zip(self.trace[:_TOLD], self.when, strict=False)
+        ]
+
+    def told_of(
+        self, index: int, written: Any, read: Any, began: float | None, ended: float | None = None
+    ) -> Told:
+        """One call at the site of this index; ``ended`` is ``began`` where that is not known."""
+        site = self.sites[index]
+        place = f"{site.span.file}:{site.span.line}"
+        role = Role.ORACLE if site.oracle else Role.PROGRAM
+        ended = began if ended is None else ended
+        return Told(began, ended, site.operation, place, site.pattern, written, read, role)
 
     def sites_of_trace(self) -> tuple[SiteSeen, ...]:
         """The sites that the running test's trace refers to."""

@@ -97,7 +97,10 @@ class Member:
         self.diary = Diary(folder, self._test)
         locator = Locator(job.root, job.program, job.oracle)
         self.session = session or Session(
-            replace(job, inspect=False, moments={}), self, locator.locate, locator.locate_definition
+            replace(job, inspect=False, moments={}, evidence=False),
+            self,
+            locator.locate,
+            locator.locate_definition,
         )
         self._told = Evidence()
         self._parts: frozenset[str] = frozenset()

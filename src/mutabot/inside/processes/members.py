@@ -124,6 +124,7 @@ class Members:
             self._acted = self._acted or end.acted > 0
             return end
         end = self._with_calls(end, here)
+        end = self._with_recorded(end, here)
         end = self._with_deeds(end, [did for one in here for did in one.did])
         end = self._with_ends(end, here)
         self._acted = self._acted or end.acted > 0
@@ -210,6 +211,19 @@ class Members:
             commands=end.commands + sum(one.commands for one in used),
             simulated=max(simulated, default=None),
         )
+
+    def _with_recorded(self, end: TestEnd, here: list[Account]) -> TestEnd:
+        """The calls of all processes by their times, in what is recorded."""
+        session = self._session
+        recorder, recording = session.recorder, session.recording
+        found = [
+            recorder.told_of(one.sites[call.site], call.written, call.read, recording.since(call.time))
+            for one in here
+            for call in one.called
+        ]
+        if end.recording is None or not found:
+            return end
+        return replace(end, recording=recording.text([*recorder.told(), *found]))
 
     def _with_deeds(self, end: TestEnd, did: list[Did]) -> TestEnd:
         """What the mutant did in all processes together."""

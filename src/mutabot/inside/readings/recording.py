@@ -42,6 +42,10 @@ class TestRecording:
         tape = tapes.running()
         return tape.now if tape is not None else None
 
+    def since(self, moment: float) -> float | None:
+        """A moment of the clock of ``time.monotonic`` as a time of the tape; None without one."""
+        return self._tape.at_wall(moment) if self._tape is not None else None
+
     def note_fault(self, calls: int, time: float | None) -> None:
         """The mutant has changed something, for the first time or once more, after so many calls."""
         if self._tape is not None and self._tape.recording.faulty_call is None:
@@ -55,7 +59,6 @@ class TestRecording:
         tape, recording = self._tape, self._tape.recording
         recording.is_simulated = tape.is_simulated
         recording.fault = tape.seconds(recording.fault)
-        recording.calls = [
-            replace(one, began=tape.seconds(one.began), ended=tape.seconds(one.ended)) for one in calls
-        ]
+        timed = (replace(one, began=tape.seconds(one.began), ended=tape.seconds(one.ended)) for one in calls)
+        recording.calls = sorted(timed, key=lambda one: one.began or 0.0)
         return to_text(recording)
