@@ -35,7 +35,11 @@ def _lines(material: Material) -> Iterator[str]:
         known = f"{results.done} of {results.planned} outcomes are known"
         yield f"> **This campaign is not complete** ({escaped(results.state)}): {known}."
         yield ""
-    yield from _scores(results.groups)
+    if not results.groups:
+        is_early = not material.campaign.is_complete
+        yield "No mutants are planned yet." if is_early else "No mutants were planned."
+    else:
+        yield from _scores(results.groups)
     if material.changes is not None:
         yield from change_lines(material.changes, material.path)
     yield from _survivors(material)
@@ -45,9 +49,6 @@ def _lines(material: Material) -> Iterator[str]:
 
 
 def _scores(groups: Sequence[Group]) -> Iterator[str]:
-    if not groups:
-        yield "No mutants were planned."
-        return
     head = ("family", "role", "mutants", "score", "killed / valid", "check score", "by a check / valid")
     yield from table(head, (_score_cells(group) for group in groups), right=range(2, 7))
 
