@@ -109,6 +109,12 @@ def test_what_equal_runs_differ_by_is_no_difference() -> None:
     assert diverged("t", Seen(recorded(CARRIED)), Seen(recorded(other)), noise) is None
 
 
+def test_rounding_is_no_difference_of_a_call() -> None:
+    original = Recording(calls=[Told(0.0, 1.0, "s:read", "m.py:1", None, {}, {"x": -0.329123321209})])
+    mutant = Recording(calls=[Told(0.5, 1.0, "s:read", "m.py:1", None, {}, {"x": -0.329123321207})])
+    assert apart(original, mutant) is None
+
+
 @pytest.mark.parametrize(
     ("calls", "what"),
     [

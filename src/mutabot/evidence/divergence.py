@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf
+from math import inf, isclose
 from typing import Any
 
 from mutabot.model.seen.diverged import Apart, Diverged
-from mutabot.model.values.quantity import told_apart, value_text
+from mutabot.model.values.quantity import is_number, told_apart, value_text
 
 from .recording import Recording, Told
 from .story import story_of
@@ -17,6 +17,8 @@ from .tracks import Path, approaches, differences, noise_of, paths_of
 
 #: differences and approaches that are told
 _MOST = 8
+#: by so much may equal numbers of a trace differ, as where no probe has a tolerance
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
@@ -73,13 +75,26 @@ def noise_between(one: Seen, other: Seen) -> dict[str, float]:
 def first_difference(original: list[Told], mutant: list[Told]) -> int | None:
     """The number of the first call, from 0, that differs; None if they are the same calls."""
     for number, (one, other) in enumerate(zip(original, mutant, strict=False)):
-        if _said(one) != _said(other):
+        if not _is_same(one, other):
             return number
     return None if len(original) == len(mutant) else min(len(original), len(mutant))
 
 
-def _said(call: Told) -> tuple[Any, ...]:
-    return call.operation, call.place, call.pattern, call.written, call.read
+def _is_same(one: Told, other: Told) -> bool:
+    if (one.operation, one.place, one.pattern) != (other.operation, other.place, other.pattern):
+        return False
+    return _are_equal(one.written, other.written) and _are_equal(one.read, other.read)
+
+
+def _are_equal(values: Any, others: Any) -> bool:
+    """Whether values are equal, numbers up to what rounding does to them."""
+    if isinstance(values, Mapping) and isinstance(others, Mapping):
+        return values.keys() == others.keys() and all(_are_equal(values[key], others[key]) for key in values)
+    if isinstance(values, list | tuple) and isinstance(others, list | tuple):
+        return len(values) == len(others) and all(map(_are_equal, values, others))
+    if is_number(values) and is_number(others):
+        return isclose(values, others, rel_tol=_ROUNDING, abs_tol=_ROUNDING)
+    return bool(values == others)
 
 
 def _first(
@@ -107,7 +122,7 @@ def _call_text(number: int, original: list[Told], mutant: list[Told]) -> tuple[s
         return f"{_name(other)} is called instead of {_name(one)}", other.began
     for before, after, verb in ((one.written, other.written, "sends"), (one.read, other.read, "reads")):
         for name in {**before, **after}:
-            if before.get(name) != after.get(name):
+            if not _are_equal(before.get(name), after.get(name)):
                 usual, found = told_apart(before.get(name), after.get(name), value_text, 4)
                 return f"{_name(other)} {verb} {name} {found} instead of {usual}", other.began
     return f"{_name(other)} differs", other.began
