@@ -470,7 +470,7 @@ def test_a_disk_that_is_full_for_the_workers_is_a_clear_error(
 
 
 def can_mount(folder: Path) -> bool:
-    words = ["mount", "-t", "tmpfs", "-o", "size=400k", "none", str(folder)]
+    words = ["mount", "-t", "tmpfs", "-o", "size=700k", "none", str(folder)]
     return os.geteuid() == 0 and subprocess.run(words, capture_output=True, check=False).returncode == 0
 
 
@@ -485,7 +485,7 @@ def test_a_really_full_disk_is_exit_code_2(project: Project) -> None:
     if not can_mount(home):
         pytest.skip("needs the right to mount a file system")
     try:
-        (home / "ballast").write_bytes(b"x" * 280_000)
+        (home / "ballast").write_bytes(b"x" * 580_000)
         _, said = (process := mutabot_run(project)).communicate()
         assert process.returncode == 2, said
         assert str(home) in said
