@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
@@ -57,15 +57,27 @@ class Process:
     processes: Path
 
 
+@dataclass
+class Timed(Quiet):
+    """A progress that notes when it is told of each step."""
+
+    ends: list[float] = field(default_factory=list)
+
+    def advance(self, line: str | None = None) -> None:
+        self.ends.append(time.monotonic())
+        super().advance(line)
+
+
 def test_mutants_that_only_wait_leave_their_places_to_others(tmp_path: Path) -> None:
     limits = "timeout_seconds = 6\ntimeout_factor = 1000.0\n"
     project = write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + limits)
     request = request_for(project, jobs=2, rounds=1, only=("reverse", "skip"))
-    began = time.monotonic()
-    found = outcomes(run_campaign(request, Quiet()))
-    taken = time.monotonic() - began
+    progress = Timed()
+    found = outcomes(run_campaign(request, progress))
     assert [one.verdict for one in found] == [Verdict.TIMEOUT] * 6
-    assert sum(one.wall for one in found) / taken > request.jobs  # so many at a time, on average
+    spans = [(end - one.wall, end) for end, one in zip(progress.ends[-6:], found, strict=True)]
+    at_once = (sum(start <= begin < end for start, end in spans) for begin, _ in spans)
+    assert max(at_once) > request.jobs
 
 
 @pytest.fixture
