@@ -1,0 +1,136 @@
+/* The report as one page with addresses: which view is shown, keys, theme. */
+"use strict";
+(() => {
+  const { h, address, here } = mutabot;
+  const PAGES = [["", "Overview"], ["mutants", "Mutants"], ["source", "Source"], ["tests", "Tests"], ["operators", "Operators"], ["noise", "Noise"]];
+  const KEYS = [
+    ["/", "search the mutants"], ["j, k", "next and previous mutant of the list"], ["Enter", "open it"],
+    ["n, p", "on a mutant's page: the next and the previous one of the list"],
+    ["[, ]", "on a mutant's page: a tenth of a second back and on; with Shift a second"], ["Space", "play and pause, on the 3D view"],
+    ["← → ↑ ↓", "on the 3D view: turn it"], ["+ − 0", "on the 3D view: nearer, farther, as at first"],
+    ["g then o m s t", "go to overview, mutants, source, tests"], ["?", "this list"],
+  ];
+  const main = () => document.getElementById("main");
+  let campaign = null;
+  let cleanUp = null;
+  let isFirst = true;
+
+  mutabot.start = (data) => {
+    campaign = prepared(data);
+    mutabot.campaign = campaign;
+    document.getElementById("project").textContent = mutabot.legible(campaign.name || "Mutabot");
+    foot();
+    addEventListener("hashchange", show);
+    show();
+    performance.mark("ready");
+  };
+
+  function prepared(data) {
+    data.mutants = data.mutants.map((row) => {
+      const one = {};
+      data.columns.forEach((name, index) => { one[name] = row[index]; });
+      one.file = data.files[one.file] || "";
+      one.place = one.file ? `${one.file}:${one.line}` : "–";
+      one.reach = data.sites[one.site] || [];
+      one.survives = /[SN]/.test(one.ends);
+      one.haystack = [one.number, one.id, one.place, one.function, one.operator, one.description, one.why].join("\n").toLowerCase();
+      return one;
+    });
+    data.byNumber = new Map(data.mutants.map((one) => [one.number, one]));
+    return data;
+  }
+
+  function show() {
+    if (cleanUp) cleanUp();
+    cleanUp = null;
+    const { parts, asked } = here();
+    if (location.hash === "#main") return;
+    const name = parts[0] || "";
+    const view = mutabot.views.get(name);
+    navigation(name === "mutant" ? "mutants" : name);
+    const body = main();
+    body.replaceChildren();
+    body.className = `view-${name || "overview"}`;
+    if (!view) {
+      body.append(h("h1", { tabindex: "-1" }, "No such page"), h("p", null, "This address leads nowhere in this report. ", h("a", { href: "#/" }, "Go to the overview."))); 
+    } else {
+      cleanUp = view(body, parts.slice(1), asked) || null;
+    }
+    const title = body.querySelector("h1");
+    document.title = `${title ? title.textContent : "Report"} · ${mutabot.legible(campaign.name || "Mutabot")}`;
+    if (!isFirst && !body.contains(document.activeElement)) { scrollTo(0, 0); if (title) title.focus({ preventScroll: true }); }
+    isFirst = false;
+  }
+  mutabot.show = show;
+
+  function navigation(current) {
+    document.getElementById("nav").replaceChildren(h("ul", null, PAGES
+      .filter(([path]) => path !== "noise" || campaign.mutants.some((one) => one.drawn))
+      .map(([path, name]) => h("li", null, h("a", { href: address(path ? [path] : []), "aria-current": path === current ? "page" : null }, name)))));
+  }
+
+  function foot() {
+    const meta = campaign.meta;
+    const when = typeof meta.started === "number" ? new Date(1000 * meta.started) : null;
+    const facts = [meta.mutabot && `mutabot ${meta.mutabot}`, meta.python && `Python ${meta.python}`, meta.engine && `engine ${meta.engine}`,
+      meta.seed !== undefined && `seed ${meta.seed}`, when && `began ${when.toISOString().slice(0, 16).replace("T", " ")} UTC`];
+    document.getElementById("foot").replaceChildren(h("p", null, facts.filter(Boolean).join(" · ")));
+  }
+
+  // Theme: as the system has it, until it is chosen
+  const THEMES = ["auto", "light", "dark"];
+  function theme(name) {
+    if (name === "auto") delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = name;
+    const button = document.getElementById("theme");
+    button.textContent = `Theme: ${name}`;
+    button.setAttribute("aria-label", `Theme: ${name}. Change it`);
+    dispatchEvent(new Event("theme"));
+  }
+  function kept(value) {
+    try {
+      if (value === undefined) return localStorage.getItem("mutabot-theme");
+      localStorage.setItem("mutabot-theme", value);
+    } catch { /* a browser that keeps nothing */ }
+    return value;
+  }
+  let now = THEMES.includes(kept()) ? kept() : "auto";
+  theme(now);
+  document.getElementById("theme").addEventListener("click", () => {
+    now = THEMES[(THEMES.indexOf(now) + 1) % THEMES.length];
+    kept(now);
+    theme(now);
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => dispatchEvent(new Event("theme")));
+
+  // Keys
+  function help() {
+    const dialog = h("dialog", { "aria-labelledby": "keys-title", onclose: (event) => event.target.remove() },
+      h("h2", { id: "keys-title" }, "Keys"),
+      h("dl", { class: "keys" }, KEYS.map(([key, does]) => [h("dt", null, h("kbd", null, key)), h("dd", null, does)])),
+      h("form", { method: "dialog" }, h("button", { type: "submit" }, "Close")));
+    document.body.append(dialog);
+    dialog.showModal();
+  }
+  document.getElementById("keys").addEventListener("click", help);
+  document.getElementById("skip").addEventListener("click", (event) => { event.preventDefault(); main().focus(); });
+  let goes = false;
+  addEventListener("keydown", (event) => {
+    if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
+    const typing = event.target.closest("input:not([type=range]):not([type=checkbox]), select, textarea");
+    if (typing) { if (event.key === "Escape") event.target.blur(); return; }
+    if (goes) {
+      goes = false;
+      const path = { o: [], m: ["mutants"], s: ["source"], t: ["tests"] }[event.key];
+      if (path) { location.hash = address(path); event.preventDefault(); }
+      return;
+    }
+    if (event.key === "g") goes = true;
+    else if (event.key === "?") help();
+    else if (event.key === "/") {
+      event.preventDefault();
+      if (here().parts[0] !== "mutants") { location.hash = address(["mutants"]); setTimeout(() => focusSearch(), 50); } else focusSearch();
+    }
+  });
+  const focusSearch = () => { const box = document.getElementById("search"); if (box) { box.focus(); box.select(); } };
+})();

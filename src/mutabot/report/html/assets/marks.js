@@ -1,0 +1,41 @@
+/* Verdicts: a letter, a colour and words each, as on the terminal. */
+"use strict";
+(() => {
+  const { h } = mutabot;
+  const LETTERS = {
+    C: ["check", "killed by a check"], X: ["exception", "killed by an exception"], S: ["survived", "survived"],
+    N: ["uncovered", "not covered"], T: ["timeout", "killed by a time-out"], R: ["refused", "refused by the robot"],
+    I: ["invalid", "invalid"], "=": ["idle", "no effect"], U: ["unstable", "unstable"], E: ["error", "error"], "·": ["unrun", "not run"],
+  };
+  const STATUS = {
+    survived: "S", "not covered": "N", killed: "C", timeout: "T", error: "E", unstable: "U", refused: "R", invalid: "I", "no effect": "=", "not run": "·",
+  };
+  const ORDER = Object.keys(STATUS);
+  const MEANING = {
+    survived: "at least one round let it through", "not covered": "no test reaches it", killed: "every valid round killed it",
+    timeout: "it only ran out of its budget", error: "the tool, a worker or the simulator failed", unstable: "equal runs disagree",
+    refused: "the robot refused the command", invalid: "no program or no command", "no effect": "it changed no value", "not run": "not run yet",
+  };
+
+  /** The mark of one letter. Its words are its name for those who do not see it. */
+  function mark(letter, name) {
+    const [kind, words] = LETTERS[letter] || LETTERS["·"];
+    return h("span", { class: `mark m-${kind}`, role: "img", "aria-label": name || words, title: name || words }, letter);
+  }
+  /** The marks of all rounds; runs of equal rounds are said once. */
+  function ends(letters) {
+    const told = [...letters].map((letter, round) => `round ${round + 1} ${(LETTERS[letter] || ["", "?"])[1]}`);
+    const alike = new Set(letters).size === 1 && letters.length > 1;
+    const name = alike ? `all ${letters.length} rounds ${LETTERS[letters[0]][1]}` : told.join(", ");
+    return h("span", { class: "ends", role: "img", "aria-label": name, title: name },
+      [...letters].map((letter) => h("span", { class: `mark m-${(LETTERS[letter] || LETTERS["·"])[0]}` }, letter)));
+  }
+  /** A status as a mark with its word. */
+  const status = (name) => h("span", { class: "status" },
+    h("span", { class: `mark m-${LETTERS[STATUS[name]][0]}`, "aria-hidden": "true" }, name === "killed" ? "K" : STATUS[name]), name);
+  const legend = (letters) => h("ul", { class: "legend", "aria-label": "What the letters mean" },
+    Object.keys(LETTERS).filter((one) => letters.has(one)).map((one) => h("li", null,
+      h("span", { class: `mark m-${LETTERS[one][0]}`, "aria-hidden": "true" }, one), LETTERS[one][1])));
+
+  Object.assign(mutabot, { marks: { LETTERS, STATUS, ORDER, MEANING, mark, ends, status, legend } });
+})();

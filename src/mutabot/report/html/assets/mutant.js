@@ -1,0 +1,270 @@
+/* One mutant: what it is, what the robot did, who looked, and how each round ended. */
+"use strict";
+(() => {
+  const { h, address, between, count, number, empty, marks } = mutabot;
+  const AROUND = 3;
+
+  mutabot.views.set("mutant", (body, parts) => {
+    const campaign = mutabot.campaign;
+    const one = campaign.byNumber.get(Number(parts[0]));
+    if (!one) {
+      body.append(h("h1", { tabindex: "-1" }, "No such mutant"), empty(`There is no mutant ${parts[0] || ""} in this report.`, campaign.mutants.length
+        ? `They are numbered ${campaign.mutants[0].number} to ${campaign.mutants[campaign.mutants.length - 1].number}. ` : "", h("a", { href: address(["mutants"]) }, "Show the list")));
+      return undefined;
+    }
+    const order = mutabot.chosen(mutabot.lastAsked || {});
+    const where = order.indexOf(one);
+    const [before, after] = [where > 0 ? order[where - 1] : null, where >= 0 ? order[where + 1] : null];
+    const step = (to, text, key) => to ? h("a", { href: address(["mutant", String(to.number)]), "aria-keyshortcuts": key }, text) : h("span", { class: "off" }, text);
+    body.append(
+      h("nav", { class: "steps", "aria-label": "Mutants beside this one" }, h("a", { href: address(["mutants"], mutabot.lastAsked) }, "All mutants"),
+        step(before, "← Previous", "p"), h("span", null, where >= 0 ? `${where + 1} of ${order.length}` : ""), step(after, "Next →", "n")),
+      h("h1", { tabindex: "-1" }, h("span", { class: "number" }, `${one.number} `), one.description),
+      h("p", { class: "under" }, marks.status(one.status), marks.ends(one.ends), h("span", { class: "place" }, one.place, " in ", one.function), h("span", null, `${one.operator} (${one.family}, ${one.role})`)),
+      h("p", { class: "story big" }, one.why));
+    const holder = h("div", null, h("p", { class: "wait" }, "The mutant is being read …"));
+    body.append(holder);
+    const stops = [];
+    let gone = false;
+    const keys = (event) => {
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.target.closest("input:not([type=range]):not([type=checkbox]), select, dialog")) return;
+      const to = { n: after, p: before }[event.key];
+      if (to) location.hash = address(["mutant", String(to.number)]);
+    };
+    addEventListener("keydown", keys);
+    stops.push(() => removeEventListener("keydown", keys));
+    mutabot.load(`mutant ${one.number}`, `data/mutants/${one.number}.js`).then((page) => { if (!gone) draw(holder, one, page, stops); },
+      (error) => { holder.replaceChildren(empty("This mutant cannot be shown.", error.message)); });
+    return () => { gone = true; stops.forEach((stop) => stop()); };
+  });
+
+  function draw(holder, one, page, stops) {
+    holder.replaceChildren(
+      h("div", { class: "columns first" }, excerpt(one, page), facts(one, page)),
+      media(page), robot(one, page, stops), looked(one, page), suggestion(page), rounds(one, page));
+  }
+
+  function excerpt(one, page) {
+    const section = h("section", { "aria-labelledby": "there" }, h("h2", { id: "there" }, "Where it stands"));
+    mutabot.load("sources", "data/sources.js").then((sources) => {
+      const text = new Map(sources).get(one.file);
+      if (text === undefined) { section.append(empty("The text of this file was not written down.")); return; }
+      const lines = text.split("\n");
+      const from = Math.max(1, one.line - AROUND), to = Math.min(lines.length, one.endLine + AROUND);
+      const box = h("div", { class: "code small" });
+      for (let at = from; at <= to; at += 1) {
+        const line = lines[at - 1];
+        const inside = at >= one.line && at <= one.endLine;
+        const a = at === one.line ? one.column - 1 : line.search(/\S|$/), b = at === one.endLine && one.endColumn ? one.endColumn - 1 : line.length;
+        box.append(h("div", { class: `line${inside ? " marked" : ""}` }, h("span", { class: "at" }, at), h("code", null, inside ? [line.slice(0, a), h("mark", null, line.slice(a, b)), line.slice(b)] : line || " ")));
+      }
+      section.append(box, page.change ? h("p", null, `Where it first acted, the program ${page.change}.`) : "",
+        h("p", null, h("a", { class: "more", href: address(["source", one.file], { line: String(one.line) }) }, "The whole file")));
+    }, (error) => section.append(h("p", null, error.message)));
+    return section;
+  }
+
+  function facts(one, page) {
+    const rows = [["id", h("code", null, page.id)], ["place", page.places.map((each) => `${each.place} in ${each.function}`).join("; ")],
+      one.operation ? ["operation", one.operation + (page.pattern ? `, command ${page.pattern}` : "")] : null,
+      one.operation ? ["quantity", one.quantity ? `${one.quantity}${page.meaning.length ? `: ${page.meaning.join(", ")}` : ""}` : "the call as a whole"] : null,
+      ["operator", h("span", null, `${one.operator}${one.variant ? ` (${one.variant})` : ""}`, mutabot.campaign.operators[one.operator] ? h("small", null, mutabot.campaign.operators[one.operator]) : null)],
+      ["killed", `in ${one.killed} of the ${count(one.valid, "round")} in which it was valid${page.interval ? `; 95 % interval ${between(page.interval)}` : ""}`],
+      ["rounds", page.roundsText],
+      ["reached by", one.reach.length ? h("ul", { class: "plain" }, one.reach.slice(0, 6).map((test) => h("li", null, h("code", null, mutabot.campaign.tests[test]))), one.reach.length > 6 ? h("li", null, `and ${one.reach.length - 6} more tests`) : null) : "no test"],
+      one.earlier ? ["note", "some of this was found by an earlier campaign"] : null];
+    return h("section", { "aria-labelledby": "facts" }, h("h2", { id: "facts" }, "What it is"), h("dl", { class: "facts" }, rows.filter(Boolean).map(([name, value]) => [h("dt", null, name), h("dd", null, value)])));
+  }
+
+  function media(page) {
+    if (!page.media.length) return "";
+    return h("section", { "aria-labelledby": "clips" }, h("h2", { id: "clips" }, "Clips and pictures"), h("div", { class: "media" }, page.media.map((file) => {
+      const name = file.replace(/^.*\//, "");
+      const path = file.split("/").map(encodeURIComponent).join("/");
+      return h("figure", null, /\.(mp4|webm)$/i.test(file) ? h("video", { src: path, controls: true, preload: "metadata", "aria-label": `Clip ${name}` }) : h("img", { src: path, alt: `Picture ${name}`, loading: "lazy" }), h("figcaption", null, name));
+    })));
+  }
+
+  // What the robot did
+
+  function robot(one, page, stops) {
+    const section = h("section", { class: "robot", "aria-labelledby": "robot" }, h("h2", { id: "robot" }, "What the robot did"));
+    if (!page.recordings.length) {
+      section.append(nothingRecorded(one, page));
+      return section;
+    }
+    const holder = h("div", null);
+    const label = (found) => `round ${found.round + 1} · ${found.test}`;
+    if (page.recordings.length > 1) {
+      section.append(h("div", { class: "field" }, h("label", { for: "recording" }, "Round and test"),
+        h("select", { id: "recording", onchange: (event) => show(Number(event.target.value)) }, page.recordings.map((found, index) => h("option", { value: index }, label(found))))));
+    } else section.append(h("p", { class: "hint" }, label(page.recordings[0])));
+    if (page.withoutRecordings) section.append(h("p", { class: "hint" }, `${count(page.withoutRecordings, "further recording")} had no room in this report; \`mutabot show ${one.number}\` tells of them.`));
+    section.append(holder);
+    let stop = [];
+    stops.push(() => stop.forEach((each) => each()));
+    async function show(index) {
+      stop.forEach((each) => each());
+      stop = [];
+      const found = page.recordings[index];
+      try {
+        const usual = found.original === null ? null : mutabot.recordings.recording(await mutabot.load(`original ${found.original}`, `data/originals/${found.original}.js`), null);
+        if (!section.isConnected) return;
+        pair(holder, one, page, found, usual, mutabot.recordings.recording(found, usual), stop);
+      } catch (error) { holder.replaceChildren(empty("The recording cannot be shown.", error.message)); }
+    }
+    show(0);
+    return section;
+  }
+
+  function nothingRecorded(one, page) {
+    if (page.withoutRecordings) return empty("There was no room for its recordings.", `The report holds those of the survivors that went farthest first. \`mutabot show ${one.number}\` prints what they tell.`);
+    if (one.indistinguishable) return empty("The robot did the same as in the original.", "Nothing that was recorded, read or returned differs; there are no two paths to show.");
+    if (!one.valid && one.status !== "refused") return empty("It was not run to be looked at.", marks.MEANING[one.status], ".");
+    if (one.status === "not covered") return empty("No test reaches it.", "So the robot never met it. A test that runs this line comes first.");
+    return empty("Nothing was recorded that differs.", "Paths, contacts and commands are recorded where the simulator feeds them: mutabot's cell does so by itself, and any other in ten lines (",
+      h("code", null, "mutabot.evidence.Feed"), ").");
+  }
+
+  function pair(holder, one, page, found, usual, mutant, stop) {
+    const ends = [usual, mutant].map((each) => (each ? Math.max(each.end || 0, ...each.calls.map((call) => call.ended || 0), 0) : 0));
+    const outcome = page.rounds[found.round];
+    const diverged = outcome && outcome.diverged.find((each) => each.test === found.test);
+    const begin = diverged && diverged.at !== null ? diverged.at : mutant.fault;
+    const clock = new mutabot.recordings.Clock(Math.max(...ends), begin ?? Math.max(...ends));
+    const named = (each) => each && [...each.tracks.values()].some((track) => track.times.length);
+    holder.replaceChildren();
+    if (diverged && diverged.story && diverged.story !== one.why) holder.append(h("p", { class: "story" }, diverged.story));
+    if (diverged && diverged.what) holder.append(h("p", null, h("strong", null, "First difference"), diverged.at !== null ? ` at ${number(diverged.at, 4)} s: ` : ": ", diverged.what));
+    const drawn = h("div", { class: "drawn-world" });
+    if (named(mutant) || named(usual)) {
+      const worlds = [usual && { name: "original", recording: usual, ink: () => mutabot.ink("original"), width: 1.4 }, { name: "mutant", recording: mutant, ink: () => mutabot.ink("mutant"), width: 2.2 }].filter(Boolean);
+      const made = mutabot.scene(worlds, clock);
+      stop.push(made.stop);
+      drawn.append(h("div", { class: "world" }, key(usual), made.canvas, made.controls));
+      drawn.append(h("div", { class: "multiples" }, mutabot.charts(usual, mutant, clock)));
+      holder.append(slider(clock, mutant, made.canvas, stop), drawn);
+    }
+    holder.append(h("h3", null, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock), apart(diverged));
+    if (mutant.problems.length) holder.append(h("p", { class: "hint" }, `Not recorded: ${mutant.problems.join("; ")}`));
+    if (!mutant.simulated) holder.append(h("p", { class: "hint" }, "Times are of the wall clock: the vocabulary names no simulated clock."));
+  }
+
+  const key = (usual) => h("ul", { class: "legend" }, usual ? h("li", null, h("span", { class: "swatch of-original", "aria-hidden": "true" }), "original") : null,
+    h("li", null, h("span", { class: "swatch of-mutant", "aria-hidden": "true" }), "mutant"), h("li", null, h("span", { class: "swatch fault", "aria-hidden": "true" }), "moment of the fault"));
+
+  function slider(clock, mutant, canvas, stop) {
+    const range = h("input", { type: "range", min: 0, max: clock.end, step: "any", "aria-label": "Moment", oninput: (event) => clock.set(Number(event.target.value)) });
+    const output = h("output", null);
+    clock.on((time) => { range.value = time; range.setAttribute("aria-valuetext", `${time.toFixed(2)} seconds`); output.textContent = `${time.toFixed(2)} s`; });
+    let playing = 0;
+    const button = h("button", { type: "button", class: "play", onclick: () => play() }, "Play");
+    function play() {
+      if (playing) { cancelAnimationFrame(playing); playing = 0; button.textContent = "Play"; return; }
+      if (clock.time >= clock.end - 1e-6) clock.set(0);
+      button.textContent = "Pause";
+      let last = performance.now();
+      const next = (now) => {
+        clock.set(clock.time + (now - last) / 1000);
+        last = now;
+        if (clock.time >= clock.end) { playing = 0; button.textContent = "Play"; } else playing = requestAnimationFrame(next);
+      };
+      playing = requestAnimationFrame(next);
+    }
+    const keys = (event) => {
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input:not([type=range]), select, dialog")) return;
+      const by = { "[": -0.1, "]": 0.1, "{": -1, "}": 1 }[event.key];
+      if (by) { clock.set(clock.time + by); event.preventDefault(); }
+      if (event.key === " " && event.target === canvas) { play(); event.preventDefault(); }
+    };
+    addEventListener("keydown", keys);
+    stop.push(() => { removeEventListener("keydown", keys); cancelAnimationFrame(playing); });
+    const to = (time, text) => time === null || time === undefined ? null : h("button", { type: "button", onclick: () => clock.set(time) }, text);
+    const track = h("div", { class: "range" }, range);
+    if (mutant.fault !== null && mutant.fault !== undefined && clock.end) {
+      const flag = h("span", { class: "fault-mark", "aria-hidden": "true" });
+      flag.style.left = `${100 * mutant.fault / clock.end}%`;
+      track.append(flag);
+    }
+    return h("div", { class: "slider", role: "group", "aria-label": "Moment that is shown" }, button, track, output, to(mutant.fault, "To the fault"), to(clock.end, "To the end"));
+  }
+
+  function apart(diverged) {
+    if (!diverged || !(diverged.apart.length || diverged.near.length)) return "";
+    const box = h("div", { class: "columns" });
+    if (diverged.apart.length) {
+      box.append(h("div", null, h("h3", null, "How far apart"), h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "How far apart" }, h("table", null,
+        h("thead", null, h("tr", null, ["", "first", "largest", "at", "at the end", "off its way"].map((name, index) => h("th", { scope: "col", class: index ? "n" : null }, name || h("span", { class: "unseen" }, "what"))))),
+        h("tbody", null, diverged.apart.map((each) => h("tr", null, h("th", { scope: "row" }, each.name), h("td", { class: "n" }, `${number(each.first, 3)} s`), h("td", { class: "n" }, `${number(each.largest, 3)} ${each.unit}`),
+          h("td", { class: "n" }, `${number(each.at, 3)} s`), h("td", { class: "n" }, `${number(each.final, 3)} ${each.unit}`), h("td", { class: "n" }, each.aside === null ? "–" : `${number(each.aside, 3)} ${each.unit}`))))))));
+    }
+    if (diverged.near.length) {
+      box.append(h("div", null, h("h3", null, "Nearer than in the original"), h("ul", { class: "plain" }, diverged.near.map((each) => h("li", null,
+        `${each.body} came within ${number(each.distance, 3)} m of ${each.obstacle} at ${number(each.at, 3)} s; in the original ${number(each.original, 3)} m`)))));
+    }
+    return box;
+  }
+
+  // Who looked, suggestion, rounds
+
+  function looked(one, page) {
+    const section = h("section", { "aria-labelledby": "looked" }, h("h2", { id: "looked" }, "Who looked"));
+    if (!page.looked) {
+      if (!one.survives) return "";
+      section.append(one.status === "not covered" ? empty("No test ran it.", "A test that reaches this line comes before any check.")
+        : empty("It is not known what the tests checked.", "Checks are seen where pytest rewrites assertions; this journal holds none for this mutant."));
+      return section;
+    }
+    section.append(h("p", { class: "hint" }, `Round ${page.looked.round + 1}: each check that was made, the values it compared, and by how much it held.`));
+    for (const test of page.looked.tests) {
+      const spares = test.checks.map((check) => check[3]).filter((spare) => spare !== null);
+      const nearest = Math.min(...spares);
+      section.append(h("h3", { class: "test" }, h("code", null, test.test)));
+      if (!test.acted) { section.append(h("p", null, "The mutant changed nothing in it.")); continue; }
+      if (!test.checks.length) { section.append(h("p", null, "No check of its own was seen. Assertions that pytest does not rewrite are not.")); continue; }
+      section.append(h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Checks" }, h("table", { class: "checks" },
+        h("thead", null, h("tr", null, h("th", { scope: "col" }, "place"), h("th", { scope: "col" }, "check"), h("th", { scope: "col" }, "with"), h("th", { scope: "col", class: "n" }, "to spare"))),
+        h("tbody", null, test.checks.map(([place, text, seen, spare, many]) => h("tr", { class: spare !== null && spare === nearest ? "nearest" : null },
+          h("td", null, place.replace(/^.*\//, "")), h("td", null, h("code", null, text), many > 1 ? h("small", null, `${many} times, the nearest to fail`) : null), h("td", null, seen ? h("code", null, seen) : "–"), h("td", { class: "n" }, spare === null ? "–" : number(spare, 3))))))));
+      if (test.more) section.append(h("p", { class: "hint" }, `and ${count(test.more, "more check")}; \`mutabot show ${one.number} --json\` has those that were kept.`));
+    }
+    return section;
+  }
+
+  function suggestion(page) {
+    const found = page.suggestion;
+    if (!found) return "";
+    return h("section", { class: "suggestion", "aria-labelledby": "suggestion" }, h("h2", { id: "suggestion" }, "A check that would catch it"), found.test ? h("p", null, "In ", h("code", null, found.test), ":") : null,
+      h("pre", { tabindex: "0" }, h("code", null, found.code)), h("ul", { class: "plain" }, (found.notes || []).map((note) => h("li", null, note))));
+  }
+
+  function rounds(one, page) {
+    const section = h("section", { "aria-labelledby": "rounds" }, h("h2", { id: "rounds" }, "Rounds"));
+    const alike = new Map();
+    page.rounds.forEach((outcome, round) => {
+      const like = outcome ? JSON.stringify([one.ends[round], outcome.test, outcome.exception, outcome.place, (outcome.message || "").replace(/-?\d+(\.\d+)?(e-?\d+)?/g, "0"), outcome.divergence.map((line) => line.replace(/-?\d+(\.\d+)?(e-?\d+)?/g, "0"))]) : "";
+      alike.set(like, [...(alike.get(like) || []), round]);
+    });
+    for (const those of alike.values()) section.append(round(one, page, those));
+    return section;
+  }
+
+  function round(one, page, those) {
+    const outcome = page.rounds[those[0]];
+    const letter = one.ends[those[0]];
+    const head = h("h3", { class: "round" }, marks.mark(letter), ` Round${those.length > 1 ? "s" : ""} ${those.map((each) => each + 1).join(", ")}: ${marks.LETTERS[letter][1]}`);
+    if (!outcome) return h("div", null, head, h("p", null, "Not run yet."));
+    const values = those.map((each) => page.rounds[each]).filter((each) => each && each.example && each.example.length === 2);
+    return h("div", { class: "round-box" }, head,
+      outcome.test ? h("p", null, "in ", h("code", null, outcome.test), outcome.place ? [" at ", h("code", null, outcome.place)] : null) : null,
+      outcome.message ? h("pre", { tabindex: "0", "aria-label": "What the test said" }, `${outcome.exception ? `${outcome.exception.replace(/^.*:/, "")}: ` : ""}${outcome.message.trimEnd()}`) : null,
+      outcome.kills.length ? h("p", null, "Also noticed by ", outcome.kills.map(([test, by], index) => [index ? ", " : "", h("code", null, test), ` (${by})`])) : null,
+      outcome.divergence.length || outcome.gaps.length ? h("ul", { class: "plain" }, outcome.divergence.map((line) => h("li", null, line)), outcome.gaps.map((line) => h("li", null, `not compared: ${line}`))) : null,
+      values.length ? h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Values" }, h("table", { class: "values" }, h("thead", null, h("tr", null, ["round", "value", "in its place"].map((name, index) => h("th", { scope: "col", class: "n" }, name)))),
+        h("tbody", null, those.map((each) => [each, page.rounds[each]]).filter(([, each]) => each && each.example && each.example.length === 2).map(([each, found]) => h("tr", null, h("td", { class: "n" }, each + 1), h("td", { class: "n" }, value(found.example[0], one.unit)), h("td", { class: "n" }, value(found.example[1], one.unit))))))) : null,
+      h("p", { class: "hint" }, [`acted at ${outcome.acted} of ${count(outcome.hits, "hit")}`, count(outcome.tests, "test") + " run", outcome.compared && `compared ${outcome.compared}${outcome.indistinguishable ? ": nothing differs" : ""}`,
+        `${number(outcome.wall, 2)} s`, outcome.repeats ? `run again ${outcome.repeats} times, the same` : null, ...outcome.away.map(([why, many]) => `stayed away ${many} times: ${why}`)].filter(Boolean).join(" · ")),
+      outcome.stuck ? h("pre", { tabindex: "0", "aria-label": "Where it was stuck" }, outcome.stuck) : null);
+  }
+  const value = (found, unit) => `${typeof found === "number" ? number(found, 7) : String(found)}${unit && typeof found === "number" ? ` ${unit}` : ""}`;
+})();

@@ -1,0 +1,173 @@
+/* The overview: scores, what to act on, what is not known. */
+"use strict";
+(() => {
+  const { h, svg, address, percent, between, count, number, duration, empty, marks } = mutabot;
+  const SHOWN = 10;
+
+  mutabot.views.set("", (body) => {
+    const campaign = mutabot.campaign;
+    const survivors = worstFirst(campaign.mutants);
+    body.append(
+      h("h1", { tabindex: "-1" }, `${count(campaign.mutants.length, "mutant")} × ${count(campaign.rounds, "round")}`),
+      state(campaign),
+      scores(campaign),
+      toActOn(survivors, campaign),
+      h("div", { class: "columns" }, unseen(campaign), outside(campaign)),
+      trust(campaign),
+    );
+  });
+
+  const worstFirst = (mutants) => mutants.filter((one) => one.survives)
+    .sort((one, other) => other.worst - one.worst || one.indistinguishable - other.indistinguishable || one.number - other.number);
+  mutabot.worstFirst = worstFirst;
+
+  function state(campaign) {
+    const meta = campaign.meta;
+    const complete = campaign.state === "complete" && campaign.done >= campaign.planned;
+    const facts = [typeof meta.seconds === "number" && `took ${duration(meta.seconds)}`,
+      meta.families && `families ${meta.families.join(", ")}`, count(campaign.tests.length, "test"),
+      campaign.drawing && campaign.drawing.sample && `a sample of ${campaign.drawing.sample} of ${count(campaign.drawing.selected, "mutant")}`,
+      campaign.drawing && campaign.drawing.onePerSite && "one mutant per site"];
+    return [
+      h("p", { class: "lead" }, complete ? "The campaign is complete. " : "", facts.filter(Boolean).join(" · ")),
+      complete ? null : h("p", { class: "notice" }, h("strong", null, `This campaign is not complete (${campaign.state}): `),
+        `${campaign.done} of ${campaign.planned} outcomes are known. `, "`mutabot run` goes on where it stopped."),
+      campaign.attempt ? h("p", { class: "notice" }, `A later campaign ended before it ran anything: ${campaign.attempt}`) : null,
+    ].flat().reduce((box, one) => { if (one) box.append(one); return box; }, h("div", { class: "state" }));
+  }
+
+  function scores(campaign) {
+    if (!campaign.groups.length) {
+      return empty("No mutants were planned.", "No operator of the chosen families fits a call that the tests reach. ",
+        h("code", null, "mutabot check"), " says which operations are reached, and ", h("code", null, "mutabot list"), " what could be planned.");
+    }
+    const head = h("tr", null, ["family · role", "score", "", "check score", "outcomes over all rounds", "mutants"].map((name, index) =>
+      h("th", { scope: "col", class: [1, 3, 5].includes(index) ? "n" : null }, name || h("span", { class: "unseen" }, "score with rounds and interval"))));
+    return h("section", { "aria-labelledby": "scores" }, h("h2", { id: "scores" }, "Scores"),
+      h("div", { class: "scroll", role: "region", tabindex: "0", "aria-labelledby": "scores" },
+        h("table", { class: "scores" }, h("thead", null, head), h("tbody", null, campaign.groups.map((one) => group(one))))),
+      h("p", { class: "hint" }, "Score: killed of valid mutants, the mean over rounds. Check score: what the tests' own checks found. ",
+        "Bar: 95 % interval; ticks: single rounds; hollow mark: check score. Families and roles are never added up."));
+  }
+
+  function group(one) {
+    return h("tr", null,
+      h("th", { scope: "row" }, h("a", { href: address(["mutants"], { family: one.family, role: one.role }) }, `${one.family} · ${one.role}`)),
+      h("td", { class: "n big" }, percent(one.score), h("small", null, one.interval ? between(one.interval) : one.score === null ? "nothing valid" : "no interval")),
+      h("td", null, dots(one)),
+      h("td", { class: "n" }, percent(one.check), h("small", null, between(one.checkInterval))),
+      h("td", null, bar(one)),
+      h("td", { class: "n" }, one.mutants, one.population ? h("small", null, `drawn of ${one.population}`) : null));
+  }
+
+  /** The score's interval, its rounds and the check score on a scale from 0 to 100 %. */
+  function dots(one) {
+    const x = (share) => 4 + 192 * share;
+    const rounds = one.rounds.filter((round) => round[0] !== null);
+    const told = rounds.map((round, index) => `round ${index + 1} ${percent(round[0])}`).join(", ");
+    return svg("svg", { class: "dots", viewBox: "0 0 200 34", role: "img", "aria-label": `Score ${percent(one.score)}${one.interval ? `, 95 % interval ${between(one.interval)}` : ""}; ${told}; check score ${percent(one.check)}` },
+      svg("line", { class: "axis", x1: x(0), x2: x(1), y1: 22, y2: 22 }),
+      [0, 0.25, 0.5, 0.75, 1].map((share) => svg("line", { class: "axis", x1: x(share), x2: x(share), y1: 20, y2: 24 })),
+      [0, 0.5, 1].map((share) => svg("text", { x: x(share), y: 33, "text-anchor": share === 0 ? "start" : share === 1 ? "end" : "middle" }, 100 * share)),
+      one.interval ? svg("rect", { class: "interval", x: x(one.interval[0]), width: Math.max(1, x(one.interval[1]) - x(one.interval[0])), y: 8, height: 6, rx: 1 }) : null,
+      rounds.map((round) => svg("line", { class: "round", x1: x(round[0]), x2: x(round[0]), y1: 5, y2: 17 })),
+      one.check !== null ? svg("circle", { class: "check", cx: x(one.check), cy: 11, r: 3.6 }) : null,
+      one.score !== null ? svg("circle", { class: "mean", cx: x(one.score), cy: 11, r: 4 }) : null);
+  }
+
+  const KINDS = [["check", "C", "killed by a check"], ["exception", "X", "by an exception"], ["timeout", "T", "by a time-out"], ["survived", "S", "survived"],
+    ["uncovered", "N", "not covered"], ["refused", "R", "refused"], ["invalid", "I", "invalid"], ["idle", "=", "no effect"], ["unstable", "U", "unstable"], ["error", "E", "error"]];
+  const NAMES = { timeout: "timeout", survived: "survived", uncovered: "not covered", refused: "refused", invalid: "invalid", idle: "no effect", unstable: "unstable", error: "error" };
+  function bar(one) {
+    const counts = Object.fromEntries(one.counts);
+    const killed = counts.killed || 0;
+    const parts = KINDS.map(([kind, letter, words]) => [kind, letter, words,
+      kind === "check" ? one.byCheck : kind === "exception" ? killed - one.byCheck : counts[NAMES[kind]] || 0]).filter((part) => part[3]);
+    const total = parts.reduce((sum, part) => sum + part[3], 0) || 1;
+    const strip = h("div", { class: "strip", "aria-hidden": "true" });
+    for (const [kind, , , found] of parts) {
+      const piece = h("span", { class: `m-${kind}` });
+      piece.style.flexGrow = found / total;
+      strip.append(piece);
+    }
+    return h("div", { class: "bar" }, strip, h("ul", null, parts.map(([kind, letter, words, found]) => h("li", null,
+      h("span", { class: `mark m-${kind}`, "aria-hidden": "true" }, letter), `${found} ${words}`))));
+  }
+
+  function toActOn(survivors, campaign) {
+    const heading = h("h2", { id: "survivors" }, survivors.length ? `Survivors: ${survivors.length}, the farthest from the original first` : "Survivors");
+    if (!survivors.length) {
+      const judged = campaign.mutants.some((one) => one.valid);
+      return h("section", null, heading, judged
+        ? empty(campaign.state === "complete" ? "No survivors." : "No survivors so far.", "The tests noticed every mutant that was valid. The check score above tells how many of these were found by checks, and not by an exception on the way.")
+        : empty("Nothing was judged.", "No mutant was valid in any round; the list below says why."));
+    }
+    return h("section", { "aria-labelledby": "survivors" }, heading,
+      h("ol", { class: "findings" }, survivors.slice(0, SHOWN).map((one) => finding(one))),
+      survivors.length > SHOWN ? h("p", null, h("a", { class: "more", href: address(["mutants"], { status: "survived,not covered", sort: "worst" }) }, `All ${survivors.length} survivors`)) : null);
+  }
+
+  function finding(one) {
+    return h("li", null,
+      h("div", { class: "finding-head" }, marks.ends(one.ends), h("a", { href: address(["mutant", String(one.number)]) }, `${one.number}  ${one.description}`),
+        h("span", { class: "place" }, one.place, " · ", one.operator)),
+      h("p", { class: "story" }, one.why));
+  }
+
+  function unseen(campaign) {
+    const none = campaign.tests.map((name, index) => [name, index]).filter(([, index]) => !campaign.mutants.some((one) => one.kills.some((kill) => kill[0] === index)));
+    const section = h("section", { "aria-labelledby": "unseen" }, h("h2", { id: "unseen" }, "Nobody looks"));
+    if (!campaign.unlooked.length && !none.length) {
+      section.append(empty("Every test kills something.", "Each test noticed a mutant, and every reading that the tests take is looked at, as far as mutants can tell."));
+      return section;
+    }
+    if (campaign.unlooked.length) section.append(h("h3", null, "Readings that no test looks at"), h("ul", { class: "plain" }, campaign.unlooked.map((one) => h("li", null, h("code", null, one[one.length - 1])))));
+    if (none.length) {
+      section.append(h("h3", null, `Tests that kill nothing: ${none.length} of ${campaign.tests.length}`),
+        h("ul", { class: "plain" }, none.slice(0, SHOWN).map(([name]) => h("li", null, h("code", null, name)))),
+        h("p", null, h("a", { class: "more", href: address(["tests"]) }, "Tests and what they kill")));
+    }
+    return section;
+  }
+
+  function outside(campaign) {
+    const section = h("section", { "aria-labelledby": "outside" }, h("h2", { id: "outside" }, "Not judged"));
+    const found = ["error", "unstable", "refused", "invalid", "no effect", "not run"]
+      .map((name) => [name, campaign.mutants.filter((one) => one.status === name).length]).filter(([, many]) => many);
+    if (found.length) {
+      section.append(h("ul", { class: "plain" }, found.map(([name, many]) => h("li", null,
+        h("a", { href: address(["mutants"], { status: name }) }, marks.status(name)), ` ${count(many, "mutant")}: ${marks.MEANING[name]}`))));
+    } else section.append(h("p", { class: "hint" }, "Every planned mutant was judged."));
+    if (campaign.leftOut.length) {
+      const all = campaign.leftOut.reduce((sum, [, many]) => sum + many, 0);
+      section.append(h("h3", null, `Left out of the plan: ${all}`), campaign.leftOut.map(([reason, many, items]) => h("details", null,
+        h("summary", null, `${many} × ${reason}`), h("ul", { class: "plain small" }, items.map(([id, text]) => h("li", null, text, " ", h("code", null, id))),
+          many > items.length ? h("li", null, `and ${many - items.length} more, which \`mutabot list\` prints`) : null))));
+    }
+    return section;
+  }
+
+  function trust(campaign) {
+    const lines = [];
+    const wrong = campaign.controls.filter((one) => !one[2]);
+    if (campaign.controls.length) {
+      lines.push(wrong.length
+        ? h("li", { class: "bad" }, `${count(wrong.length, "control")} ended wrongly: `, wrong.map((one) => `${one[1]} for ${one[0]}, ${one[3]}`).join("; "))
+        : h("li", null, `${count(campaign.controls.length, "control")} ended as they must: one that changes nothing survives, one that breaks everything dies.`));
+    }
+    if (campaign.flaky.length) lines.push(h("li", { class: "bad" }, `${count(campaign.flaky.length, "test")} cannot be relied on:`, h("ul", null, campaign.flaky.map((one) => h("li", null, one)))));
+    const verified = campaign.verification;
+    if (verified) {
+      lines.push(verified.disagreements.length
+        ? h("li", { class: "bad" }, `${verified.disagreements.length} of ${verified.checked} outcomes came out otherwise in a fresh process:`,
+          h("ul", null, verified.disagreements.map(([many, round, first, second]) => h("li", null, h("a", { href: address(["mutant", String(many)]) }, `mutant ${many}`), `, round ${round + 1}: ${first}; afresh ${second}`))))
+        : h("li", null, `${count(verified.checked, "outcome")} were run again in fresh processes, and came out the same.`));
+    }
+    if (campaign.confirmation) lines.push(h("li", null, `--confirm looked at ${campaign.confirmation.checked} outcomes; ${campaign.confirmation.unstable} were unstable.`));
+    for (const [name, found] of [["kills", campaign.repeats.falseKills], ["survivors", campaign.repeats.falseSurvivors]]) {
+      if (found) lines.push(h("li", null, `False ${name}, by repeats: ${number(found[0], 2)} expected among ${found[3]} (95 % interval ${number(found[1], 2)} to ${number(found[2], 2)}).`));
+    }
+    if (!lines.length) return "";
+    return h("section", { "aria-labelledby": "trust" }, h("h2", { id: "trust" }, "Can it be trusted?"), h("ul", { class: "plain" }, lines));
+  }
+})();

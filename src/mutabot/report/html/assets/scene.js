@@ -1,0 +1,286 @@
+/* The world in three dimensions, drawn on a plain canvas: no graphics driver is needed, and it prints.
+   What a block hides is drawn faintly, as in a technical drawing, and not left out. */
+"use strict";
+(() => {
+  const { h, ink, number } = mutabot;
+  const { at, axes } = mutabot.recordings;
+  const FIELD = 0.62; // focal length in multiples of the height is 1 / FIELD
+  const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+  const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+  const times = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const FACES = [[0, 1], [0, -1], [1, 1], [1, -1], [2, 1], [2, -1]];
+
+  /** A canvas that shows two recordings, and follows a clock. `worlds`: the original first, each with name and ink. */
+  function scene(worlds, clock) {
+    const blocks = worlds[worlds.length - 1].recording.blocks.map(([name, centre, size, colour]) => ({ name, centre, half: times(size, 0.5), colour }));
+    const things = worlds.map((world) => [...world.recording.tracks.values()].filter((one) => one.kind !== "value" && one.times.length));
+    const shown = new Set(things.flat().map((one) => one.name));
+    const bounds = boundsOf(things.flat(), blocks);
+    const home = { yaw: -0.9, pitch: 0.5, distance: 1.5 * bounds.radius / FIELD, target: bounds.centre };
+    const view = { ...home };
+    const canvas = h("canvas", { class: "scene", tabindex: "0", role: "application", "aria-roledescription": "3D view",
+      "aria-label": "Paths of original and mutant in 3D. Arrow keys turn it, plus and minus zoom, 0 shows it as at first, space plays." });
+    let frame = 0;
+    const draw = () => { if (!frame) frame = requestAnimationFrame(() => { frame = 0; if (canvas.isConnected) paint(); }); };
+
+    function paint() {
+      const width = canvas.clientWidth, height = canvas.clientHeight, ratio = Math.min(3, devicePixelRatio || 1);
+      if (!width || !height) return;
+      if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) { canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); }
+      const pen = canvas.getContext("2d");
+      pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+      pen.clearRect(0, 0, width, height);
+      const colours = { ink: ink("ink"), muted: ink("muted"), line: ink("line-strong"), block: ink("block"), edge: ink("block-edge"), paper: ink("surface") };
+      const camera = cameraOf(view, width, height);
+      drawBlocks(pen, camera, blocks, colours);
+      worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => path(pen, camera, one, world, blocks, clock.time)));
+      worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => body(pen, camera, one, world, clock.time, colours, index)));
+      fault(pen, camera, worlds, things, shown, colours);
+      corner(pen, camera, height, colours);
+    }
+
+    canvas.addEventListener("keydown", (event) => {
+      const step = event.shiftKey ? 0.4 : 0.12;
+      const does = {
+        ArrowLeft: () => { view.yaw -= step; }, ArrowRight: () => { view.yaw += step; }, ArrowUp: () => { view.pitch = Math.min(1.55, view.pitch + step); },
+        ArrowDown: () => { view.pitch = Math.max(-1.55, view.pitch - step); }, "+": () => { view.distance /= 1.15; }, "=": () => { view.distance /= 1.15; }, "-": () => { view.distance *= 1.15; },
+        0: () => Object.assign(view, home),
+      }[event.key];
+      if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      does();
+      draw();
+    });
+    canvas.addEventListener("wheel", (event) => {
+      if (document.activeElement !== canvas && !event.ctrlKey) return; // the page goes on to scroll until the view is chosen
+      event.preventDefault();
+      view.distance *= Math.exp(0.0015 * event.deltaY);
+      draw();
+    }, { passive: false });
+    const fingers = new Map();
+    canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); fingers.set(event.pointerId, event); canvas.focus({ preventScroll: true }); });
+    canvas.addEventListener("pointermove", (event) => {
+      const before = fingers.get(event.pointerId);
+      if (!before) return;
+      const dx = event.clientX - before.clientX, dy = event.clientY - before.clientY;
+      if (fingers.size === 2) {
+        const [other] = [...fingers.values()].filter((one) => one.pointerId !== event.pointerId);
+        const apart = (one) => Math.hypot(one.clientX - other.clientX, one.clientY - other.clientY) || 1;
+        view.distance *= apart(before) / apart(event);
+      } else if (event.shiftKey || event.buttons === 4 || event.buttons === 2) {
+        const camera = cameraOf(view, canvas.clientWidth, canvas.clientHeight);
+        const scale = view.distance * FIELD / canvas.clientHeight * 2;
+        view.target = plus(view.target, plus(times(camera.right, -dx * scale), times(camera.up, dy * scale)));
+      } else { view.yaw -= 0.008 * dx; view.pitch = Math.min(1.55, Math.max(-1.55, view.pitch + 0.008 * dy)); }
+      fingers.set(event.pointerId, event);
+      draw();
+    });
+    for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => fingers.delete(event.pointerId));
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    const watch = new ResizeObserver(draw);
+    watch.observe(canvas);
+    addEventListener("theme", draw);
+    addEventListener("beforeprint", paint);
+    clock.on(draw);
+
+    const turn = (name, yaw, pitch) => h("button", { type: "button", onclick: () => { Object.assign(view, home, { yaw, pitch }); draw(); } }, name);
+    const names = [...new Set(things.flat().map((one) => one.name))];
+    const controls = h("div", { class: "scene-controls" },
+      h("div", { role: "group", "aria-label": "View" }, turn("3D", home.yaw, home.pitch), turn("Top", -Math.PI / 2, 1.55), turn("Front", -Math.PI / 2, 0), turn("Side", 0, 0),
+        h("button", { type: "button", "aria-label": "Nearer", onclick: () => { view.distance /= 1.25; draw(); } }, "+"),
+        h("button", { type: "button", "aria-label": "Farther", onclick: () => { view.distance *= 1.25; draw(); } }, "−")),
+      names.length > 1 ? h("div", { role: "group", "aria-label": "Shown" }, names.map((name) => h("label", { class: "toggle" },
+        h("input", { type: "checkbox", checked: true, onchange: (event) => { if (event.target.checked) shown.add(name); else shown.delete(name); draw(); } }), name))) : null);
+    const stop = () => { watch.disconnect(); removeEventListener("theme", draw); removeEventListener("beforeprint", paint); };
+    return { canvas, controls, stop };
+  }
+
+  function boundsOf(tracks, blocks) {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    for (const one of tracks) for (const row of one.rows) for (let axis = 0; axis < 3; axis += 1) { low[axis] = Math.min(low[axis], row[axis]); high[axis] = Math.max(high[axis], row[axis]); }
+    if (low[0] === Infinity) for (const one of blocks) for (let axis = 0; axis < 3; axis += 1) { low[axis] = Math.min(low[axis], one.centre[axis]); high[axis] = Math.max(high[axis], one.centre[axis]); }
+    if (low[0] === Infinity) return { centre: [0, 0, 0], radius: 1 };
+    const centre = times(plus(low, high), 0.5);
+    return { centre, radius: Math.max(0.1, 0.5 * Math.hypot(...minus(high, low))) };
+  }
+
+  function cameraOf(view, width, height) {
+    const forward = [-Math.cos(view.pitch) * Math.cos(view.yaw), -Math.cos(view.pitch) * Math.sin(view.yaw), -Math.sin(view.pitch)];
+    const right = [-Math.sin(view.yaw), Math.cos(view.yaw), 0];
+    const up = [-Math.sin(view.pitch) * Math.cos(view.yaw), -Math.sin(view.pitch) * Math.sin(view.yaw), Math.cos(view.pitch)];
+    const eye = minus(view.target, times(forward, view.distance));
+    const scale = Math.min(height, width) / (2 * FIELD);
+    const project = (point) => {
+      const from = minus(point, eye);
+      const depth = Math.max(0.02, dot(from, forward));
+      return [width / 2 + scale * dot(from, right) / depth, height / 2 - scale * dot(from, up) / depth, depth];
+    };
+    return { eye, forward, right, up, project };
+  }
+
+  /** The corners of one side of a box whose edges go along `frame`. */
+  function side(centre, half, frame, axis, sign) {
+    const [u, v] = [0, 1, 2].filter((one) => one !== axis);
+    const middle = plus(centre, times(frame[axis], sign * half[axis]));
+    return [[1, 1], [1, -1], [-1, -1], [-1, 1]].map(([a, b]) => plus(middle, plus(times(frame[u], a * half[u]), times(frame[v], b * half[v]))));
+  }
+  const UPRIGHT = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+
+  function box(pen, camera, centre, half, frame, style) {
+    for (const [axis, sign] of FACES) {
+      const normal = times(frame[axis], sign);
+      if (dot(minus(camera.eye, plus(centre, times(normal, half[axis]))), normal) <= 0) continue;
+      const points = side(centre, half, frame, axis, sign).map(camera.project);
+      pen.beginPath();
+      points.forEach(([x, y], index) => (index ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+      pen.closePath();
+      pen.globalAlpha = style.alpha * (0.72 + 0.28 * Math.max(0, normal[2]) + 0.1 * normal[0]);
+      pen.fillStyle = style.fill;
+      if (style.fill) pen.fill();
+      pen.globalAlpha = style.edgeAlpha;
+      pen.strokeStyle = style.edge;
+      pen.lineWidth = style.width;
+      pen.setLineDash(style.dash || []);
+      pen.stroke();
+    }
+    pen.setLineDash([]);
+    pen.globalAlpha = 1;
+  }
+
+  function drawBlocks(pen, camera, blocks, colours) {
+    const sorted = [...blocks].sort((one, other) => camera.project(other.centre)[2] - camera.project(one.centre)[2]);
+    for (const one of sorted) box(pen, camera, one.centre, one.half, UPRIGHT, { fill: colours.block, alpha: 1, edge: colours.edge, edgeAlpha: 1, width: 1 });
+    pen.font = "500 11px system-ui, sans-serif";
+    pen.textAlign = "center";
+    pen.fillStyle = colours.muted;
+    for (const one of sorted) {
+      const [x, y] = camera.project(plus(one.centre, [0, 0, one.half[2]]));
+      pen.fillText(mutabot.legible(one.name), x, y + 4);
+    }
+  }
+
+  /** Whether a block stands between the eye and a point. */
+  function hidden(eye, point, blocks) {
+    const way = minus(point, eye);
+    return blocks.some(({ centre, half }) => {
+      let near = 0, far = 0.985;
+      for (let axis = 0; axis < 3; axis += 1) {
+        const low = centre[axis] - half[axis] - eye[axis], high = centre[axis] + half[axis] - eye[axis];
+        if (Math.abs(way[axis]) < 1e-9) { if (low > 0 || high < 0) return false; continue; }
+        const a = low / way[axis], b = high / way[axis];
+        near = Math.max(near, Math.min(a, b));
+        far = Math.min(far, Math.max(a, b));
+      }
+      return near < far;
+    });
+  }
+
+  function path(pen, camera, one, world, blocks, time) {
+    const now = at(one, time);
+    const points = [];
+    one.times.forEach((when, index) => {
+      if (now && when > time && (index === 0 || one.times[index - 1] <= time)) points.push([now, time]);
+      points.push([one.rows[index], when]);
+    });
+    pen.strokeStyle = world.ink();
+    pen.lineWidth = world.width;
+    pen.lineJoin = "round";
+    pen.lineCap = "round";
+    let style = -1;
+    points.forEach(([row, when], index) => {
+      if (!index) return;
+      const [before, began] = points[index - 1];
+      if (one.gaps.some(([from, to]) => began < to && when > from)) return;
+      const middle = times(plus(before, row), 0.5);
+      const wanted = (hidden(camera.eye, middle, blocks) ? 2 : 0) + (when > time + 1e-9 ? 1 : 0);
+      const [x, y] = camera.project(row);
+      if (wanted !== style) {
+        if (style >= 0) pen.stroke();
+        style = wanted;
+        pen.globalAlpha = [1, 0.38, 0.32, 0.16][style];
+        pen.setLineDash(style >= 2 ? [3, 3] : []);
+        pen.beginPath();
+        const [x0, y0] = camera.project(before);
+        pen.moveTo(x0, y0);
+      }
+      pen.lineTo(x, y);
+    });
+    if (style >= 0) pen.stroke();
+    pen.setLineDash([]);
+    pen.globalAlpha = 1;
+  }
+
+  /** Where a thing is now: its box, or a ring with its z axis. */
+  function body(pen, camera, one, world, time, colours, index) {
+    const row = at(one, time);
+    if (!row) return;
+    const colour = world.ink();
+    const frame = one.kind === "pose" ? axes(row) : UPRIGHT;
+    if (one.size) {
+      box(pen, camera, row, times(one.size, 0.5), frame, { fill: index ? colour : colours.paper, alpha: index ? 0.55 : 0.35, edge: colour, edgeAlpha: 1, width: index ? 1.6 : 1.2, dash: index ? null : [3, 2] });
+    } else {
+      const [x, y, depth] = camera.project(row);
+      if (one.kind === "pose") {
+        const [x2, y2] = camera.project(plus(row, times(frame[2], 0.05 * depth)));
+        pen.strokeStyle = colour;
+        pen.lineWidth = 2;
+        pen.beginPath(); pen.moveTo(x, y); pen.lineTo(x2, y2); pen.stroke();
+      }
+      pen.fillStyle = index ? colour : colours.paper;
+      pen.strokeStyle = colour;
+      pen.lineWidth = 1.8;
+      pen.beginPath(); pen.arc(x, y, 4.5, 0, 2 * Math.PI); pen.fill(); pen.stroke();
+    }
+    const [x, y] = camera.project(row);
+    pen.font = "600 11px system-ui, sans-serif";
+    pen.textAlign = "left";
+    pen.lineWidth = 3;
+    pen.strokeStyle = colours.paper;
+    const twin = index === 0;
+    if (twin) return; // the mutant's label stands for both where they meet
+    pen.strokeText(mutabot.legible(one.name), x + 9, y - 7);
+    pen.fillStyle = colour;
+    pen.fillText(mutabot.legible(one.name), x + 9, y - 7);
+  }
+
+  /** The moment of the fault, on the way of the first thing that is tracked. */
+  function fault(pen, camera, worlds, things, shown, colours) {
+    const world = worlds[worlds.length - 1];
+    const when = world.recording.fault;
+    const one = things[worlds.length - 1].find((thing) => shown.has(thing.name));
+    const row = when !== null && when !== undefined && one ? at(one, when) : null;
+    if (!row) return;
+    const [x, y] = camera.project(row);
+    pen.fillStyle = colours.ink;
+    pen.strokeStyle = colours.paper;
+    pen.lineWidth = 2;
+    pen.beginPath();
+    pen.moveTo(x, y - 7); pen.lineTo(x + 6, y); pen.lineTo(x, y + 7); pen.lineTo(x - 6, y);
+    pen.closePath();
+    pen.stroke();
+    pen.fill();
+    pen.font = "600 11px system-ui, sans-serif";
+    pen.textAlign = "right";
+    pen.lineWidth = 3;
+    pen.strokeText(`fault ${number(when, 4)} s`, x - 10, y + 4);
+    pen.fillText(`fault ${number(when, 4)} s`, x - 10, y + 4);
+  }
+
+  /** Which way x, y and z go, in the corner. */
+  function corner(pen, camera, height, colours) {
+    const middle = [34, height - 34];
+    pen.font = "600 10px system-ui, sans-serif";
+    pen.textAlign = "center";
+    UPRIGHT.forEach((axis, index) => {
+      const x = middle[0] + 22 * dot(axis, camera.right), y = middle[1] - 22 * dot(axis, camera.up);
+      pen.strokeStyle = colours.muted;
+      pen.fillStyle = colours.muted;
+      pen.lineWidth = 1.3;
+      pen.beginPath(); pen.moveTo(...middle); pen.lineTo(x, y); pen.stroke();
+      pen.fillText("xyz"[index], middle[0] + 30 * dot(axis, camera.right), middle[1] - 30 * dot(axis, camera.up) + 3);
+    });
+  }
+
+  mutabot.scene = scene;
+})();

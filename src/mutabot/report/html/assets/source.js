@@ -1,0 +1,62 @@
+/* The program's text with its mutants in the margin, and survivors under their lines. */
+"use strict";
+(() => {
+  const { h, address, count, empty, marks } = mutabot;
+  const MARKS = 7;
+  const LETTER = (one) => one.status === "killed" ? (one.ends.includes("C") ? "C" : "X") : marks.STATUS[one.status];
+
+  mutabot.views.set("source", (body, parts, asked) => {
+    const campaign = mutabot.campaign;
+    const file = parts.length ? parts.join("/") : campaign.files[0];
+    body.append(h("h1", { tabindex: "-1" }, file ? file : "Source"));
+    if (!file) { body.append(empty("There is no source to show.", "The campaign planned no mutant.")); return undefined; }
+    const holder = h("div", null, h("p", { class: "wait" }, "The source is being read …"));
+    if (campaign.files.length > 1) {
+      body.append(h("nav", { class: "files", "aria-label": "Files" }, h("ul", null, [...campaign.files].sort().map((one) => {
+        const here = campaign.mutants.filter((mutant) => mutant.file === one);
+        const alive = here.filter((mutant) => mutant.survives).length;
+        return h("li", null, h("a", { href: address(["source", one]), "aria-current": one === file ? "page" : null }, one, h("small", null, `${count(here.length, "mutant")}, ${count(alive, "survivor")}`)));
+      }))));
+    }
+    body.append(holder);
+    let gone = false;
+    mutabot.load("sources", "data/sources.js").then((sources) => {
+      if (gone) return;
+      const text = new Map(sources).get(file);
+      holder.replaceChildren(text === undefined
+        ? empty("The text of this file was not written down.", "The journal is of an older version of mutabot, or the file could not be read. The mutants are in ",
+          h("a", { href: address(["mutants"], { file }) }, "the list"), ".")
+        : code(file, text, campaign.mutants.filter((one) => one.file === file || one.also.some(([index]) => campaign.files[index] === file))));
+      const wanted = asked.line && document.getElementById(`L${asked.line}`);
+      if (wanted) { wanted.classList.add("wanted"); wanted.scrollIntoView({ block: "center" }); }
+    }, (error) => { holder.replaceChildren(empty("The source cannot be shown.", error.message)); });
+    return () => { gone = true; };
+  });
+
+  function code(file, text, mutants) {
+    const byLine = new Map();
+    for (const one of mutants) {
+      const lines = [one.file === file ? one.line : null, ...one.also.filter(([index]) => mutabot.campaign.files[index] === file).map(([, line]) => line)];
+      for (const line of new Set(lines)) if (line) byLine.set(line, [...(byLine.get(line) || []), one]);
+    }
+    const box = h("div", { class: "code", role: "list", "aria-label": `${file}, line by line` });
+    text.replace(/\n$/, "").split("\n").forEach((line, index) => box.append(row(file, line, index + 1, byLine.get(index + 1) || [])));
+    const toggle = h("label", { class: "toggle" }, h("input", { type: "checkbox", checked: true, onchange: (event) => { box.classList.toggle("bare", !event.target.checked); } }), "Survivors under their lines");
+    return h("div", null, h("p", { class: "told" }, toggle), box, marks.legend(new Set(mutants.map(LETTER))));
+  }
+
+  function row(file, line, at, mutants) {
+    const sorted = [...mutants].sort((one, other) => Number(other.survives) - Number(one.survives) || other.worst - one.worst || one.number - other.number);
+    const shown = sorted.slice(0, sorted.length > MARKS ? MARKS - 1 : MARKS);
+    const alive = sorted.filter((one) => one.survives);
+    return h("div", { class: `line${alive.length ? " has-survivor" : ""}`, id: `L${at}`, role: "listitem" },
+      h("span", { class: "at" }, at),
+      h("span", { class: "margin" }, shown.map((one) => h("a", { href: address(["mutant", String(one.number)]), class: `mark m-${marks.LETTERS[LETTER(one)][0]}`,
+        "aria-label": `mutant ${one.number}, ${one.status}: ${one.description}`, title: `${one.number} ${one.status}: ${one.description}` }, LETTER(one))),
+      sorted.length > shown.length ? h("a", { class: "rest", href: address(["mutants"], { file, line: String(at) }), "aria-label": `all ${sorted.length} mutants of line ${at}` }, `+${sorted.length - shown.length}`) : null),
+      h("code", null, line || " "),
+      alive.length ? h("ul", { class: "alive" }, alive.slice(0, 5).map((one) => h("li", null,
+        h("a", { href: address(["mutant", String(one.number)]) }, `${one.number}  ${one.description}`), ` ${one.why}`)),
+      alive.length > 5 ? h("li", null, h("a", { href: address(["mutants"], { file, line: String(at), status: "survived,not covered" }) }, `and ${alive.length - 5} more survivors here`)) : null) : null);
+  }
+})();

@@ -1,0 +1,180 @@
+"""The folder of a report: pages, their data and what shows them, written so that nothing of a user's is lost."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from mutabot.analysis.results import MutantResult
+from mutabot.analysis.stored.campaign import StoredCampaign
+from mutabot.analysis.stored.evidence import StoredEvidence
+from mutabot.border.codec import to_data
+from mutabot.errors import UsageError
+
+from .mutant import mutant_page
+from .overview import campaign_data
+from .recorded import Recorded
+from .scripts import script_of
+from .suggestion import Suggest
+
+#: by what a folder is known to be a report, and so may be written again
+MARK = "mutabot-report.txt"
+_MARK_TEXT = "A report of mutabot: open index.html. `mutabot report --html` replaces it, and leaves clips/ alone.\n"
+#: what a report consists of, beside clips/
+_PAGE, _ASSETS, _DATA, _CLIPS = "index.html", "assets", "data", "clips"
+#: bytes that recordings may take
+LIMIT = 18_000_000
+#: clips and pictures of a mutant are named by its number: 12.mp4, 12-side.png
+_CLIP = re.compile(r"(\d+)(?:[-_. ].*)?\.(mp4|webm|gif|png|jpe?g|svg|webp)", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What was written.
+
+    Attributes:
+        page: the page to open.
+        bytes: size of all files.
+        without: recordings for which there was no room.
+    """
+
+    page: Path
+    bytes: int
+    without: int
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """What a report is made from.
+
+    Attributes:
+        campaign: the campaign, fit to leave the machine.
+        name: what the project is called.
+        evidence: its recordings.
+        clean: makes texts of recordings fit to leave the machine.
+        suggest: what suggests a check for a survivor, if anything does.
+    """
+
+    campaign: StoredCampaign
+    name: str
+    evidence: StoredEvidence
+    clean: Callable[[str], str]
+    suggest: Suggest | None = None
+
+
+def check_folder(folder: Path) -> None:
+    """Raise UsageError for a folder that a report must not be written into."""
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(f"the report {folder} cannot be written: it is a file; --html takes a folder")
+    found = {one.name for one in folder.iterdir()} - {_CLIPS} if folder.is_dir() else set()
+    if found and MARK not in found:
+        raise UsageError(
+            f"the report {folder} cannot be written: the folder holds other files, such as {min(found)}; "
+            "name a new or empty folder, or one with an older report"
+        )
+
+
+def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Written:
+    """Write the report; an older one in the folder is replaced. Raises UsageError if it cannot be.
+
+    Args:
+        limit: bytes that recordings may take.
+    """
+    check_folder(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / MARK).write_text(_MARK_TEXT, encoding="utf-8")
+        for name in (_ASSETS, _DATA):
+            shutil.rmtree(folder / name, ignore_errors=True)
+            (folder / name).mkdir()
+        without = _write_data(folder / _DATA, contents, _clips(folder / _CLIPS), limit)
+        _copy_assets(folder)
+    except OSError as error:
+        raise UsageError(f"the report {folder} cannot be written: {error.strerror}") from error
+    size = sum(one.stat().st_size for one in folder.rglob("*") if one.is_file())
+    return Written(folder / _PAGE, size, without)
+
+
+def _copy_assets(folder: Path) -> None:
+    for one in files(__package__).joinpath(_ASSETS).iterdir():
+        target = folder / one.name if one.name == _PAGE else folder / _ASSETS / one.name
+        if one.is_file():
+            target.write_bytes(one.read_bytes())
+
+
+def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]], limit: int) -> int:
+    campaign = contents.campaign
+    _write(folder / "campaign.js", "campaign", campaign_data(campaign, contents.name))
+    _write(folder / "sources.js", "sources", [[file, text] for file, text in campaign.sources.items()])
+    recorded = Recorded(contents.evidence, contents.clean)
+    found, without = _recordings(recorded, _in_order(campaign), limit)
+    for name in ("mutants", "originals"):
+        (folder / name).mkdir()
+    for result in campaign.mutants:
+        number = result.mutant.number
+        page = {
+            **mutant_page(result),
+            "suggestion": _suggestion(contents, result),
+            "media": clips.get(number, []),
+            "recordings": found.get(number, []),
+            "withoutRecordings": without.get(number, 0),
+        }
+        _write(folder / "mutants" / f"{number}.js", f"mutant {number}", page)
+    for number, data in enumerate(recorded.originals.values()):
+        _write(folder / "originals" / f"{number}.js", f"original {number}", data)
+    return sum(without.values())
+
+
+def _in_order(campaign: StoredCampaign) -> list[MutantResult]:
+    """The mutants in the order in which their recordings are wanted."""
+    survivors = campaign.survivors
+    numbers = {one.mutant.number for one in survivors}
+    return [*survivors, *(one for one in campaign.mutants if one.mutant.number not in numbers)]
+
+
+def _recordings(
+    recorded: Recorded, results: Iterable[MutantResult], limit: int
+) -> tuple[dict[int, list[Any]], dict[int, int]]:
+    """The recordings of each mutant by its number, one of each before a second of any; and how many are left."""
+    waiting = {one.mutant.number: recorded.of(one) for one in results}
+    found: dict[int, list[Any]] = {}
+    without: dict[int, int] = {}
+    used = 0
+    while waiting:
+        for number, those in [*waiting.items()]:
+            one = next(those, None)
+            if one is None:
+                del waiting[number]
+                continue
+            size = len(script_of("", one))
+            if used + size > limit:
+                without[number] = 1 + sum(1 for _ in those)
+                del waiting[number]
+                continue
+            used += size
+            found.setdefault(number, []).append(one)
+    return found, without
+
+
+def _suggestion(contents: Contents, result: MutantResult) -> Any:
+    found = contents.suggest(result) if contents.suggest is not None else None
+    return to_data(found) if found is not None else None
+
+
+def _clips(folder: Path) -> dict[int, list[str]]:
+    """Clips and pictures that lie in the folder already, by the number of the mutant that they are named for."""
+    found: dict[int, list[str]] = {}
+    for one in sorted(folder.iterdir()) if folder.is_dir() else ():
+        named = _CLIP.fullmatch(one.name)
+        if named is not None and one.is_file():
+            found.setdefault(int(named[1]), []).append(f"{_CLIPS}/{one.name}")
+    return found
+
+
+def _write(file: Path, name: str, data: Any) -> None:
+    file.write_bytes(script_of(name, data).encode("utf-8", errors="replace"))
