@@ -1,4 +1,4 @@
-"""``mutabot report``: the last campaign in formats of other tools, and beside an older one."""
+"""``mutabot report``: the last campaign as pages, in formats of other tools, and beside an older one."""
 
 # Commands import what they need when they run, so that `--help` is fast; typer makes options of parameters.
 # ruff: noqa: PLC0415
@@ -45,6 +45,14 @@ Outputs = Annotated[
         "--output", "-o", metavar="FILE", help="File for the format, in the same order; - is standard output."
     ),
 ]
+Html = Annotated[
+    Path | None,
+    typer.Option(
+        "--html",
+        metavar="DIR",
+        help="Write pages for a browser into this folder, to be opened from disk: DIR/index.html.",
+    ),
+]
 Old = Annotated[
     Path | None,
     typer.Option(
@@ -62,11 +70,12 @@ def report(
     context: typer.Context,
     format: Formats = None,
     output: Outputs = None,
+    html: Html = None,
     compare: Old = None,
     prefix: Prefix = "",
     json: options.Json = False,
 ) -> None:
-    """Write the last campaign in formats of other tools, or tell what differs from an older one.
+    """Write the last campaign as pages or in formats of other tools, or tell what differs from an older one.
 
     It reads the journal alone, also that of a campaign that was interrupted or still runs.
     """
@@ -75,21 +84,28 @@ def report(
     from mutabot.report.shaping.portable import portable
 
     wanted = list(_wanted(format or (), output or ()))
-    if not wanted and compare is None:
-        raise UsageError(f"say which --format to write: {', '.join(FORMATS)}; or --compare with what")
+    if not wanted and compare is None and html is None:
+        raise UsageError(
+            f"say which --format to write: {', '.join(FORMATS)}; or --html with a folder; or --compare with what"
+        )
+    if html is not None:
+        _check_folder(html, with_changes=compare is not None)
     for one, _ in wanted:
         if compare is not None and not one.tells_changes:
             raise UsageError(f"the format {one.name} cannot hold a comparison; markdown can")
-    if json and (wanted or compare is None):
+    if json and (wanted or html is not None or compare is None):
         raise UsageError("--json goes with --compare alone; `mutabot results --json` prints the results")
     journal = find_journal(context.obj)
-    campaign = portable(open_campaign(journal))
+    stored = open_campaign(journal)
+    campaign = portable(stored)
     changes = _changes(campaign, journal, compare) if compare is not None else None
     material = Material(campaign, _folder(prefix), changes)
     if changes is not None and not wanted:
         _show(changes, json=json)
     for one, file in wanted:
         _write(one, material, file)
+    if html is not None:
+        _write_pages(html, campaign, journal, stored.meta.get("root"))
     if not campaign.is_complete:
         known = f"{campaign.results.done} of {campaign.results.planned} outcomes are known"
         tell([f"mutabot: the campaign is not complete ({campaign.state}): {known}"])
@@ -117,6 +133,29 @@ def _check(file: Path) -> None:
         raise UsageError(f"the report {file} cannot be written: it is a folder")
     if not file.parent.is_dir():
         raise UsageError(f"the report {file} cannot be written: there is no folder {file.parent}")
+
+
+def _check_folder(folder: Path, *, with_changes: bool) -> None:
+    """Raise UsageError for pages that could not be written, before anything is."""
+    from mutabot.report.html.folder import check_folder
+
+    if with_changes:
+        raise UsageError("--html cannot hold a comparison; --format markdown can")
+    check_folder(folder)
+
+
+def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: str | None) -> None:
+    from mutabot.analysis.stored.evidence import StoredEvidence
+    from mutabot.report.html.folder import Contents, write_folder
+    from mutabot.report.shaping.texts import Cleaner
+
+    name = Path(root).name if root else ""
+    with StoredEvidence(journal) as evidence:
+        written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root)))
+    lines = [f"mutabot: {written.page}, {written.size / 1e6:.1f} MB in its folder: open it in a browser"]
+    if written.without:
+        lines.append(f"mutabot: there was no room for {written.without} recordings; pages say where they are missing")
+    tell(lines)
 
 
 def _folder(prefix: str) -> str:

@@ -39,12 +39,12 @@ class Written:
 
     Attributes:
         page: the page to open.
-        bytes: size of all files.
+        size: bytes of all files.
         without: recordings for which there was no room.
     """
 
     page: Path
-    bytes: int
+    size: int
     without: int
 
 

@@ -80,6 +80,12 @@ const mutabot = (() => {
     if (size !== 0 && (size < 1e-4 || size >= 1e7)) return value.toExponential(2);
     return String(Number(value.toPrecision(digits))).replace("-", "−");
   }
+  /** A length or another amount with its unit; short lengths in mm. */
+  function amount(value, unit) {
+    if (value === null || value === undefined) return "–";
+    if (unit !== "m" || Math.abs(value) >= 0.1) return `${number(value, 3)}${unit ? ` ${unit}` : ""}`;
+    return Math.abs(value) < 5e-5 ? "0 mm" : `${number(1000 * value, 2)} mm`;
+  }
   function duration(seconds) {
     if (typeof seconds !== "number") return "";
     if (seconds < 100) return `${seconds.toFixed(1)} s`;
@@ -100,5 +106,5 @@ const mutabot = (() => {
   /** What a page says where there is nothing to show. */
   const empty = (title, ...children) => h("div", { class: "empty" }, h("p", { class: "empty-title" }, title), h("p", null, children));
 
-  return { take, load, h, svg, add, address, here, percent, between, count, number, duration, say, ink, empty, legible, views };
+  return { take, load, h, svg, add, address, here, percent, between, count, number, amount, duration, say, ink, empty, legible, views };
 })();

@@ -1,7 +1,7 @@
 /* All mutants: searched, filtered, sorted, a page at a time. What is asked stands in the address. */
 "use strict";
 (() => {
-  const { h, address, here, count, number, empty, marks } = mutabot;
+  const { h, address, count, empty, marks } = mutabot;
   const PAGE = 100;
   const SORTS = {
     number: [(one) => one.number, 1], place: [(one) => `${one.file}\n${String(one.line).padStart(7, "0")}`, 1], operator: [(one) => one.operator, 1],
@@ -109,15 +109,15 @@
 
   function table(shown, state, sort) {
     const current = state.sort || "number";
-    const head = (name, text, kind) => {
+    const head = (name, text, kind, title) => {
       const down = (SORTS[name][1] === -1) !== (state.down === "1");
-      return h("th", { scope: "col", class: kind, "aria-sort": current === name ? (down ? "descending" : "ascending") : null },
+      return h("th", { scope: "col", class: kind, title, "aria-sort": current === name ? (down ? "descending" : "ascending") : null },
         h("button", { type: "button", class: "sort", "data-sort": name, onclick: () => sort(name) }, text, h("span", { "aria-hidden": "true" }, current === name ? (down ? " ↓" : " ↑") : "")));
     };
     const letters = new Set(shown.flatMap((one) => [...one.ends]));
     return h("div", null, h("table", { class: "mutants" },
       h("thead", null, h("tr", null, head("number", "no.", "n"), head("place", "place"), head("operator", "operator"), h("th", { scope: "col" }, "what it does, and what came of it"),
-        head("status", "rounds"), head("killed", "killed", "n"), head("worst", "how far", "n"))),
+        head("status", "rounds"), head("killed", "killed", "n"), head("worst", "how far", "n", "how far the world was from the original's at the worst moment, in multiples of the tolerance"))),
       h("tbody", null, shown.map((one) => row(one, state)))), marks.legend(letters));
   }
 
@@ -129,6 +129,6 @@
       h("td", { class: "does" }, h("a", { class: "open", href: address(["mutant", String(one.number)]) }, one.description), h("p", null, one.why)),
       h("td", { class: "rounds" }, marks.ends(one.ends)),
       h("td", { class: "n rate" }, one.valid ? `${one.killed}/${one.valid}` : "–"),
-      h("td", { class: "n far" }, one.survives ? (one.indistinguishable ? "same" : one.worst ? `${number(one.worst, 2)}×` : "–") : ""));
+      h("td", { class: "n far" }, one.survives ? (one.indistinguishable ? "same" : one.worst ? `${Number(one.worst.toPrecision(2)).toLocaleString("en")}×` : "–") : ""));
   }
 })();

@@ -1,7 +1,7 @@
 /* One mutant: what it is, what the robot did, who looked, and how each round ended. */
 "use strict";
 (() => {
-  const { h, address, between, count, number, empty, marks } = mutabot;
+  const { h, address, amount, between, count, number, empty, marks } = mutabot;
   const AROUND = 3;
 
   mutabot.views.set("mutant", (body, parts) => {
@@ -130,7 +130,7 @@
     const ends = [usual, mutant].map((each) => (each ? Math.max(each.end || 0, ...each.calls.map((call) => call.ended || 0), 0) : 0));
     const outcome = page.rounds[found.round];
     const diverged = outcome && outcome.diverged.find((each) => each.test === found.test);
-    const begin = diverged && diverged.at !== null ? diverged.at : mutant.fault;
+    const begin = diverged && diverged.apart.length ? diverged.apart[0].at : diverged && diverged.at !== null ? diverged.at : mutant.fault;
     const clock = new mutabot.recordings.Clock(Math.max(...ends), begin ?? Math.max(...ends));
     const named = (each) => each && [...each.tracks.values()].some((track) => track.times.length);
     holder.replaceChildren();
@@ -145,7 +145,7 @@
       drawn.append(h("div", { class: "multiples" }, mutabot.charts(usual, mutant, clock)));
       holder.append(slider(clock, mutant, made.canvas, stop), drawn);
     }
-    holder.append(h("h3", null, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock), apart(diverged));
+    holder.append(h("h3", null, "Commands, readings and contacts"), mutabot.timeline.lanes(usual, mutant, clock), mutabot.timeline.table(usual, mutant, clock, one.description), apart(diverged));
     if (mutant.problems.length) holder.append(h("p", { class: "hint" }, `Not recorded: ${mutant.problems.join("; ")}`));
     if (!mutant.simulated) holder.append(h("p", { class: "hint" }, "Times are of the wall clock: the vocabulary names no simulated clock."));
   }
@@ -195,12 +195,12 @@
     if (diverged.apart.length) {
       box.append(h("div", null, h("h3", null, "How far apart"), h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "How far apart" }, h("table", null,
         h("thead", null, h("tr", null, ["", "first", "largest", "at", "at the end", "off its way"].map((name, index) => h("th", { scope: "col", class: index ? "n" : null }, name || h("span", { class: "unseen" }, "what"))))),
-        h("tbody", null, diverged.apart.map((each) => h("tr", null, h("th", { scope: "row" }, each.name), h("td", { class: "n" }, `${number(each.first, 3)} s`), h("td", { class: "n" }, `${number(each.largest, 3)} ${each.unit}`),
-          h("td", { class: "n" }, `${number(each.at, 3)} s`), h("td", { class: "n" }, `${number(each.final, 3)} ${each.unit}`), h("td", { class: "n" }, each.aside === null ? "–" : `${number(each.aside, 3)} ${each.unit}`))))))));
+        h("tbody", null, diverged.apart.map((each) => h("tr", null, h("th", { scope: "row" }, each.name), h("td", { class: "n" }, `${number(each.first, 3)} s`), h("td", { class: "n" }, amount(each.largest, each.unit)),
+          h("td", { class: "n" }, `${number(each.at, 3)} s`), h("td", { class: "n" }, amount(each.final, each.unit)), h("td", { class: "n" }, each.aside === null || each.aside === undefined ? "–" : amount(each.aside, each.unit)))))))));
     }
     if (diverged.near.length) {
       box.append(h("div", null, h("h3", null, "Nearer than in the original"), h("ul", { class: "plain" }, diverged.near.map((each) => h("li", null,
-        `${each.body} came within ${number(each.distance, 3)} m of ${each.obstacle} at ${number(each.at, 3)} s; in the original ${number(each.original, 3)} m`)))));
+        `${each.body} came within ${amount(each.distance, "m")} of ${each.obstacle} at ${number(each.at, 3)} s; in the original ${amount(each.original, "m")}`)))));
     }
     return box;
   }
@@ -254,7 +254,7 @@
     const letter = one.ends[those[0]];
     const head = h("h3", { class: "round" }, marks.mark(letter), ` Round${those.length > 1 ? "s" : ""} ${those.map((each) => each + 1).join(", ")}: ${marks.LETTERS[letter][1]}`);
     if (!outcome) return h("div", null, head, h("p", null, "Not run yet."));
-    const values = those.map((each) => page.rounds[each]).filter((each) => each && each.example && each.example.length === 2);
+    const values = one.operation && !one.quantity ? [] : those.map((each) => page.rounds[each]).filter((each) => each && each.example && each.example.length === 2);
     return h("div", { class: "round-box" }, head,
       outcome.test ? h("p", null, "in ", h("code", null, outcome.test), outcome.place ? [" at ", h("code", null, outcome.place)] : null) : null,
       outcome.message ? h("pre", { tabindex: "0", "aria-label": "What the test said" }, `${outcome.exception ? `${outcome.exception.replace(/^.*:/, "")}: ` : ""}${outcome.message.trimEnd()}`) : null,

@@ -9,13 +9,15 @@
     if (!found.length) { body.append(empty("No noise was planted.", "The operator noise acts on positions, distances and angles that the program or its tests read; none was in the plan.")); return; }
     body.append(h("p", { class: "lead" }, "What the operator noise added to a reading where it first acted, one mark per round. Each mutant and round has a generator of its own: the same seed draws the same noise."));
     body.append(h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Noise" }, h("table", { class: "noise" },
-      h("thead", null, h("tr", null, ["no.", "reading", "added, by round", "from", "to", "rounds"].map((name, index) => h("th", { scope: "col", class: [0, 3, 4].includes(index) ? "n" : null }, name)))),
-      h("tbody", null, found.map((one) => line(one))))));
+      h("thead", null, h("tr", null, ["no.", "reading", "added, by round", "read in round 1", "with noise", "rounds"].map((name, index) => h("th", { scope: "col", class: [0, 3, 4].includes(index) ? "n" : null }, name)))),
+      h("tbody", null, found.map((one) => line(one, most(found, one.unit)))))));
   });
 
-  function line(one) {
+  /** The largest that was drawn in this unit: one scale for all that can be compared. */
+  const most = (found, unit) => Math.max(...found.filter((one) => one.unit === unit).flatMap((one) => one.drawn.map(([, before, after]) => Math.abs(after - before))), 1e-12);
+
+  function line(one, most) {
     const drawn = one.drawn.map(([round, before, after]) => [round, after - before, before, after]);
-    const most = Math.max(...drawn.map(([, by]) => Math.abs(by)), 1e-12);
     const unit = one.unit ? ` ${one.unit}` : "";
     const told = drawn.map(([round, by]) => `round ${round + 1} ${number(by, 3)}${unit}`).join(", ");
     return h("tr", null,

@@ -29,7 +29,7 @@
       campaign.drawing && campaign.drawing.sample && `a sample of ${campaign.drawing.sample} of ${count(campaign.drawing.selected, "mutant")}`,
       campaign.drawing && campaign.drawing.onePerSite && "one mutant per site"];
     return [
-      h("p", { class: "lead" }, complete ? "The campaign is complete. " : "", facts.filter(Boolean).join(" · ")),
+      h("p", { class: "lead" }, complete ? "complete · " : "", facts.filter(Boolean).join(" · ")),
       complete ? null : h("p", { class: "notice" }, h("strong", null, `This campaign is not complete (${campaign.state}): `),
         `${campaign.done} of ${campaign.planned} outcomes are known. `, "`mutabot run` goes on where it stopped."),
       campaign.attempt ? h("p", { class: "notice" }, `A later campaign ended before it ran anything: ${campaign.attempt}`) : null,
@@ -140,7 +140,7 @@
     } else section.append(h("p", { class: "hint" }, "Every planned mutant was judged."));
     if (campaign.leftOut.length) {
       const all = campaign.leftOut.reduce((sum, [, many]) => sum + many, 0);
-      section.append(h("h3", null, `Left out of the plan: ${all}`), campaign.leftOut.map(([reason, many, items]) => h("details", null,
+      section.append(h("h3", null, `Left out of the plan: ${all}`), ...campaign.leftOut.map(([reason, many, items]) => h("details", null,
         h("summary", null, `${many} × ${reason}`), h("ul", { class: "plain small" }, items.map(([id, text]) => h("li", null, text, " ", h("code", null, id))),
           many > items.length ? h("li", null, `and ${many - items.length} more, which \`mutabot list\` prints`) : null))));
     }

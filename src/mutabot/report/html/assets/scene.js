@@ -4,7 +4,7 @@
 (() => {
   const { h, ink, number } = mutabot;
   const { at, axes } = mutabot.recordings;
-  const FIELD = 0.62; // focal length in multiples of the height is 1 / FIELD
+  const FIELD = 0.4; // focal length in multiples of the height is 1 / FIELD
   const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
   const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
   const times = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
@@ -17,7 +17,7 @@
     const things = worlds.map((world) => [...world.recording.tracks.values()].filter((one) => one.kind !== "value" && one.times.length));
     const shown = new Set(things.flat().map((one) => one.name));
     const bounds = boundsOf(things.flat(), blocks);
-    const home = { yaw: -0.9, pitch: 0.5, distance: 1.5 * bounds.radius / FIELD, target: bounds.centre };
+    const home = { yaw: -1.05, pitch: 0.42, distance: 1.15 * bounds.radius / FIELD, target: bounds.centre };
     const view = { ...home };
     const canvas = h("canvas", { class: "scene", tabindex: "0", role: "application", "aria-roledescription": "3D view",
       "aria-label": "Paths of original and mutant in 3D. Arrow keys turn it, plus and minus zoom, 0 shows it as at first, space plays." });
@@ -198,7 +198,7 @@
       if (wanted !== style) {
         if (style >= 0) pen.stroke();
         style = wanted;
-        pen.globalAlpha = [1, 0.38, 0.32, 0.16][style];
+        pen.globalAlpha = [1, 0.5, 0.36, 0.2][style];
         pen.setLineDash(style >= 2 ? [3, 3] : []);
         pen.beginPath();
         const [x0, y0] = camera.project(before);

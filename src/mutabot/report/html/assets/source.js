@@ -42,21 +42,23 @@
     const box = h("div", { class: "code", role: "list", "aria-label": `${file}, line by line` });
     text.replace(/\n$/, "").split("\n").forEach((line, index) => box.append(row(file, line, index + 1, byLine.get(index + 1) || [])));
     const toggle = h("label", { class: "toggle" }, h("input", { type: "checkbox", checked: true, onchange: (event) => { box.classList.toggle("bare", !event.target.checked); } }), "Survivors under their lines");
-    return h("div", null, h("p", { class: "told" }, toggle), box, marks.legend(new Set(mutants.map(LETTER))));
+    return h("div", null, h("p", { class: "told" }, toggle), box, marks.legend(new Set(mutants.map(LETTER))),
+      mutants.some((one) => one.survives && one.indistinguishable) ? h("p", { class: "hint" }, "Outlined: survived, and nothing that was compared differs from the original.") : "");
   }
 
   function row(file, line, at, mutants) {
     const sorted = [...mutants].sort((one, other) => Number(other.survives) - Number(one.survives) || other.worst - one.worst || one.number - other.number);
     const shown = sorted.slice(0, sorted.length > MARKS ? MARKS - 1 : MARKS);
     const alive = sorted.filter((one) => one.survives);
-    return h("div", { class: `line${alive.length ? " has-survivor" : ""}`, id: `L${at}`, role: "listitem" },
+    const loud = alive.some((one) => !one.indistinguishable);
+    return h("div", { class: `line${loud ? " has-survivor" : ""}`, id: `L${at}`, role: "listitem" },
       h("span", { class: "at" }, at),
-      h("span", { class: "margin" }, shown.map((one) => h("a", { href: address(["mutant", String(one.number)]), class: `mark m-${marks.LETTERS[LETTER(one)][0]}`,
+      h("span", { class: "margin" }, shown.map((one) => h("a", { href: address(["mutant", String(one.number)]), class: `mark m-${one.survives && one.indistinguishable ? "same" : marks.LETTERS[LETTER(one)][0]}`,
         "aria-label": `mutant ${one.number}, ${one.status}: ${one.description}`, title: `${one.number} ${one.status}: ${one.description}` }, LETTER(one))),
       sorted.length > shown.length ? h("a", { class: "rest", href: address(["mutants"], { file, line: String(at) }), "aria-label": `all ${sorted.length} mutants of line ${at}` }, `+${sorted.length - shown.length}`) : null),
       h("code", null, line || " "),
-      alive.length ? h("ul", { class: "alive" }, alive.slice(0, 5).map((one) => h("li", null,
-        h("a", { href: address(["mutant", String(one.number)]) }, `${one.number}  ${one.description}`), ` ${one.why}`)),
+      alive.length ? h("ul", { class: `alive${loud ? "" : " calm"}` }, alive.slice(0, 5).map((one) => h("li", null,
+        h("a", { href: address(["mutant", String(one.number)]) }, `${one.number}  ${one.description}`), one.indistinguishable ? " nothing differs" : ` ${one.why}`)),
       alive.length > 5 ? h("li", null, h("a", { href: address(["mutants"], { file, line: String(at), status: "survived,not covered" }) }, `and ${alive.length - 5} more survivors here`)) : null) : null);
   }
 })();

@@ -45,16 +45,16 @@
   const name = (call) => call.operation.replace(/^.*:/, "");
   const amounts = (pairs) => pairs.filter(([, value]) => value !== 0 || pairs.length === 1).map(([what, value]) => h("span", { class: "amount" }, `${what.replace(/^\./, "")} `, h("b", null, typeof value === "number" ? number(value, 5) : String(value))));
 
-  function cell(one, clock, other) {
+  function cell(one, other, does) {
     if (!one) return h("td", { class: "gone" }, h("span", { class: "unseen" }, "nothing"), "—");
     const inside = one.call
       ? [h("span", { class: `event ${one.call.role}` }, name(one.call)), " ", amounts(one.call.written), one.call.read.length ? [" → ", amounts(one.call.read)] : null, h("small", null, one.call.place)]
       : [h("span", { class: "event contact" }, one.what === "touch" ? "touch" : one.what === "part" ? "part" : "note"), " ", one.text];
     const apart = one.call && other && other.call && !same(one.call, other.call);
-    return h("td", { class: apart ? "apart" : null }, inside);
+    return h("td", { class: apart ? "apart" : null }, inside, does ? h("p", { class: "acts" }, `the mutant acts: ${does}`) : null);
   }
 
-  function table(original, mutant, clock) {
+  function table(original, mutant, clock, does) {
     const rows = aligned(original ? events(original) : [], events(mutant));
     let first = rows.findIndex(differs);
     const at = rows.findIndex(([, other]) => other && other.call && other.index === mutant.faultyCall);
@@ -66,7 +66,7 @@
       const faulty = other && other.call && other.index === mutant.faultyCall;
       return h("tr", { class: `${differs([one, other]) ? "differs" : ""}${faulty ? " faulty" : ""}` },
         h("td", { class: "n" }, time === null || time === undefined ? "" : h("button", { type: "button", class: "time", onclick: () => clock.set(time), "aria-label": `show ${number(time, 4)} s` }, number(time, 4)), faulty ? h("span", { class: "flag" }, "fault") : null),
-        cell(one, clock, other), cell(other, clock, one));
+        cell(one, other), cell(other, one, faulty ? does : null));
     };
     const show = (from, to) => body.replaceChildren(...rows.slice(from, to).map(make));
     const from = first < 0 ? 0 : Math.max(0, first - BEFORE), to = first < 0 ? Math.min(rows.length, AFTER) : first + AFTER;
