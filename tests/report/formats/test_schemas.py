@@ -35,7 +35,7 @@ def test_without_npm_or_a_network_the_reason_is_told_and_set_up_goes_on(
     with pytest.raises(schemas.NoSchemaError, match=told):
         schemas.schema("sarif")
     assert schemas.main() == 0
-    assert f"no schema of sarif: {told}" in capsys.readouterr().out
+    assert f"no schemastore: {told}" in capsys.readouterr().out
 
 
 def test_a_schema_that_is_kept_is_not_fetched_again(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:

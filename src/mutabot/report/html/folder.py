@@ -27,8 +27,8 @@ MARK = "mutabot-report.txt"
 _MARK_TEXT = "A report of mutabot: open index.html. `mutabot report --html` replaces it, and leaves clips/ alone.\n"
 #: what a report consists of, beside clips/
 _PAGE, _ASSETS, _DATA, _CLIPS = "index.html", "assets", "data", "clips"
-#: bytes that recordings may take
-LIMIT = 18_000_000
+#: bytes that all data may take; recordings make room
+LIMIT = 23_000_000
 #: clips and pictures of a mutant are named by its number: 12.mp4, 12-side.png
 _CLIP = re.compile(r"(\d+)(?:[-_. ].*)?\.(mp4|webm|gif|png|jpe?g|svg|webp)", re.IGNORECASE)
 
@@ -83,7 +83,7 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
     """Write the report; an older one in the folder is replaced. Raises UsageError if it cannot be.
 
     Args:
-        limit: bytes that recordings may take.
+        limit: bytes that all data may take; recordings that have no room are left out.
     """
     check_folder(folder)
     try:
@@ -109,24 +109,22 @@ def _copy_assets(folder: Path) -> None:
 
 def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]], limit: int) -> int:
     campaign = contents.campaign
-    _write(folder / "campaign.js", "campaign", campaign_data(campaign, contents.name))
-    _write(folder / "sources.js", "sources", [[file, text] for file, text in campaign.sources.items()])
-    recorded = Recorded(contents.evidence, contents.clean)
-    found, without = _recordings(recorded, _in_order(campaign), limit)
+    used = _write(folder / "campaign.js", "campaign", campaign_data(campaign, contents.name))
+    used += _write(folder / "sources.js", "sources", [[file, text] for file, text in campaign.sources.items()])
     for name in ("mutants", "originals"):
         (folder / name).mkdir()
     for result in campaign.mutants:
         number = result.mutant.number
-        page = {
-            **mutant_page(result),
-            "suggestion": _suggestion(contents, result),
-            "media": clips.get(number, []),
-            "recordings": found.get(number, []),
-            "withoutRecordings": without.get(number, 0),
-        }
-        _write(folder / "mutants" / f"{number}.js", f"mutant {number}", page)
-    for number, data in enumerate(recorded.originals.values()):
-        _write(folder / "originals" / f"{number}.js", f"original {number}", data)
+        page = {**mutant_page(result), "suggestion": _suggestion(contents, result), "media": clips.get(number, [])}
+        used += _write(folder / "mutants" / f"{number}.js", f"mutant {number}", page)
+    recorded = Recorded(contents.evidence, contents.clean)
+    found, without = _recordings(recorded, _in_order(campaign), limit - used)
+    for number in found.keys() | without.keys():
+        data = {"recordings": found.get(number, []), "without": without.get(number, 0)}
+        with (folder / "mutants" / f"{number}.js").open("ab") as file:
+            file.write(_bytes(f"recordings {number}", data))
+    for number, original in enumerate(recorded.originals.values()):
+        _write(folder / "originals" / f"{number}.js", f"original {number}", original)
     return sum(without.values())
 
 
@@ -140,25 +138,26 @@ def _in_order(campaign: StoredCampaign) -> list[MutantResult]:
 def _recordings(
     recorded: Recorded, results: Iterable[MutantResult], limit: int
 ) -> tuple[dict[int, list[Any]], dict[int, int]]:
-    """The recordings of each mutant by its number, one of each before a second of any; and how many are left."""
+    """The recordings of each mutant by its number, one of each before a second of any; and how many are left.
+
+    When one has no room, those behind it have none either.
+    """
+    results = [*results]
     waiting = {one.mutant.number: recorded.of(one) for one in results}
     found: dict[int, list[Any]] = {}
-    without: dict[int, int] = {}
     used = 0
-    while waiting:
+    while waiting and used < limit:
         for number, those in [*waiting.items()]:
             one = next(those, None)
             if one is None:
                 del waiting[number]
                 continue
-            size = len(script_of("", one))
-            if used + size > limit:
-                without[number] = 1 + sum(1 for _ in those)
-                del waiting[number]
-                continue
-            used += size
+            used += len(_bytes("", one))
+            if used > limit:
+                break
             found.setdefault(number, []).append(one)
-    return found, without
+    counts = {one.mutant.number: recorded.count(one) - len(found.get(one.mutant.number, ())) for one in results}
+    return found, {number: count for number, count in counts.items() if count}
 
 
 def _suggestion(contents: Contents, result: MutantResult) -> Any:
@@ -176,5 +175,10 @@ def _clips(folder: Path) -> dict[int, list[str]]:
     return found
 
 
-def _write(file: Path, name: str, data: Any) -> None:
-    file.write_bytes(script_of(name, data).encode("utf-8", errors="replace"))
+def _write(file: Path, name: str, data: Any) -> int:
+    """Write data, and say how many bytes they take."""
+    return file.write_bytes(_bytes(name, data))
+
+
+def _bytes(name: str, data: Any) -> bytes:
+    return script_of(name, data).encode("utf-8", errors="replace")

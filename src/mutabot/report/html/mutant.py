@@ -9,8 +9,11 @@ from mutabot.analysis.divergence import change_text
 from mutabot.analysis.results import MutantResult
 from mutabot.border.codec import to_data
 from mutabot.model import Looked, Outcome
+from mutabot.model.diverged import Diverged
 from mutabot.report.shaping.status import rounds_text
 
+#: what the page takes for granted where nothing is said
+_NOTHING: tuple[Any, ...] = (None, (), [], "")
 #: checks of a test that are shown; the journal has more
 _CHECKS = 40
 
@@ -52,7 +55,7 @@ def _meaning(result: MutantResult) -> list[str]:
 def _round(outcome: Outcome | None) -> dict[str, Any] | None:
     if outcome is None:
         return None
-    return {
+    known = {
         "test": outcome.test,
         "exception": outcome.exception,
         "message": outcome.message,
@@ -72,8 +75,14 @@ def _round(outcome: Outcome | None) -> dict[str, Any] | None:
         "repeats": outcome.repeats,
         "stuck": outcome.stuck,
         "kills": [[one.test, one.by.value, one.message] for one in outcome.kills[1:]],
-        "diverged": [to_data(one) for one in outcome.diverged],
+        "diverged": [_diverged(one) for one in outcome.diverged],
     }
+    return {name: value for name, value in known.items() if value not in _NOTHING}
+
+
+def _diverged(diverged: Diverged) -> Any:
+    data = to_data(diverged)
+    return {name: value for name, value in data.items() if value not in _NOTHING}
 
 
 def _looked(result: MutantResult) -> dict[str, Any] | None:

@@ -46,6 +46,10 @@ class Recorded:
                 **self._data(pair.mutant, pair.original),
             }
 
+    def count(self, result: MutantResult) -> int:
+        """How many recordings there are of a mutant."""
+        return sum(len(self.evidence.tests(result.mutant.id, number)) for number in range(len(result.rounds)))
+
     def _places(self, result: MutantResult) -> Iterator[tuple[int, str]]:
         found = [(number, one) for number, one in enumerate(result.rounds) if one is not None]
         for number, outcome in sorted(found, key=lambda one: (-worst_of(one[1]), one[0])):

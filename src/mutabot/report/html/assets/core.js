@@ -8,8 +8,6 @@ const mutabot = (() => {
   /** Called by the data's scripts. */
   function take(name, text) {
     taken.set(name, JSON.parse(text));
-    for (const tell of waiting.get(name) || []) tell(taken.get(name));
-    waiting.delete(name);
     if (name === "campaign") mutabot.start(taken.get(name));
   }
 
@@ -17,16 +15,16 @@ const mutabot = (() => {
   function load(name, file) {
     if (taken.has(name)) return Promise.resolve(taken.get(name));
     return new Promise((resolve, reject) => {
-      const others = waiting.get(name);
-      if (others) { others.push(resolve); return; }
-      waiting.set(name, [resolve]);
-      const script = document.createElement("script");
-      script.src = file;
-      script.onerror = () => {
+      const script = waiting.get(name) || document.createElement("script");
+      script.addEventListener("load", () => { waiting.delete(name); script.remove(); resolve(taken.get(name)); });
+      script.addEventListener("error", () => {
         waiting.delete(name);
+        script.remove();
         reject(new Error(`The file ${file} is missing beside this page. Copy the whole folder, or write the report again.`));
-      };
-      script.onload = () => script.remove();
+      });
+      if (waiting.has(name)) return;
+      waiting.set(name, script);
+      script.src = file;
       document.head.append(script);
     });
   }
@@ -106,5 +104,5 @@ const mutabot = (() => {
   /** What a page says where there is nothing to show. */
   const empty = (title, ...children) => h("div", { class: "empty" }, h("p", { class: "empty-title" }, title), h("p", null, children));
 
-  return { take, load, h, svg, add, address, here, percent, between, count, number, amount, duration, say, ink, empty, legible, views };
+  return { take, load, taken: (name) => taken.get(name), h, svg, add, address, here, percent, between, count, number, amount, duration, say, ink, empty, legible, views };
 })();

@@ -2,7 +2,7 @@
 "use strict";
 (() => {
   const { h, address, count, empty, marks } = mutabot;
-  const PAGE = 100;
+  const PAGE = 50;
   const SORTS = {
     number: [(one) => one.number, 1], place: [(one) => `${one.file}\n${String(one.line).padStart(7, "0")}`, 1], operator: [(one) => one.operator, 1],
     status: [(one) => marks.ORDER.indexOf(one.status), 1], killed: [(one) => (one.valid ? one.killed / one.valid : 2), 1], worst: [(one) => (one.survives ? one.worst : -1), -1],

@@ -33,10 +33,19 @@
     };
     addEventListener("keydown", keys);
     stops.push(() => removeEventListener("keydown", keys));
-    mutabot.load(`mutant ${one.number}`, `data/mutants/${one.number}.js`).then((page) => { if (!gone) draw(holder, one, page, stops); },
+    mutabot.load(`mutant ${one.number}`, `data/mutants/${one.number}.js`).then((page) => { if (!gone) draw(holder, one, whole(one, page), stops); },
       (error) => { holder.replaceChildren(empty("This mutant cannot be shown.", error.message)); });
     return () => { gone = true; stops.forEach((stop) => stop()); };
   });
+
+  const NOTHING = { test: null, exception: null, message: null, place: null, away: [], example: null, divergence: [], gaps: [], compared: null, indistinguishable: null, repeats: 0, stuck: null, kills: [], diverged: [] };
+  const ALIKE = { at: null, what: "", story: "", apart: [], near: [], fault: null };
+  /** The data of the page, with what they leave out where nothing is to be said. */
+  function whole(one, page) {
+    const { recordings, without } = mutabot.taken(`recordings ${one.number}`) || { recordings: [], without: 0 };
+    const rounds = page.rounds.map((outcome) => outcome && { ...NOTHING, ...outcome, diverged: (outcome.diverged || []).map((each) => ({ ...ALIKE, ...each })) });
+    return { ...page, rounds, recordings, withoutRecordings: without };
+  }
 
   function draw(holder, one, page, stops) {
     holder.replaceChildren(
@@ -138,7 +147,7 @@
     if (diverged && diverged.what) holder.append(h("p", null, h("strong", null, "First difference"), diverged.at !== null ? ` at ${number(diverged.at, 4)} s: ` : ": ", diverged.what));
     const drawn = h("div", { class: "drawn-world" });
     if (named(mutant) || named(usual)) {
-      const worlds = [usual && { name: "original", recording: usual, ink: () => mutabot.ink("original"), width: 1.4 }, { name: "mutant", recording: mutant, ink: () => mutabot.ink("mutant"), width: 2.2 }].filter(Boolean);
+      const worlds = [usual && { name: "original", recording: usual, ink: () => mutabot.ink("original"), width: 1.6, dash: [6, 3] }, { name: "mutant", recording: mutant, ink: () => mutabot.ink("mutant"), width: 2.2, dash: [] }].filter(Boolean);
       const made = mutabot.scene(worlds, clock);
       stop.push(made.stop);
       drawn.append(h("div", { class: "world" }, key(usual), made.canvas, made.controls));
@@ -216,19 +225,24 @@
       return section;
     }
     section.append(h("p", { class: "hint" }, `Round ${page.looked.round + 1}: each check that was made, the values it compared, and by how much it held.`));
-    for (const test of page.looked.tests) {
-      const spares = test.checks.map((check) => check[3]).filter((spare) => spare !== null);
-      const nearest = Math.min(...spares);
-      section.append(h("h3", { class: "test" }, h("code", null, test.test)));
-      if (!test.acted) { section.append(h("p", null, "The mutant changed nothing in it.")); continue; }
-      if (!test.checks.length) { section.append(h("p", null, "No check of its own was seen. Assertions that pytest does not rewrite are not.")); continue; }
-      section.append(h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Checks" }, h("table", { class: "checks" },
-        h("thead", null, h("tr", null, h("th", { scope: "col" }, "place"), h("th", { scope: "col" }, "check"), h("th", { scope: "col" }, "with"), h("th", { scope: "col", class: "n" }, "to spare"))),
-        h("tbody", null, test.checks.map(([place, text, seen, spare, many]) => h("tr", { class: spare !== null && spare === nearest ? "nearest" : null },
-          h("td", null, place.replace(/^.*\//, "")), h("td", null, h("code", null, text), many > 1 ? h("small", null, `${many} times, the nearest to fail`) : null), h("td", null, seen ? h("code", null, seen) : "–"), h("td", { class: "n" }, spare === null ? "–" : number(spare, 3))))))));
-      if (test.more) section.append(h("p", { class: "hint" }, `and ${count(test.more, "more check")}; \`mutabot show ${one.number} --json\` has those that were kept.`));
-    }
+    page.looked.tests.forEach((test, index) => section.append(checked(one, test, index === 0)));
     return section;
+  }
+
+  function checked(one, test, isOpen) {
+    const many = test.checks.length + test.more;
+    const spares = test.checks.map((check) => check[3]).filter((spare) => spare !== null);
+    const nearest = Math.min(...spares);
+    const told = !test.acted ? "the mutant changed nothing in it" : !many ? "no check of its own was seen; assertions that pytest does not rewrite are not"
+      : `${count(many, "check")} held${spares.length ? `, the nearest by ${number(nearest, 3)}` : ""}`;
+    if (!test.acted || !test.checks.length) return h("p", null, h("code", null, test.test), `: ${told}`);
+    return h("details", { class: "test-box", open: isOpen }, h("summary", null, h("code", null, test.test), `: ${told}`),
+      h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": `Checks of ${test.test}` }, h("table", { class: "checks" },
+        h("thead", null, h("tr", null, h("th", { scope: "col" }, "place"), h("th", { scope: "col" }, "check"), h("th", { scope: "col" }, "with"), h("th", { scope: "col", class: "n" }, "to spare"))),
+        h("tbody", null, test.checks.map(([place, text, seen, spare, times]) => h("tr", { class: spare !== null && spare === nearest ? "nearest" : null },
+          h("td", null, place.replace(/^.*\//, "")), h("td", null, h("code", null, text), times > 1 ? h("small", null, `${times} times, the nearest to fail`) : null),
+          h("td", null, seen ? h("code", null, seen) : "–"), h("td", { class: "n" }, spare === null ? "–" : number(spare, 3))))))),
+      test.more ? h("p", { class: "hint" }, `and ${count(test.more, "more check")}; \`mutabot show ${one.number} --json\` has those that were kept.`) : null);
   }
 
   function suggestion(page) {

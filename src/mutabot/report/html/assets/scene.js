@@ -199,7 +199,7 @@
         if (style >= 0) pen.stroke();
         style = wanted;
         pen.globalAlpha = [1, 0.5, 0.36, 0.2][style];
-        pen.setLineDash(style >= 2 ? [3, 3] : []);
+        pen.setLineDash(style >= 2 ? [2, 4] : world.dash);
         pen.beginPath();
         const [x0, y0] = camera.project(before);
         pen.moveTo(x0, y0);

@@ -76,7 +76,8 @@
         event.target.title = found ? mutabot.legible(`${found.number} ${found.description}`) : "";
       } });
     return h("tr", { class: one.kills ? null : "kills-nothing" },
-      h("th", { scope: "row" }, h("a", { href: address(["mutants"], { test: String(one.index) }) }, one.name), odd.length ? h("small", null, ` on the original: ${odd.join(", ")}`) : null,
+      h("th", { scope: "row" }, one.name.includes("::") ? h("small", null, one.name.slice(0, one.name.indexOf("::"))) : null,
+        h("a", { href: address(["mutants"], { test: String(one.index) }) }, one.name.includes("::") ? one.name.slice(one.name.indexOf("::") + 2) : one.name), odd.length ? h("small", null, ` on the original: ${odd.join(", ")}`) : null,
         typeof one.baseline[1] === "number" ? h("small", null, ` ${number(one.baseline[1], 3)} s simulated`) : null),
       h("td", { class: "n" }, one.reaches), h("td", { class: "n" }, one.kills || h("strong", null, "0")), h("td", { class: "n" }, one.byCheck), h("td", { class: "n" }, one.alone),
       h("td", { class: "cells" }, canvas));

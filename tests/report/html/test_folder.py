@@ -1,0 +1,109 @@
+"""The folder of a report: what is in it, and what of a user's it never touches."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import mutabot
+from analysis import samples
+from mutabot.errors import UsageError
+from mutabot.report.html import folder as folders
+from mutabot.report.html.folder import MARK, check_folder
+from mutabot.report.html.suggestion import SuggestedCheck
+from report.html import reports
+
+ROOT = Path(__file__).parents[3]
+
+
+def data(page: Path) -> str:
+    """All data of a report."""
+    return "".join(file.read_text(encoding="utf-8") for file in sorted(page.parent.rglob("*.js")))
+
+
+def test_every_mutant_has_its_data_and_every_asset_that_the_page_names_is_there(tmp_path: Path) -> None:
+    page = reports.plain(tmp_path)
+    numbers = {int(file.stem) for file in (page.parent / "data" / "mutants").iterdir()}
+    assert numbers == {one.number for one in samples.MUTANTS}
+    named = re.findall(r'(?:src|href)="([^"#]+)"', page.read_text())
+    assert len(named) > 10
+    assert all((page.parent / name).is_file() for name in named)
+    assert {f"assets/{file.name}" for file in (page.parent / "assets").iterdir()} <= set(named)
+
+
+def test_nothing_in_it_names_a_folder_of_the_machine(tmp_path: Path) -> None:
+    text = data(reports.plain(tmp_path, root=str(tmp_path)))
+    assert str(tmp_path) not in text
+    assert "/home/" not in text
+
+
+def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(UsageError, match="holds other files, such as notes.txt"):
+        check_folder(tmp_path)
+    with pytest.raises(UsageError, match="it is a file"):
+        check_folder(tmp_path / "notes.txt")
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+    assert [one.name for one in tmp_path.iterdir()] == ["notes.txt"]
+
+
+def test_an_older_report_is_replaced_and_its_clips_stay(tmp_path: Path) -> None:
+    journal, stored = reports.campaign(tmp_path)
+    report = tmp_path / "report"
+    (report / "clips").mkdir(parents=True)
+    (report / "clips" / "2-side.png").write_bytes(b"mine")
+    (report / "clips" / "2.mp4").write_bytes(b"mine")
+    (report / "clips" / "notes.txt").write_bytes(b"mine")
+    reports.write(report, journal, stored)
+    (report / "data" / "mutants" / "99.js").write_text("old")
+    reports.write(report, journal, stored)
+    assert not (report / "data" / "mutants" / "99.js").exists()
+    assert (report / MARK).is_file()
+    assert (report / "clips" / "notes.txt").read_bytes() == b"mine"
+    text = (report / "data" / "mutants" / "2.js").read_text()
+    assert '"media":["clips/2-side.png","clips/2.mp4"]' in text
+    assert '"media":[]' in (report / "data" / "mutants" / "1.js").read_text()
+
+
+def test_recordings_that_have_no_room_are_counted_and_pages_say_so(tmp_path: Path) -> None:
+    journal, stored = reports.campaign(tmp_path)
+    written = reports.write(tmp_path / "report", journal, stored, limit=20_000)
+    assert written.without == 1
+    assert '"recordings":[],"without":1' in (tmp_path / "report" / "data" / "mutants" / "2.js").read_text()
+
+
+def test_a_check_is_suggested_where_there_is_one(tmp_path: Path) -> None:
+    journal, stored = reports.campaign(tmp_path)
+    check = SuggestedCheck("assert box.x < 0.5", samples.TEST, ("passes in all rounds",))
+    reports.write(tmp_path / "report", journal, stored,
+                  lambda contents: replace(contents, suggest=lambda one: check if one.mutant.number == 2 else None))  # fmt: skip
+    assert "box.x \\x3c 0.5" in (tmp_path / "report" / "data" / "mutants" / "2.js").read_text()
+    assert '"suggestion":null' in (tmp_path / "report" / "data" / "mutants" / "1.js").read_text()
+
+
+def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
+    journal, stored = reports.campaign(tmp_path)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(UsageError, match="file/report cannot be written"):
+        reports.write(tmp_path / "file" / "report", journal, stored)
+
+
+def test_campaigns_without_mutants_and_without_recordings_have_reports(tmp_path: Path) -> None:
+    journal = samples.write_journal(tmp_path / "journal.sqlite", mutants=(), outcomes=(), finish=None)
+    written = reports.write(tmp_path / "report", journal, mutabot.open(journal))
+    assert written.page.is_file()
+    assert written.size < 1_000_000
+
+
+def test_the_wheel_holds_what_shows_the_pages() -> None:
+    """Hatch packs every file of the packages that it is told of, unless something leaves it out."""
+    wheel = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]["wheel"]
+    assert wheel == {"packages": ["src/mutabot"]}
+    assets = Path(folders.__file__).parent / "assets"
+    assert assets.is_relative_to(ROOT / "src" / "mutabot")
+    ignored = (ROOT / ".gitignore").read_text().split()
+    assert not [file for file in assets.iterdir() if any(file.match(pattern) for pattern in ignored)]

@@ -1,0 +1,52 @@
+"""Scripts with data say what was put in, and nothing in them ends the script or its text."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mutabot.report.html.scripts import script_of
+from report.html.reports import EVIL
+from report.material import HOSTILE
+
+_TEXTS = st.text(st.characters(exclude_categories=["Cs"]))
+_DATA = st.recursive(
+    st.none() | st.booleans() | st.integers(-(10**6), 10**6) | _TEXTS,
+    lambda inside: st.lists(inside) | st.dictionaries(_TEXTS, inside),
+    max_leaves=10,
+)
+_ESCAPE = re.compile(r"\\(?:x([0-9a-f]{2})|u([0-9a-f]{4})|(.))")
+
+
+def read(script: str) -> Any:
+    """The data, as the language reads it."""
+    (text,) = re.fullmatch(r"mutabot\.take\('n','(.*)'\);\n", script).groups()  # type: ignore[union-attr]
+    assert not re.search(r"(?<!\\)(?:\\\\)*'", text)
+    return json.loads(_ESCAPE.sub(lambda one: _said(*one.groups()), text))
+
+
+def _said(byte: str | None, unit: str | None, sign: str | None) -> str:
+    if byte or unit:
+        return chr(int(byte or unit or "", 16))
+    return {"n": "\n", "r": "\r"}.get(sign or "", sign or "")
+
+
+@given(_DATA)
+def test_data_come_out_as_they_went_in(data: Any) -> None:
+    assert read(script_of("n", data)) == data
+
+
+@pytest.mark.parametrize("text", [*HOSTILE, EVIL, "<!--", "]]>", "__proto__"])
+def test_nothing_ends_the_script_or_its_line(text: str) -> None:
+    script = script_of("n", {text: [text]})
+    assert not re.search("[<>&\u2028\u2029\r]|\n.", script)
+    assert read(script) == {text: [text]}
+
+
+def test_numbers_that_are_none_are_null_and_others_are_short() -> None:
+    assert read(script_of("n", [float("nan"), float("inf"), 0.1 + 0.2, 3.0, 1e-9])) == [None, None, 0.3, 3, 1e-9]

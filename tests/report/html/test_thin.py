@@ -1,0 +1,96 @@
+"""Tracks with fewer points are still where the things were."""
+
+from __future__ import annotations
+
+from array import array
+from bisect import bisect_right
+from itertools import accumulate
+from math import dist, nan, sin
+from typing import Any
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mutabot.evidence.recording import Kind, Track
+from mutabot.report.html.thin import thinned
+
+_PLACES = st.lists(
+    st.tuples(*[st.floats(-2, 2, width=32, allow_subnormal=False)] * 3), min_size=1, max_size=30
+)
+
+
+def point(places: Any) -> Track:
+    return Track("box", Kind.POINT, array("f", [value for place in places for value in place]))
+
+
+def decoded(data: Any, usual: Any = None) -> tuple[list[float], list[tuple[float, ...]]]:
+    """Times and rows, as the page reads them."""
+    times = [time / 1000 for time in accumulate(data["t"])]
+    channels = [[step * scale for step in accumulate(one)] for one, scale in zip(data["v"], data["scales"], strict=True)]
+    rows = [*zip(*channels, strict=True)]
+    if "from" in data:
+        before, others = decoded(usual)
+        count = sum(time < data["from"] / 1000 - 1e-9 for time in before)
+        times, rows = [*before[:count], *times], [*others[:count], *rows]
+    return times, rows
+
+
+def at(times: list[float], rows: list[tuple[float, ...]], time: float) -> tuple[float, ...]:
+    index = max(0, min(len(times) - 2, bisect_right(times, time + 1e-9) - 1))
+    if len(times) == 1:
+        return rows[0]
+    span = times[index + 1] - times[index]
+    share = min(1.0, max(0.0, (time - times[index]) / span)) if span else 0.0
+    return tuple(a + share * (b - a) for a, b in zip(rows[index], rows[index + 1], strict=True))
+
+
+@given(_PLACES)
+def test_every_point_is_within_a_millimetre_of_the_line(places: Any) -> None:
+    times = [0.1 * number for number in range(len(places))]
+    track = point(places)
+    made = decoded(thinned(track, times, None, ()))
+    for time, place in zip(times, places, strict=True):
+        assert dist(at(*made, time), place) < 1e-3
+
+
+@given(_PLACES, st.integers(0, 30), st.floats(0.01, 1, width=32))
+def test_what_begins_as_the_original_is_taken_from_it(places: Any, same: int, off: float) -> None:
+    times = [0.1 * number for number in range(len(places))]
+    usual = point(places)
+    moved = [place if number < same else (place[0] + off, *place[1:]) for number, place in enumerate(places)]
+    mutant = point(moved)
+    data, before = thinned(mutant, times, usual, times), thinned(usual, times, None, ())
+    for time, row in zip(times, zip(*[iter(mutant.values)] * 3, strict=True), strict=True):
+        assert dist(at(*decoded(data, before), time), row) < 1e-3
+
+
+def test_a_straight_way_is_two_points_and_a_stay_as_well() -> None:
+    times = [0.1 * number for number in range(100)]
+    assert len(thinned(point([(time, 0.0, 1.0) for time in times]), times, None, ())["t"]) == 2
+    assert len(thinned(point([(1.0, 0.0, 1.0)] * 100), times, None, ())["t"]) == 2
+
+
+def test_a_curve_keeps_fewer_points_than_it_has() -> None:
+    times = [0.01 * number for number in range(1000)]
+    assert len(thinned(point([(sin(time), 0.0, 0.0) for time in times]), times, None, ())["t"]) < 150
+
+
+def test_where_a_thing_is_not_there_is_a_gap() -> None:
+    times = [0.0, 0.1, 0.2, 0.3]
+    data = thinned(point([(0, 0, 0), (nan,) * 3, (nan,) * 3, (1, 0, 0)]), times, None, ())
+    assert data["gaps"] == [[100, 300]]
+    assert thinned(point([(nan,) * 3]), [0.0], None, ()) is None
+
+
+def test_the_two_quaternions_of_a_pose_are_no_jump() -> None:
+    values = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0]
+    data = thinned(Track("tool", Kind.POSE, array("f", values)), [0.0, 0.1], None, ())
+    assert data["v"][3] == [1000, 0]
+
+
+def test_a_value_keeps_a_hundredth_of_its_range() -> None:
+    times = [0.01 * number for number in range(500)]
+    values = [1e-6 * sin(time) for time in times]
+    track = Track("current", Kind.VALUE, array("f", values), "A")
+    made = decoded(thinned(track, times, None, ()))
+    assert all(abs(at(*made, time)[0] - value) < 2e-8 for time, value in zip(times, values, strict=True))
