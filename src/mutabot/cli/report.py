@@ -86,7 +86,8 @@ def report(
     wanted = list(_wanted(format or (), output or ()))
     if not wanted and compare is None and html is None:
         raise UsageError(
-            f"say which --format to write: {', '.join(FORMATS)}; or --html with a folder; or --compare with what"
+            f"say which --format to write: {', '.join(FORMATS)}; or --html with a folder; "
+            "or --compare with what"
         )
     if html is not None:
         _check_folder(html, with_changes=compare is not None)
@@ -154,7 +155,9 @@ def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: st
         written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root)))
     lines = [f"mutabot: {written.page}, {written.size / 1e6:.1f} MB in its folder: open it in a browser"]
     if written.without:
-        lines.append(f"mutabot: there was no room for {written.without} recordings; pages say where they are missing")
+        lines.append(
+            f"mutabot: there was no room for {written.without} recordings; pages say where they are missing"
+        )
     tell(lines)
 
 

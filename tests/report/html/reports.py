@@ -1,4 +1,4 @@
-"""Reports for the tests: of a campaign with every kind of verdict and recordings, and with texts that mean harm."""
+"""Reports for the tests: with every kind of verdict and recordings, and with texts that mean harm."""
 
 from __future__ import annotations
 
@@ -55,14 +55,19 @@ def recording(*, off: float = 0.0, name: str = "box") -> Recording:
 
 def campaign(folder: Path, *, name: str = "box", **options: Any) -> tuple[Path, mutabot.StoredCampaign]:
     """A journal with recordings of one survivor, and what is read of it."""
-    apart = (Apart("box", "m", 5.0, 0.2, 5.0, 0.2, 0.2, 0.001), Apart("tool turned", "deg", 5.0, 2.0, 5.0, 0.0, None, 0.5))
+    apart = (
+        Apart("box", "m", 5.0, 0.2, 5.0, 0.2, 0.2, 0.001),
+        Apart("tool turned", "deg", 5.0, 2.0, 5.0, 0.0, None, 0.5),
+    )
     diverged = Diverged(samples.TEST, 5.0, f"{name} is not where it is", f"{name} slipped at 5.0 s", apart,
                         (Near(name, "table", 0.01, 5.0, 0.1),), 5.0)  # fmt: skip
     outcomes = options.pop("outcomes", samples.OUTCOMES)
     outcomes = tuple(
-        replace(one, diverged=(diverged,), looked=samples.LOOKED) if (one.mutant, one.round) == (samples.SKIP.id, 1) else one
+        replace(one, diverged=(diverged,), looked=samples.LOOKED)
+        if (one.mutant, one.round) == (samples.SKIP.id, 1)
+        else one
         for one in outcomes
-    )  # fmt: skip
+    )
     journal = samples.write_journal(folder / "journal.sqlite", outcomes=outcomes, **options)
     with Recordings.to_write(journal, 10_000_000) as kept:
         kept.add(ORIGINAL, 1, samples.TEST, Rank.ORIGINAL, to_bytes(recording(name=name)))
@@ -100,4 +105,6 @@ def evil(folder: Path) -> Path:
         else one
         for one, known in zip(stored.mutants, mutabot.open(journal).mutants, strict=True)
     )
-    return write(folder / "report", journal, replace(stored, results=replace(stored.results, mutants=mutants))).page
+    return write(
+        folder / "report", journal, replace(stored, results=replace(stored.results, mutants=mutants))
+    ).page

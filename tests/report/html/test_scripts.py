@@ -49,4 +49,10 @@ def test_nothing_ends_the_script_or_its_line(text: str) -> None:
 
 
 def test_numbers_that_are_none_are_null_and_others_are_short() -> None:
-    assert read(script_of("n", [float("nan"), float("inf"), 0.1 + 0.2, 3.0, 1e-9])) == [None, None, 0.3, 3, 1e-9]
+    assert read(script_of("n", [float("nan"), float("inf"), 0.1 + 0.2, 3.0, 1e-9])) == [
+        None,
+        None,
+        0.3,
+        3,
+        1e-9,
+    ]

@@ -1,1 +1,1 @@
-"""The report as a folder of pages that a browser opens from disk: ``folder.py`` writes it, ``assets/`` shows it."""
+"""Pages that a browser opens from disk: ``folder.py`` writes them, and what is in ``assets/`` shows them."""

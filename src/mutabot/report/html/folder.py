@@ -1,4 +1,4 @@
-"""The folder of a report: pages, their data and what shows them, written so that nothing of a user's is lost."""
+"""The folder of a report: pages, their data and what shows them; nothing of a user's is ever lost."""
 
 from __future__ import annotations
 
@@ -24,7 +24,9 @@ from .suggestion import Suggest
 
 #: by what a folder is known to be a report, and so may be written again
 MARK = "mutabot-report.txt"
-_MARK_TEXT = "A report of mutabot: open index.html. `mutabot report --html` replaces it, and leaves clips/ alone.\n"
+_MARK_TEXT = (
+    "A report of mutabot: open index.html. `mutabot report --html` replaces it, and leaves clips/ alone.\n"
+)
 #: what a report consists of, beside clips/
 _PAGE, _ASSETS, _DATA, _CLIPS = "index.html", "assets", "data", "clips"
 #: bytes that all data may take; recordings make room
@@ -110,12 +112,18 @@ def _copy_assets(folder: Path) -> None:
 def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]], limit: int) -> int:
     campaign = contents.campaign
     used = _write(folder / "campaign.js", "campaign", campaign_data(campaign, contents.name))
-    used += _write(folder / "sources.js", "sources", [[file, text] for file, text in campaign.sources.items()])
+    used += _write(
+        folder / "sources.js", "sources", [[file, text] for file, text in campaign.sources.items()]
+    )
     for name in ("mutants", "originals"):
         (folder / name).mkdir()
     for result in campaign.mutants:
         number = result.mutant.number
-        page = {**mutant_page(result), "suggestion": _suggestion(contents, result), "media": clips.get(number, [])}
+        page = {
+            **mutant_page(result),
+            "suggestion": _suggestion(contents, result),
+            "media": clips.get(number, []),
+        }
         used += _write(folder / "mutants" / f"{number}.js", f"mutant {number}", page)
     recorded = Recorded(contents.evidence, contents.clean)
     found, without = _recordings(recorded, _in_order(campaign), limit - used)
@@ -156,7 +164,9 @@ def _recordings(
             if used > limit:
                 break
             found.setdefault(number, []).append(one)
-    counts = {one.mutant.number: recorded.count(one) - len(found.get(one.mutant.number, ())) for one in results}
+    counts = {
+        one.mutant.number: recorded.count(one) - len(found.get(one.mutant.number, ())) for one in results
+    }
     return found, {number: count for number, count in counts.items() if count}
 
 
@@ -166,7 +176,7 @@ def _suggestion(contents: Contents, result: MutantResult) -> Any:
 
 
 def _clips(folder: Path) -> dict[int, list[str]]:
-    """Clips and pictures that lie in the folder already, by the number of the mutant that they are named for."""
+    """Clips and pictures that lie there already, by the number of the mutant that they are named for."""
     found: dict[int, list[str]] = {}
     for one in sorted(folder.iterdir()) if folder.is_dir() else ():
         named = _CLIP.fullmatch(one.name)

@@ -13,7 +13,7 @@ from mutabot.analysis.unlooked import unlooked
 from mutabot.border.codec import to_data
 from mutabot.journal.records import Verification
 
-from .rows import COLUMNS, Rows
+from .rows import Rows
 
 #: items of a list of what was left out, per reason
 _ITEMS = 50
@@ -41,9 +41,11 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
         "tests": rows.tests,
         "baseline": _baseline(campaign, rows.tests),
         "sites": rows.sites,
-        "columns": COLUMNS,
+        "columns": rows.columns,
         "mutants": rows.rows,
-        "unlooked": [[*one.places[:3], one.operation, one.quantity, one.text] for one in unlooked(results.mutants)],
+        "unlooked": [
+            [*one.places[:3], one.operation, one.quantity, one.text] for one in unlooked(results.mutants)
+        ],
         "leftOut": _left_out(campaign),
         "flaky": results.flaky.tests,
         "controls": [[one.test_file, one.control, one.ok, one.detail] for one in results.controls],

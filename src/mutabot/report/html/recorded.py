@@ -77,7 +77,11 @@ class Recorded:
         )
         calls = _shared(recording.calls, usual.calls) if usual is not None else 0
         return {
-            "tracks": [{**one, "name": self.clean(one["name"]), "unit": self.clean(one["unit"])} for one in tracks if one],
+            "tracks": [
+                {**one, "name": self.clean(one["name"]), "unit": self.clean(one["unit"])}
+                for one in tracks
+                if one
+            ],
             "callsFrom": calls,
             "calls": [self._call(one) for one in recording.calls[calls:]],
             "moments": [self._moment(one) for one in recording.moments],

@@ -11,13 +11,6 @@ from mutabot.model import By, Outcome, Verdict
 from mutabot.report.shaping.places import place_of, utf16
 from mutabot.report.shaping.status import status_of, why_alone
 
-#: in this order the cells of a row stand
-COLUMNS = (
-    "number", "id", "file", "line", "column", "endLine", "endColumn", "function", "text", "operation", "quantity", "operator", "variant",
-    "family", "role", "description", "ends", "status", "killed", "valid", "worst", "indistinguishable", "why",
-    "site", "kills", "earlier", "also", "unit", "drawn",
-)  # fmt: skip
-
 #: one letter per round, as on the terminal
 _LETTERS = {
     Verdict.SURVIVED: "S",
@@ -49,6 +42,8 @@ class Rows:
         files: paths of sources.
         tests: node ids of all tests that are known.
         sites: the tests that reach a site, as numbers, by the number of the site.
+        columns: the names of the cells of a row.
+        rows: one row per mutant.
     """
 
     def __init__(self, campaign: StoredCampaign) -> None:
@@ -61,24 +56,45 @@ class Rows:
         self._files: dict[str, int] = {}
         self._sites: dict[tuple[str, ...], int] = {}
         self.sites: list[list[int]] = []
-        self.rows = [self._row(one) for one in campaign.mutants]
+        made = [self._row(one) for one in campaign.mutants]
+        self.columns = [*made[0]] if made else []
+        self.rows = [[*one.values()] for one in made]
 
-    def _row(self, result: MutantResult) -> list[Any]:
+    def _row(self, result: MutantResult) -> dict[str, Any]:
         mutant, rate, status = result.mutant, result.kill_rate, status_of(result)
         first, *others = mutant.singles
         span = first.site.span
         place = place_of(span, self._campaign.source(span.file), utf16)
-        return [
-            mutant.number, mutant.id, self._file(span.file), place.line, place.column, place.end_line, place.end_column,
-            span.function, first.site.text, mutant.operation, mutant.quantity, mutant.operator, mutant.variant,
-            mutant.family, mutant.site.role.value, mutant.description, "".join(map(letter_of, result.rounds)),
-            status.value if status is not None else "not run", rate.killed, rate.valid, result.worst,
-            int(result.indistinguishable), why_alone(result), self._site(result), self._kills(result),
-            int(result.earlier) + int(result.outdated),
-            [[self._file(one.site.span.file), one.site.span.line] for one in others],
-            result.quantity.unit if result.quantity is not None else None,
-            _drawn(result),
-        ]  # fmt: skip
+        return {
+            "number": mutant.number,
+            "id": mutant.id,
+            "file": self._file(span.file),
+            "line": place.line,
+            "column": place.column,
+            "endLine": place.end_line,
+            "endColumn": place.end_column,
+            "function": span.function,
+            "operation": mutant.operation,
+            "quantity": mutant.quantity,
+            "unit": result.quantity.unit if result.quantity is not None else None,
+            "operator": mutant.operator,
+            "variant": mutant.variant,
+            "family": mutant.family,
+            "role": mutant.site.role.value,
+            "description": mutant.description,
+            "ends": "".join(map(letter_of, result.rounds)),
+            "status": status.value if status is not None else "not run",
+            "killed": rate.killed,
+            "valid": rate.valid,
+            "worst": result.worst,
+            "indistinguishable": result.indistinguishable,
+            "why": why_alone(result),
+            "site": self._site(result),
+            "kills": self._kills(result),
+            "earlier": result.earlier or result.outdated,
+            "also": [[self._file(one.site.span.file), one.site.span.line] for one in others],
+            "drawn": _drawn(result),
+        }
 
     def _file(self, file: str) -> int:
         if file not in self._files:
@@ -95,7 +111,7 @@ class Rows:
         return self._sites[key]
 
     def _kills(self, result: MutantResult) -> list[list[int]]:
-        """Of each test that is known to notice it: its number, in how many rounds, and in how many by a check."""
+        """The tests that are known to notice it: number, in how many rounds, in how many by a check."""
         found: dict[int, list[int]] = {}
         for outcome in result.outcomes:
             for test, by in dict(_killers(outcome)).items():

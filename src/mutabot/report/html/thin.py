@@ -1,4 +1,4 @@
-"""Tracks with fewer points: what a straight line in time keeps within half a millimetre per axis is left out."""
+"""Tracks with fewer points: what a straight line in time keeps within half a millimetre is left out."""
 
 from __future__ import annotations
 
@@ -50,36 +50,49 @@ def thinned(track: Track, times: Sequence[float], usual: Track | None, usual_tim
 
 
 def kept_points(times: Sequence[float], rows: Sequence[Row], misses: Sequence[float]) -> list[int]:
-    """The indexes of points to keep: on a line between two of them, all others lie within ``misses`` per axis.
+    """The points to keep: on a line between two of them, all others lie within ``misses`` per axis.
 
     From each kept point on, the slopes are narrowed to those that pass every point so far; the last point
     within them is kept next. Each point is looked at once.
     """
     if len(rows) < 3:
         return list(range(len(rows)))
-    kept, anchor = [0], 0
-    low, high = [float("-inf")] * len(misses), [float("inf")] * len(misses)
-    index = 1
+    kept, cone, index = [0], _Cone(), 1
     while index < len(rows):
-        span = times[index] - times[anchor]
-        slopes = [(rows[index][axis] - rows[anchor][axis]) / span if span > 0 else 0.0 for axis in range(len(misses))]
-        if span <= 0 or any(not low[a] <= slopes[a] <= high[a] for a in range(len(misses))):
-            if index - 1 > anchor:
-                anchor = index - 1
-                kept.append(anchor)
-                low, high = [float("-inf")] * len(misses), [float("inf")] * len(misses)
-                continue
-            kept.append(index)
-            anchor = index
-            low, high = [float("-inf")] * len(misses), [float("inf")] * len(misses)
+        anchor = kept[-1]
+        span = max(times[index] - times[anchor], 1e-9)
+        slopes = [(one - other) / span for one, other in zip(rows[index], rows[anchor], strict=True)]
+        if cone.holds(slopes):
+            cone.narrow(slopes, [miss / span for miss in misses])
+            index += 1
         else:
-            for axis, miss in enumerate(misses):
-                low[axis] = max(low[axis], slopes[axis] - miss / span)
-                high[axis] = min(high[axis], slopes[axis] + miss / span)
-        index += 1
+            kept.append(max(index - 1, anchor + 1))
+            cone, index = _Cone(), kept[-1] + 1
     if kept[-1] != len(rows) - 1:
         kept.append(len(rows) - 1)
     return kept
+
+
+class _Cone:
+    """The slopes of lines that pass near enough to every point since the last that was kept."""
+
+    def __init__(self) -> None:
+        self._low: list[float] | None = None
+        self._high: list[float] = []
+
+    def holds(self, slopes: Sequence[float]) -> bool:
+        """Whether a line with these slopes does."""
+        if self._low is None:
+            return True
+        return all(low <= one <= high for low, one, high in zip(self._low, slopes, self._high, strict=True))
+
+    def narrow(self, slopes: Sequence[float], misses: Sequence[float]) -> None:
+        """One more point: lines may miss it by so much."""
+        low = [one - miss for one, miss in zip(slopes, misses, strict=True)]
+        high = [one + miss for one, miss in zip(slopes, misses, strict=True)]
+        if self._low is not None:
+            low, high = [*map(max, low, self._low)], [*map(min, high, self._high)]
+        self._low, self._high = low, high
 
 
 def _rows(track: Track, times: Sequence[float]) -> tuple[list[Row], list[float], list[list[int]]]:
@@ -125,12 +138,13 @@ def _shared(track: Track, times: Sequence[float], usual: Track | None, usual_tim
     if usual is None or usual.kind is not track.kind:
         return 0.0
     width = track.kind.width
-    count = 0
-    for count, (one, other) in enumerate(zip(times, usual_times, strict=False)):  # noqa: B007
+    until = 0.0
+    for count, (one, other) in enumerate(zip(times, usual_times, strict=False)):
         here = slice(count * width, (count + 1) * width)
         if one != other or _bytes(track.values[here]) != _bytes(usual.values[here]):
             break
-    return times[count] if count else 0.0
+        until = one
+    return until
 
 
 def _bytes(values: array[float]) -> bytes:
@@ -139,5 +153,3 @@ def _bytes(values: array[float]) -> bytes:
 
 def _differences(numbers: Sequence[int]) -> list[int]:
     return [numbers[0], *(after - before for before, after in pairwise(numbers))]
-
-

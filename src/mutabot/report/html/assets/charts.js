@@ -1,7 +1,7 @@
 /* Small charts over time, original and mutant in each: one per number of each track. */
 "use strict";
 (() => {
-  const { h, svg, amount, number } = mutabot;
+  const { h, svg, number } = mutabot;
   const { at, turned } = mutabot.recordings;
   const WIDE = 400, HIGH = 100;
 
@@ -58,7 +58,7 @@
     const element = h("figure", { class: "chart" },
       h("figcaption", null, h("strong", null, measure.name), measure.unit ? ` ${measure.unit}` : "", now),
       h("div", { class: "plot" }, drawing, h("span", { class: "high" }, number(high, 3)), h("span", { class: "low" }, number(low, 3))),
-      gap > tolerance ? h("p", null, `apart by ${amount(gap, measure.unit)} at ${number(when, 3)} s`) : h("p", null, usual ? "the same" : "not in the original"));
+      gap > tolerance ? h("p", null, `apart by ${number(gap, 2)}${measure.unit ? ` ${measure.unit}` : ""} at ${number(when, 3)} s`) : h("p", null, usual ? "the same" : "not in the original"));
     return { element, name: measure.name, differs: gap > tolerance || !usual, share: gap / (tolerance || 1) };
   }
 

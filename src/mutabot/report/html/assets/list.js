@@ -3,6 +3,7 @@
 (() => {
   const { h, address, count, empty, marks } = mutabot;
   const PAGE = 50;
+  const AT_ONCE = 15; // rows that are drawn before the others, so that typing is never held up
   const SORTS = {
     number: [(one) => one.number, 1], place: [(one) => `${one.file}\n${String(one.line).padStart(7, "0")}`, 1], operator: [(one) => one.operator, 1],
     status: [(one) => marks.ORDER.indexOf(one.status), 1], killed: [(one) => (one.valid ? one.killed / one.valid : 2), 1], worst: [(one) => (one.survives ? one.worst : -1), -1],
@@ -118,10 +119,16 @@
     return h("div", null, h("table", { class: "mutants" },
       h("thead", null, h("tr", null, head("number", "no.", "n"), head("place", "place"), head("operator", "operator"), h("th", { scope: "col" }, "what it does, and what came of it"),
         head("status", "rounds"), head("killed", "killed", "n"), head("worst", "how far", "n", "how far the world was from the original's at the worst moment, in multiples of the tolerance"))),
-      h("tbody", null, shown.map((one) => row(one, state)))), marks.legend(letters));
+      body(shown)), marks.legend(letters));
   }
 
-  function row(one, state) {
+  function body(shown) {
+    const rows = h("tbody", null, shown.slice(0, AT_ONCE).map(row));
+    if (shown.length > AT_ONCE) requestAnimationFrame(() => setTimeout(() => { if (rows.isConnected) rows.append(...shown.slice(AT_ONCE).map(row)); }));
+    return rows;
+  }
+
+  function row(one) {
     return h("tr", { class: one.survives ? "is-survivor" : null },
       h("td", { class: "n no" }, one.number),
       h("td", { class: "where" }, h("a", { href: address(["source", one.file], { line: String(one.line) }) }, one.place)),

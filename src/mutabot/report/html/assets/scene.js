@@ -148,6 +148,9 @@
     pen.globalAlpha = 1;
   }
 
+  const LONGEST = 28;
+  const label = (name) => { const text = mutabot.legible(name); return text.length > LONGEST ? `${text.slice(0, LONGEST)}…` : text; };
+
   function drawBlocks(pen, camera, blocks, colours) {
     const sorted = [...blocks].sort((one, other) => camera.project(other.centre)[2] - camera.project(one.centre)[2]);
     for (const one of sorted) box(pen, camera, one.centre, one.half, UPRIGHT, { fill: colours.block, alpha: 1, edge: colours.edge, edgeAlpha: 1, width: 1 });
@@ -156,7 +159,7 @@
     pen.fillStyle = colours.muted;
     for (const one of sorted) {
       const [x, y] = camera.project(plus(one.centre, [0, 0, one.half[2]]));
-      pen.fillText(mutabot.legible(one.name), x, y + 4);
+      pen.fillText(label(one.name), x, y + 4);
     }
   }
 
@@ -239,9 +242,9 @@
     pen.strokeStyle = colours.paper;
     const twin = index === 0;
     if (twin) return; // the mutant's label stands for both where they meet
-    pen.strokeText(mutabot.legible(one.name), x + 9, y - 7);
+    pen.strokeText(label(one.name), x + 9, y - 7);
     pen.fillStyle = colour;
-    pen.fillText(mutabot.legible(one.name), x + 9, y - 7);
+    pen.fillText(label(one.name), x + 9, y - 7);
   }
 
   /** The moment of the fault, on the way of the first thing that is tracked. */

@@ -1,0 +1,250 @@
+"""The report in headless Chromium, from disk: it opens, can be used, and harms nobody."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import schemas
+from analysis import samples
+from report.html import reports
+
+sync_api = pytest.importorskip("playwright.sync_api", reason="requirements-reports.lock is not installed")
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium is installed")
+#: every kind of page
+PAGES = (
+    "#/", "#/mutants", "#/mutant/2", "#/mutant/1", "#/source/mission.py", "#/tests", "#/operators", "#/noise",
+    "#/mutant/99", "#/nowhere",
+)  # fmt: skip
+
+#: puts scripts into the page that are none of its own
+_INTRUDE = """() => {
+  const one = document.createElement("script");
+  one.textContent = "window.pwned = 1";
+  const two = document.createElement("img");
+  two.setAttribute("onerror", "window.pwned = 2");
+  two.src = "x";
+  document.body.append(one, two);
+}"""
+
+
+class Visit:
+    """A page, and what went wrong in it."""
+
+    def __init__(self, page: Any, file: Path) -> None:
+        self.page, self._file = page, file
+        self.wrong: list[str] = []
+        page.on(
+            "console", lambda one: self.wrong.append(one.text) if one.type in ("error", "warning") else None
+        )
+        page.on("pageerror", lambda one: self.wrong.append(str(one)))
+        page.on("dialog", lambda one: self.wrong.append(one.message))
+        page.on("requestfailed", lambda one: self.wrong.append(one.url))
+        page.on("request", lambda one: None if one.url.startswith("file:") else self.wrong.append(one.url))
+
+    def open(self, address: str) -> None:
+        """Go there, and wait until it is drawn."""
+        self.page.goto(f"{self._file.as_uri()}{address}")
+        self.page.wait_for_selector("body:not(:has(.wait)) main h1")
+
+    def settled(self) -> None:
+        """Wait until two frames have been drawn."""
+        self.page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    sandbox = [] if os.getuid() else ["--no-sandbox"]
+    with sync_api.sync_playwright() as playwright:
+        found = playwright.chromium.launch(executable_path=CHROMIUM, args=sandbox)
+        yield found
+        found.close()
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return reports.plain(tmp_path_factory.mktemp("plain"))
+
+
+@pytest.fixture(scope="module")
+def evil(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return reports.evil(tmp_path_factory.mktemp("evil"))
+
+
+@pytest.fixture
+def visit(browser: Any, plain: Path) -> Iterator[Visit]:
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    yield Visit(page, plain)
+    page.close()
+
+
+def test_every_page_opens_from_disk_without_an_error_and_without_a_network(visit: Visit) -> None:
+    titles = set()
+    for address in PAGES:
+        visit.open(address)
+        titles.add(visit.page.title())
+    assert len(titles) == len(PAGES)
+    assert visit.wrong == []
+
+
+def test_the_list_is_searched_filtered_and_sorted_and_the_address_remembers(visit: Visit) -> None:
+    visit.open("#/mutants")
+    rows = visit.page.locator("table.mutants tbody tr")
+    assert rows.count() == len(samples.MUTANTS)
+    visit.page.get_by_label("Search").fill("tracker noise")
+    assert rows.count() == 1
+    assert "1 mutant of 5" in visit.page.locator(".told").inner_text()
+    visit.page.get_by_label("Search").fill("")
+    visit.page.get_by_role("button", name="survived").click()
+    assert rows.count() == 2
+    visit.page.get_by_role("button", name="how far").click()
+    assert visit.page.locator("th[aria-sort=descending]").inner_text().startswith("how far")
+    assert rows.first.locator("a.open").inner_text() == samples.SKIP.description
+    visit.page.reload()
+    assert rows.count() == 2
+    visit.page.get_by_label("Search").fill("nothing has this text")
+    assert "No mutant fits" in visit.page.locator("#results").inner_text()
+    assert visit.wrong == []
+
+
+def test_all_of_it_can_be_used_by_keyboard(visit: Visit) -> None:
+    visit.open("#/")
+    keys = visit.page.keyboard
+    keys.press("Tab")
+    assert visit.page.evaluate("document.activeElement.textContent") == "Skip to the content"
+    keys.press("/")
+    visit.page.wait_for_selector("#search:focus")
+    keys.type("skip")
+    keys.press("Escape")
+    keys.press("j")
+    keys.press("Enter")
+    visit.page.wait_for_selector("canvas.scene")
+    assert visit.page.url.endswith("#/mutant/2")
+    visit.page.locator("canvas.scene").focus()
+    before = visit.page.locator("canvas.scene").evaluate("(one) => one.toDataURL()")
+    keys.press("ArrowLeft")
+    visit.settled()
+    assert visit.page.locator("canvas.scene").evaluate("(one) => one.toDataURL()") != before
+    moment = visit.page.get_by_label("Moment", exact=True)
+    at = float(moment.input_value())
+    keys.press("]")
+    assert float(moment.input_value()) == pytest.approx(at + 0.1)
+    visit.open("#/mutants")
+    visit.open("#/mutant/2")
+    keys.press("n")
+    visit.page.wait_for_url("**#/mutant/3")
+    keys.press("?")
+    assert visit.page.get_by_role("dialog").is_visible()
+    keys.press("Escape")
+    assert visit.page.get_by_role("dialog").count() == 0
+    assert visit.wrong == []
+
+
+def test_a_mutant_s_page_tells_what_the_robot_did_and_who_looked(visit: Visit) -> None:
+    visit.open("#/mutant/2")
+    visit.page.wait_for_selector("canvas.scene")
+    text = visit.page.locator("main").inner_text()
+    assert "box slipped at 5.0 s" in text
+    assert "x == approx(0.5, abs=0.1)" in text
+    assert "apart by 0.2 m" in text
+    assert visit.page.locator("figure.chart").count() >= 6
+    assert visit.page.locator(".events tr.faulty").count() == 1
+    assert "A check that would catch it" not in text
+
+
+def test_the_theme_is_chosen_and_kept(visit: Visit) -> None:
+    visit.open("#/")
+    colour = "getComputedStyle(document.body).backgroundColor"
+    light = visit.page.evaluate(colour)
+    button = visit.page.get_by_role("button", name="Theme")
+    button.click()
+    button.click()
+    assert visit.page.evaluate("document.documentElement.dataset.theme") == "dark"
+    dark = visit.page.evaluate(colour)
+    assert dark != light
+    visit.page.reload()
+    assert visit.page.evaluate(colour) == dark
+
+
+@pytest.mark.parametrize(("theme", "rules"), [("light", {}), ("dark", {"runOnly": ["color-contrast"]})])
+def test_axe_finds_nothing_serious_on_any_page(
+    browser: Any, plain: Path, theme: str, rules: dict[str, Any]
+) -> None:
+    try:
+        axe = schemas.text(schemas.AXE)
+    except schemas.NoSchemaError as error:
+        pytest.skip(f"no axe here: {error}")
+    page = browser.new_page(viewport={"width": 1280, "height": 900}, color_scheme=theme)
+    visit = Visit(page, plain)
+    found = []
+    for address in PAGES:
+        visit.open(address)
+        page.evaluate(axe)
+        for one in page.evaluate("(rules) => axe.run({...rules, resultTypes: ['violations']})", rules)[
+            "violations"
+        ]:
+            if one["impact"] in ("serious", "critical"):
+                places = [(node["target"], node.get("failureSummary", "")) for node in one["nodes"][:3]]
+                found.append((address, one["id"], places))
+    page.close()
+    assert found == []
+
+
+def test_no_page_is_wider_than_a_telephone(browser: Any, plain: Path, evil: Path) -> None:
+    page = browser.new_page(viewport={"width": 400, "height": 800})
+    wide = []
+    for file in (plain, evil):
+        visit = Visit(page, file)
+        for address in PAGES:
+            visit.open(address)
+            width = page.evaluate("document.documentElement.scrollWidth")
+            wide += [(address, width)] if width > 400 else []
+    page.close()
+    assert wide == []
+
+
+def test_texts_that_mean_harm_are_shown_and_do_nothing(browser: Any, evil: Path) -> None:
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    visit = Visit(page, evil)
+    for address in PAGES:
+        visit.open(address)
+        visit.settled()
+        assert page.evaluate("window.pwned") is None
+        assert page.locator("main script, main img, main svg[onload]").count() == 0
+        assert page.locator("script:not([src])").count() == 0
+    visit.open("#/mutants")
+    text = page.locator("main").inner_text()
+    assert "</script><script>window.pwned = 1</script>" in text
+    assert "⟨U+202E⟩gnp.exe" in text
+    assert "\u202e" not in text
+    assert visit.wrong == []
+    page.close()
+
+
+def test_the_page_lets_no_script_in_that_is_not_its_own(visit: Visit) -> None:
+    visit.open("#/")
+    visit.page.evaluate(_INTRUDE)
+    visit.settled()
+    assert visit.page.evaluate("window.pwned") is None
+    assert any("Content Security Policy" in one for one in visit.wrong)
+
+
+@pytest.mark.parametrize("known", [0, 3])
+def test_a_campaign_that_was_interrupted_says_so_and_what_to_do(
+    browser: Any, tmp_path: Path, known: int
+) -> None:
+    page = browser.new_page()
+    visit = Visit(page, reports.plain(tmp_path, outcomes=samples.OUTCOMES[:known], finish="interrupted"))
+    for address in ("#/mutant/2", "#/tests", "#/operators"):
+        visit.open(address)
+    visit.open("#/")
+    assert "not complete (interrupted)" in page.locator("main").inner_text()
+    assert visit.wrong == []
+    page.close()
