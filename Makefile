@@ -58,9 +58,10 @@ site: $(SITE)/.ready
 	    -c tools/site -d $(SITE)/doctrees . site
 	@echo "open site/index.html"
 
-## draw the pictures of the cell in docs/img again, without a screen
-pictures: $(READY)
+## draw the pictures of the cell and of the report in docs/img again, without a screen
+pictures: $(READY) $(REPORTS)
 	MUJOCO_GL=$${MUJOCO_GL:-osmesa} $(RUN) tools/make_pictures.py
+	$(RUN) tools/make_report_pictures.py
 
 ## compare the families of operators on the examples (of the largest a tenth of the mutants), and write
 ## docs/comparison.md from it
@@ -84,6 +85,7 @@ bench: $(READY)
 	$(RUN) benchmarks/interval_coverage.py
 	$(RUN) benchmarks/sample_coverage.py
 	$(RUN) benchmarks/pick_and_place_seeds.py
+	$(RUN) benchmarks/html_report.py
 
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the
 ## examples; both engines against plain pytest; ten thousand mutants; 200 campaigns in a row;

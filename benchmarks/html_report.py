@@ -29,7 +29,7 @@ from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Tra
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model import By, Check, Looked, Mutant, Outcome, Role, Site, Span, Verdict
-from mutabot.model.diverged import Apart, Diverged
+from mutabot.model.seen.diverged import Apart, Diverged
 from mutabot.report.html.folder import Contents, Written, write_folder
 from mutabot.report.shaping.portable import portable
 

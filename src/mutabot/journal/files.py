@@ -1,4 +1,4 @@
-"""Where journals lie in a project."""
+"""What of mutabot lies in a project: journals, and folders with reports."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from pathlib import Path
 #: mutabot's folder in a project, and its journals: of `run`, of `compare`, and of that without an oracle
 HOME = ".mutabot"
 JOURNAL, COMPARISON, WITHOUT_ORACLE = "journal.sqlite", "compare.sqlite", "compare-no-oracle.sqlite"
+#: by this file a folder is known to be a report of ours: it may be replaced, and no test depends on it
+REPORT_MARK = "mutabot-report.txt"
 
 
 def find_journal(project: Path, name: str = JOURNAL) -> Path:

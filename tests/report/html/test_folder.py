@@ -13,8 +13,9 @@ import mutabot
 from analysis import samples
 from mutabot.analysis.results import MutantResult
 from mutabot.errors import UsageError
+from mutabot.journal.files import REPORT_MARK
 from mutabot.report.html import folder as folders
-from mutabot.report.html.folder import MARK, check_folder
+from mutabot.report.html.folder import check_folder
 from mutabot.report.html.suggestion import SuggestedCheck
 from report.html import reports
 
@@ -63,7 +64,7 @@ def test_an_older_report_is_replaced_and_its_clips_stay(tmp_path: Path) -> None:
     (report / "data" / "mutants" / "99.js").write_text("old")
     reports.write(report, journal, stored)
     assert not (report / "data" / "mutants" / "99.js").exists()
-    assert (report / MARK).is_file()
+    assert (report / REPORT_MARK).is_file()
     assert (report / "clips" / "notes.txt").read_bytes() == b"mine"
     text = (report / "data" / "mutants" / "2.js").read_text()
     assert '"media":["clips/2-side.png","clips/2.mp4"]' in text

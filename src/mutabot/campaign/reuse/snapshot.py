@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from mutabot.journal.files import REPORT_MARK
+
 from .counted import WRITTEN
 
 #: folders without anything that a test imports or reads; hidden ones are left out as well
@@ -23,6 +25,8 @@ _FOR_PEOPLE = re.compile(
 
 
 _FOR_TOOLS = {".gitignore", ".gitattributes", ".editorconfig", ".coverage", ".DS_Store"}
+#: files that make a folder a virtual environment, or a report of mutabot
+_MARKS = ("pyvenv.cfg", REPORT_MARK)
 _HASH = "#"
 
 
@@ -105,7 +109,7 @@ def _is_folder_of_project(folder: Path) -> bool:
     name = folder.name
     if name.startswith(".") or name in _FOLDERS or name.endswith(_SUFFIXES):
         return False
-    return not (folder / "pyvenv.cfg").exists()
+    return not any((folder / mark).exists() for mark in _MARKS)
 
 
 def _digest_of(path: Path) -> str | None:

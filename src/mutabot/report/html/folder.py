@@ -15,6 +15,7 @@ from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.evidence import StoredEvidence
 from mutabot.border.codec import to_data
 from mutabot.errors import UsageError
+from mutabot.journal.files import REPORT_MARK
 
 from .mutant import mutant_page
 from .overview import campaign_data
@@ -22,8 +23,6 @@ from .recorded import Recorded
 from .scripts import script_of
 from .suggestion import Suggest
 
-#: by what a folder is known to be a report, and so may be written again
-MARK = "mutabot-report.txt"
 _MARK_TEXT = (
     "A report of mutabot: open index.html. `mutabot report --html` replaces it, and leaves clips/ alone.\n"
 )
@@ -74,7 +73,7 @@ def check_folder(folder: Path) -> None:
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"the report {folder} cannot be written: it is a file; --html takes a folder")
     found = {one.name for one in folder.iterdir()} - {_CLIPS} if folder.is_dir() else set()
-    if found and MARK not in found:
+    if found and REPORT_MARK not in found:
         raise UsageError(
             f"the report {folder} cannot be written: the folder holds other files, such as {min(found)}; "
             "name a new or empty folder, or one with an older report"
@@ -90,7 +89,7 @@ def write_folder(folder: Path, contents: Contents, limit: int = LIMIT) -> Writte
     check_folder(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / MARK).write_text(_MARK_TEXT, encoding="utf-8")
+        (folder / REPORT_MARK).write_text(_MARK_TEXT, encoding="utf-8")
         for name in (_ASSETS, _DATA):
             shutil.rmtree(folder / name, ignore_errors=True)
             (folder / name).mkdir()

@@ -9,7 +9,7 @@ from mutabot.analysis.divergence import change_text
 from mutabot.analysis.results import MutantResult
 from mutabot.border.codec import to_data
 from mutabot.model import Looked, Outcome
-from mutabot.model.diverged import Diverged
+from mutabot.model.seen.diverged import Diverged
 from mutabot.report.shaping.status import rounds_text
 
 #: what the page takes for granted where nothing is said
