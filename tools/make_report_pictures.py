@@ -20,7 +20,7 @@ import mutabot
 ROOT = Path(__file__).parents[1]
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 #: what of the program the mutant on the picture does
-OPERATOR, CALL = "skip", "arm.home"
+OPERATOR, LINE = "skip", "    arm.move_by(z=-0.3)"
 
 
 def main(folder: Path) -> None:
@@ -35,9 +35,12 @@ def main(folder: Path) -> None:
         shutil.copytree(ROOT / "examples" / "paper", project, ignore=shutil.ignore_patterns(".mutabot"))
         _mutabot(project, "run", "--rounds", "2", "--family", "robot,classical")
         _mutabot(project, "report", "--html", str(project / "report"))
-        survivors = mutabot.open(project).survivors
+        campaign = mutabot.open(project)
+        line = (campaign.source("mission.py") or "").split("\n").index(LINE) + 1
         shown = next(
-            one for one in survivors if (one.mutant.operator, one.mutant.site.text) == (OPERATOR, CALL)
+            one
+            for one in campaign.survivors
+            if (one.mutant.operator, one.mutant.site.span.line) == (OPERATOR, line)
         )
         page_file = (project / "report" / "index.html").as_uri()
         with sync_playwright() as playwright:
@@ -47,8 +50,9 @@ def main(folder: Path) -> None:
             light.goto(page_file)
             light.wait_for_selector("main h1")
             light.screenshot(path=folder / "report-overview.png")
+            light.set_viewport_size({"width": 1180, "height": 1130})
             light.goto(f"{page_file}#/mutant/{shown.mutant.number}")
-            _show(light, "canvas.scene", "#robot")
+            _show(light, "canvas.scene", "body")
             light.screenshot(path=folder / "report-mutant.png")
             dark = browser.new_page(viewport={"width": 1180, "height": 860}, color_scheme="dark")
             dark.goto(f"{page_file}#/source/mission.py")

@@ -53,9 +53,25 @@ def test_several_formats_go_to_their_files(project: Path, capsys: pytest.Capture
     assert (project / "c.parquet").read_bytes().startswith(b"PAR1")
 
 
+def test_pages_go_to_a_folder_that_is_named_and_may_be_written_again(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for _ in range(2):
+        assert main(["report", "--html", "pages", "--format", "csv", "-o", "a.csv"]) == 0
+        out, err = capsys.readouterr()
+        assert out == ""
+        assert err.startswith("mutabot: pages/index.html, 0.")
+        assert (project / "pages" / "index.html").is_file()
+        assert (project / "a.csv").is_file()
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
+        ("--html .", "the folder holds other files, such as .mutabot"),
+        ("--html .mutabot/journal.sqlite", "it is a file; --html takes a folder"),
+        ("--html pages --json", "--json goes with --compare alone"),
+        ("--html pages --compare old.sqlite", "--html cannot hold a comparison"),
         ("", "say which --format to write: badge, csv"),
         ("--format sarf", "unknown format 'sarf'; did you mean 'sarif'?"),
         ("--format sarif --format junit", "2 formats and 0 files"),

@@ -564,7 +564,8 @@ def test_a_snapshot_holds_what_tests_could_read_and_nothing_else(tmp_path: Path)
     counted = ("mission.py", "scenes/box.xml", ".env", "conftest.py", "deep/er/data.csv")
     others = (
         ".git/config", ".mutabot/journal.sqlite", "env/pyvenv.cfg", "env/lib/x.py", "a/__pycache__/x.pyc",
-        "report/mutabot-report.txt", "report/data/campaign.js", "README.md", ".gitignore", ".venv/x.py", "x.egg-info/PKG-INFO", "mission.py~",
+        "report/mutabot-report.txt", "report/data/campaign.js", "README.md", ".gitignore", ".venv/x.py",
+        "x.egg-info/PKG-INFO", "mission.py~",
     )  # fmt: skip
     for name in (*counted, *others):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)

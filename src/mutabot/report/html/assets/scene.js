@@ -32,9 +32,11 @@
       pen.setTransform(ratio, 0, 0, ratio, 0, 0);
       pen.clearRect(0, 0, width, height);
       const colours = { ink: ink("ink"), muted: ink("muted"), line: ink("line-strong"), block: ink("block"), edge: ink("block-edge"), paper: ink("surface") };
+      const unit = parseFloat(getComputedStyle(document.documentElement).fontSize) / 15; // as large as the other text
+      Object.assign(colours, { unit, font: `600 ${11 * unit}px system-ui, sans-serif`, small: `500 ${11 * unit}px system-ui, sans-serif` });
       const camera = cameraOf(view, width, height);
       drawBlocks(pen, camera, blocks, colours);
-      worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => path(pen, camera, one, world, blocks, clock.time)));
+      worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => path(pen, camera, one, world, blocks, clock.time, colours)));
       worlds.forEach((world, index) => things[index].filter((one) => shown.has(one.name)).forEach((one) => body(pen, camera, one, world, clock.time, colours, index)));
       fault(pen, camera, worlds, things, shown, colours);
       corner(pen, camera, height, colours);
@@ -81,7 +83,8 @@
     const watch = new ResizeObserver(draw);
     watch.observe(canvas);
     addEventListener("theme", draw);
-    addEventListener("beforeprint", paint);
+    const paper = matchMedia("print");
+    paper.addEventListener("change", paint); // at once: what is drawn later is not printed
     clock.on(draw);
 
     const turn = (name, yaw, pitch) => h("button", { type: "button", onclick: () => { Object.assign(view, home, { yaw, pitch }); draw(); } }, name);
@@ -92,7 +95,7 @@
         h("button", { type: "button", "aria-label": "Farther", onclick: () => { view.distance *= 1.25; draw(); } }, "−")),
       names.length > 1 ? h("div", { role: "group", "aria-label": "Shown" }, names.map((name) => h("label", { class: "toggle" },
         h("input", { type: "checkbox", checked: true, onchange: (event) => { if (event.target.checked) shown.add(name); else shown.delete(name); draw(); } }), name))) : null);
-    const stop = () => { watch.disconnect(); removeEventListener("theme", draw); removeEventListener("beforeprint", paint); };
+    const stop = () => { watch.disconnect(); removeEventListener("theme", draw); paper.removeEventListener("change", paint); };
     return { canvas, controls, stop };
   }
 
@@ -154,7 +157,7 @@
   function drawBlocks(pen, camera, blocks, colours) {
     const sorted = [...blocks].sort((one, other) => camera.project(other.centre)[2] - camera.project(one.centre)[2]);
     for (const one of sorted) box(pen, camera, one.centre, one.half, UPRIGHT, { fill: colours.block, alpha: 1, edge: colours.edge, edgeAlpha: 1, width: 1 });
-    pen.font = "500 11px system-ui, sans-serif";
+    pen.font = colours.small;
     pen.textAlign = "center";
     pen.fillStyle = colours.muted;
     for (const one of sorted) {
@@ -179,7 +182,7 @@
     });
   }
 
-  function path(pen, camera, one, world, blocks, time) {
+  function path(pen, camera, one, world, blocks, time, colours) {
     const now = at(one, time);
     const points = [];
     one.times.forEach((when, index) => {
@@ -187,7 +190,7 @@
       points.push([one.rows[index], when]);
     });
     pen.strokeStyle = world.ink();
-    pen.lineWidth = world.width;
+    pen.lineWidth = world.width * colours.unit;
     pen.lineJoin = "round";
     pen.lineCap = "round";
     let style = -1;
@@ -233,18 +236,18 @@
       pen.fillStyle = index ? colour : colours.paper;
       pen.strokeStyle = colour;
       pen.lineWidth = 1.8;
-      pen.beginPath(); pen.arc(x, y, 4.5, 0, 2 * Math.PI); pen.fill(); pen.stroke();
+      pen.beginPath(); pen.arc(x, y, 4.5 * colours.unit, 0, 2 * Math.PI); pen.fill(); pen.stroke();
     }
     const [x, y] = camera.project(row);
-    pen.font = "600 11px system-ui, sans-serif";
+    pen.font = colours.font;
     pen.textAlign = "left";
     pen.lineWidth = 3;
     pen.strokeStyle = colours.paper;
     const twin = index === 0;
     if (twin) return; // the mutant's label stands for both where they meet
-    pen.strokeText(label(one.name), x + 9, y - 7);
+    pen.strokeText(label(one.name), x + 9 * colours.unit, y - 7 * colours.unit);
     pen.fillStyle = colour;
-    pen.fillText(label(one.name), x + 9, y - 7);
+    pen.fillText(label(one.name), x + 9 * colours.unit, y - 7 * colours.unit);
   }
 
   /** The moment of the fault, on the way of the first thing that is tracked. */
@@ -259,29 +262,30 @@
     pen.strokeStyle = colours.paper;
     pen.lineWidth = 2;
     pen.beginPath();
-    pen.moveTo(x, y - 7); pen.lineTo(x + 6, y); pen.lineTo(x, y + 7); pen.lineTo(x - 6, y);
+    const size = 6.5 * colours.unit;
+    pen.moveTo(x, y - size); pen.lineTo(x + size, y); pen.lineTo(x, y + size); pen.lineTo(x - size, y);
     pen.closePath();
     pen.stroke();
     pen.fill();
-    pen.font = "600 11px system-ui, sans-serif";
+    pen.font = colours.font;
     pen.textAlign = "right";
     pen.lineWidth = 3;
-    pen.strokeText(`fault ${number(when, 4)} s`, x - 10, y + 4);
-    pen.fillText(`fault ${number(when, 4)} s`, x - 10, y + 4);
+    pen.strokeText(`fault ${number(when, 4)} s`, x - 10 * colours.unit, y + 4 * colours.unit);
+    pen.fillText(`fault ${number(when, 4)} s`, x - 10 * colours.unit, y + 4 * colours.unit);
   }
 
   /** Which way x, y and z go, in the corner. */
   function corner(pen, camera, height, colours) {
-    const middle = [34, height - 34];
-    pen.font = "600 10px system-ui, sans-serif";
+    const long = 22 * colours.unit, middle = [1.6 * long, height - 1.6 * long];
+    pen.font = colours.small;
     pen.textAlign = "center";
     UPRIGHT.forEach((axis, index) => {
-      const x = middle[0] + 22 * dot(axis, camera.right), y = middle[1] - 22 * dot(axis, camera.up);
+      const x = middle[0] + long * dot(axis, camera.right), y = middle[1] - long * dot(axis, camera.up);
       pen.strokeStyle = colours.muted;
       pen.fillStyle = colours.muted;
       pen.lineWidth = 1.3;
       pen.beginPath(); pen.moveTo(...middle); pen.lineTo(x, y); pen.stroke();
-      pen.fillText("xyz"[index], middle[0] + 30 * dot(axis, camera.right), middle[1] - 30 * dot(axis, camera.up) + 3);
+      pen.fillText("xyz"[index], middle[0] + 1.35 * long * dot(axis, camera.right), middle[1] - 1.35 * long * dot(axis, camera.up) + 3 * colours.unit);
     });
   }
 
