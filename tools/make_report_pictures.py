@@ -50,7 +50,7 @@ def main(folder: Path) -> None:
             light.goto(page_file)
             light.wait_for_selector("main h1")
             light.screenshot(path=folder / "report-overview.png")
-            light.set_viewport_size({"width": 1180, "height": 1130})
+            light.set_viewport_size({"width": 1280, "height": 1180})
             light.goto(f"{page_file}#/mutant/{shown.mutant.number}")
             _show(light, "canvas.scene", "body")
             light.screenshot(path=folder / "report-mutant.png")

@@ -74,14 +74,14 @@
     return found;
   }
 
+  /** The largest difference, and when it was first as large, bar what points that were left out can make. */
   function largest(one, usual, measure) {
-    let found = [0, 0];
-    for (const time of [...one.times, ...usual.times]) {
+    const gaps = [...new Set([...one.times, ...usual.times])].sort((a, b) => a - b).map((time) => {
       const here = at(one, time), there = at(usual, time);
-      const gap = here && there ? Math.abs(measure.of(here) - measure.of(there)) : 0;
-      if (gap > found[0]) found = [gap, time];
-    }
-    return found;
+      return [here && there ? Math.abs(measure.of(here) - measure.of(there)) : 0, time];
+    });
+    const most = Math.max(...gaps.map(([gap]) => gap));
+    return [most, gaps.find(([gap]) => gap >= 0.98 * most)[1]];
   }
 
   mutabot.charts = charts;

@@ -18,7 +18,7 @@
     const found = campaign.mutants.filter((one) =>
       (!states || states.has(one.status)) && (!asked.family || one.family === asked.family) && (!asked.role || one.role === asked.role) &&
       (!asked.operator || one.operator === asked.operator) && (!asked.file || one.file === asked.file) && (!asked.line || (one.line <= Number(asked.line) && one.endLine >= Number(asked.line))) &&
-      (!asked.end || one.ends.includes(asked.end)) &&
+      (!asked.end || one.ends.includes(asked.end)) && (!asked.world || (one.survives && one.indistinguishable === (asked.world === "same"))) &&
       (test === null || one.reach.includes(test) || one.kills.some((kill) => kill[0] === test)) &&
       words.every((word) => one.haystack.includes(word)));
     const [key, way] = SORTS[asked.sort] || SORTS.number;
@@ -65,7 +65,7 @@
       h("div", { class: "filters", role: "search", "aria-label": "Filter mutants" },
         h("div", { class: "field wide" }, h("label", { for: "search" }, "Search"), search), chips,
         h("div", { class: "selects" }, select("role", "Role", each("role")), select("family", "Family", each("family")), select("operator", "Operator", each("operator")),
-          select("file", "File", each("file")), select("test", "Reached by", campaign.tests.map((name, index) => [String(index), name])), reset)),
+          select("file", "File", each("file")), select("world", "Survivors whose world", [["differs", "differs"], ["same", "is the same"]]), select("test", "Reached by", campaign.tests.map((name, index) => [String(index), name])), reset)),
       told, results);
 
     function update(isFirst) {

@@ -40,10 +40,29 @@
       for (const line of new Set(lines)) if (line) byLine.set(line, [...(byLine.get(line) || []), one]);
     }
     const box = h("div", { class: "code", role: "list", "aria-label": `${file}, line by line` });
-    text.replace(/\n$/, "").split("\n").forEach((line, index) => box.append(row(file, line, index + 1, byLine.get(index + 1) || [])));
+    coloured(file, text.replace(/\n$/, "")).forEach((line, index) => box.append(row(file, line, index + 1, byLine.get(index + 1) || [])));
     const toggle = h("label", { class: "toggle" }, h("input", { type: "checkbox", checked: true, onchange: (event) => { box.classList.toggle("bare", !event.target.checked); } }), "Survivors under their lines");
     return h("div", null, h("p", { class: "told" }, toggle), box, marks.legend(new Set(mutants.map(LETTER))),
       mutants.some((one) => one.survives && one.indistinguishable) ? h("p", { class: "hint" }, "Outlined: survived, and nothing that was compared differs from the original.") : "");
+  }
+
+  const TOKENS = /([rRbBfFuU]{0,2}(?:"""[^]*?"""|'''[^]*?'''|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'))|(#[^\n]*)|\b(and|as|assert|async|await|break|case|class|continue|def|del|elif|else|except|finally|for|from|global|if|import|in|is|lambda|match|nonlocal|not|or|pass|raise|return|try|while|with|yield|None|True|False)\b/g;
+  const KINDS = ["string", "comment", "keyword"];
+  /** The lines of a text as lists of parts; in Python, words of the language, strings and comments are marked. */
+  function coloured(file, text) {
+    const lines = [[]];
+    const put = (part, kind) => part.split("\n").forEach((piece, index) => {
+      if (index) lines.push([]);
+      if (piece) lines[lines.length - 1].push(kind ? h("span", { class: kind }, piece) : piece);
+    });
+    let at = 0;
+    for (const found of file.endsWith(".py") ? text.matchAll(TOKENS) : []) {
+      put(text.slice(at, found.index), "");
+      put(found[0], KINDS[found.slice(1).findIndex((part) => part !== undefined)]);
+      at = found.index + found[0].length;
+    }
+    put(text.slice(at), "");
+    return lines;
   }
 
   function row(file, line, at, mutants) {
@@ -56,7 +75,7 @@
       h("span", { class: "margin" }, shown.map((one) => h("a", { href: address(["mutant", String(one.number)]), class: `mark m-${one.survives && one.indistinguishable ? "same" : marks.LETTERS[LETTER(one)][0]}`,
         "aria-label": `mutant ${one.number}, ${one.status}: ${one.description}`, title: `${one.number} ${one.status}: ${one.description}` }, LETTER(one))),
       sorted.length > shown.length ? h("a", { class: "rest", href: address(["mutants"], { file, line: String(at) }), "aria-label": `all ${sorted.length} mutants of line ${at}` }, `+${sorted.length - shown.length}`) : null),
-      h("code", null, line || " "),
+      h("code", null, line.length ? line : " "),
       alive.length ? h("ul", { class: `alive${loud ? "" : " calm"}` }, alive.slice(0, 5).map((one) => h("li", null,
         h("a", { href: address(["mutant", String(one.number)]) }, `${one.number}  ${one.description}`), one.indistinguishable ? " nothing differs" : ` ${one.why}`)),
       alive.length > 5 ? h("li", null, h("a", { href: address(["mutants"], { file, line: String(at), status: "survived,not covered" }) }, `and ${alive.length - 5} more survivors here`)) : null) : null);
