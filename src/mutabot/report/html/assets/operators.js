@@ -31,7 +31,7 @@
       h("td", null, row.role), h("td", { class: "n" }, row.mutants), h("td", { class: "n" }, valid ? percent(killed / valid, 0) : "–"),
       used.map((letter) => {
         const found = row.letters[letter] || 0;
-        const cell = h("td", { class: `n cell c-${marks.LETTERS[letter][0]}` }, found
+        const cell = h("td", { class: `n cell c-${marks.LETTERS[letter][0]}${found ? "" : " is-none"}`, "data-letter": letter }, found
           ? h("a", { href: address(["mutants"], { operator: row.operator, role: row.role, end: letter }), "aria-label": `${found} ${marks.LETTERS[letter][1]}` }, found)
           : h("span", { class: "none" }, "·"));
         if (found) cell.style.setProperty("--share", String(Math.round(100 * found / total)));
