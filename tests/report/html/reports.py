@@ -42,6 +42,8 @@ def recording(*, off: float = 0.0, name: str = "box") -> Recording:
         Told(9.5, 9.5, "tracker:box_position", "tests/sensors.py:2", None, {}, {".x": 0.5 + off}, "oracle"),
     ]
     moments = [Moment(1.0, "touch", f"{name}, table")]
+    if not off:  # the mutant has nothing beside it
+        moments.append(Moment(8.0, "part", f"{name}, table"))
     return Recording(
         array("d", _TIMES),
         {"tool": Track("tool", Kind.POSE, tool), name: Track(name, Kind.POINT, box, size=(0.1, 0.1, 0.1))},

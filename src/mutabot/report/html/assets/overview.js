@@ -44,7 +44,7 @@
     const head = h("tr", null, ["family · role", "score", "", "check score", "outcomes over all rounds", "mutants"].map((name, index) =>
       h("th", { scope: "col", class: [1, 3, 5].includes(index) ? "n" : null }, name || h("span", { class: "unseen" }, "score with rounds and interval"))));
     return h("section", { "aria-labelledby": "scores" }, h("h2", { id: "scores" }, "Scores"),
-      h("div", { class: "scroll", role: "region", tabindex: "0", "aria-labelledby": "scores" },
+      h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Table of scores" },
         h("table", { class: "scores" }, h("thead", null, head), h("tbody", null, campaign.groups.map((one) => group(one))))),
       h("p", { class: "hint" }, "Score: killed of valid mutants, the mean over rounds. Check score: what the tests' own checks found. ",
         "Bar: 95 % interval; ticks: single rounds; hollow mark: check score. Families and roles are never added up."));
