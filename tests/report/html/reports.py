@@ -38,7 +38,7 @@ def recording(*, off: float = 0.0, name: str = "box") -> Recording:
         box.extend((0.1 * time, y, 0.4))
     calls = [
         Told(0.0, 2.0, "robot:Arm.move_by", "mission.py:3", None, {"dx": 0.2}, {}),
-        Told(2.0, 9.0, "robot:Arm.move_by", "mission.py:4", None, {"dx": -0.3}, {}),
+        Told(2.0, 9.0, "robot:Arm.move_by", "mission.py:4", None, {"dx": -0.3, "how": "slowly " * 9}, {}),
         Told(9.5, 9.5, "tracker:box_position", "tests/sensors.py:2", None, {}, {".x": 0.5 + off}, "oracle"),
     ]
     moments = [Moment(1.0, "touch", f"{name}, table")]

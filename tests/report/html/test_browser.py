@@ -187,9 +187,9 @@ def test_axe_finds_nothing_serious_on_any_page(
     for address in PAGES:
         visit.open(address)
         page.evaluate(axe)
-        for one in page.evaluate("(rules) => axe.run({...rules, preload: false, resultTypes: ['violations']})", rules)[
-            "violations"
-        ]:
+        for one in page.evaluate(
+            "(rules) => axe.run({...rules, preload: false, resultTypes: ['violations']})", rules
+        )["violations"]:
             if one["impact"] in ("serious", "critical"):
                 places = [(node["target"], node.get("failureSummary", "")) for node in one["nodes"][:3]]
                 found.append((address, one["id"], places))
