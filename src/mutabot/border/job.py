@@ -61,6 +61,19 @@ class Branching:
 
 
 @dataclass(frozen=True, slots=True)
+class Pictures:
+    """Which test is filmed.
+
+    Attributes:
+        test: its node id.
+        file: absolute path of the film, see ``evidence.film``.
+    """
+
+    test: str
+    file: str
+
+
+@dataclass(frozen=True, slots=True)
 class Job:
     """One session inside: which tests to run, as which mutant.
 
@@ -87,6 +100,7 @@ class Job:
         private_files: whether the process is to keep to itself what it does to files.
         oracle_nodes: resolved names of the tests' own nodes, in which ``*`` stands for any text.
         evidence: whether to record what the world does while tests run.
+        pictures: which test is filmed; None for none.
     """
 
     root: str
@@ -110,6 +124,7 @@ class Job:
     private_files: bool = True
     oracle_nodes: tuple[str, ...] = ()
     evidence: bool = False
+    pictures: Pictures | None = None
 
 
 def job_file(home: str | os.PathLike[str]) -> Path:

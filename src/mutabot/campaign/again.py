@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from mutabot.campaign.baseline.baseline import Baseline
@@ -23,9 +23,16 @@ from .request import Progress, Request
 
 
 def replay_one(
-    request: Request, journal: JournalReader, mutant: Mutant, rounds: Iterable[int], progress: Progress
+    request: Request,
+    journal: JournalReader,
+    mutant: Mutant,
+    rounds: Iterable[int],
+    progress: Progress,
+    also: Callable[[Campaign, Mutant], object] | None = None,
 ) -> list[Replayed]:
     """Run one mutant again in these rounds, beside what the journal says of it.
+
+    ``also``: what else is to be run of it, after that.
 
     Raises SelectionError if the program no longer has the mutant, and what a baseline raises.
     """
@@ -41,6 +48,8 @@ def replay_one(
         trials = [(mutant, round) for round in rounds]
         progress.stage("replay", len(trials))
         looker.run(trials)
+        if also is not None:
+            also(looker.campaign, mutant)
     return [
         Replayed(round, first.get((mutant.id, round)), looker.found[mutant.id, round]) for round in rounds
     ]

@@ -10,6 +10,7 @@ from types import TracebackType
 
 from mutabot.cells.models.noise import Noise
 from mutabot.cells.models.robotiq import STROKE
+from mutabot.cells.shown.feed import tell_of
 
 from .arm import Arm
 from .errors import BadArgument
@@ -19,7 +20,6 @@ from .monitors import Condition, Monitors, Values
 from .scene import Box, Scene
 from .sensors import Sensors, true_box_position, true_box_tilt, true_tool_pose, true_tool_position
 from .simulation import Simulation
-from .telling.feed import tell_of
 
 _current: weakref.ref[Cell] | None = None
 

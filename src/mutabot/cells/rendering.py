@@ -1,8 +1,4 @@
-"""Pictures of the cell. Imports a GL backend when first used; nothing else in this package does.
-
-On a machine without a screen choose one before Python starts: `MUJOCO_GL=egl` (Debian: libegl1) or
-`MUJOCO_GL=osmesa` (Debian: libosmesa6).
-"""
+"""Pictures of the cell, as files. On a machine without a screen see `shown.camera`."""
 
 from __future__ import annotations
 
@@ -10,12 +6,12 @@ import struct
 import zlib
 from pathlib import Path
 
-import mujoco
 import numpy as np
 
 from .cell import Cell
+from .shown.camera import Camera, Pixels, View
 
-_LOOK_AT = (0.1, 0.1, 1.05)
+_USUAL = View()
 
 
 def render(
@@ -24,10 +20,10 @@ def render(
     *,
     width: int = 800,
     height: int = 600,
-    azimuth: float = 140.0,
-    elevation: float = -22.0,
-    distance: float = 2.6,
-    look_at: tuple[float, float, float] = _LOOK_AT,
+    azimuth: float = _USUAL.azimuth,
+    elevation: float = _USUAL.elevation,
+    distance: float = _USUAL.distance,
+    look_at: tuple[float, float, float] = _USUAL.look_at,
 ) -> Path:
     """Write a PNG picture of the cell as it is now, and return its path.
 
@@ -37,21 +33,17 @@ def render(
         distance: from the camera to `look_at`, m.
         look_at: world frame, m.
     """
-    camera = mujoco.MjvCamera()
-    camera.azimuth, camera.elevation, camera.distance = azimuth, elevation, distance
-    camera.lookat[:] = look_at
-    looks = mujoco.MjvOption()
-    looks.sitegroup[:] = 0
-    simulation = cell.simulation
-    with mujoco.Renderer(simulation.model, height, width) as renderer:
-        renderer.update_scene(simulation.data, camera, looks)
-        pixels = renderer.render()
+    camera = Camera(cell.simulation, height, width, View(azimuth, elevation, distance, look_at))
+    try:
+        pixels = camera.picture()
+    finally:
+        camera.close()
     path = Path(path)
-    path.write_bytes(_png(np.ascontiguousarray(pixels)))
+    path.write_bytes(_png(pixels))
     return path
 
 
-def _png(pixels: np.ndarray[tuple[int, ...], np.dtype[np.uint8]]) -> bytes:
+def _png(pixels: Pixels) -> bytes:
     """PNG file of RGB pixels, shape (height, width, 3)."""
     height, width = pixels.shape[:2]
 

@@ -45,6 +45,8 @@ class Feed:
         self._sources: list[_Source] = []
         self._blocks: list[Block] = []
         self._touching: Callable[[], Iterable[tuple[str, str]]] | None = None
+        self._camera: Callable[[], Any] | None = None
+        self._shutter = self._next_picture = 0.0
         self._tape: Tape | None = None
         self._before: frozenset[tuple[str, str]] = frozenset()
         self._offset = self._last = self._due = 0.0
@@ -76,6 +78,19 @@ class Feed:
             Block(name, _triple(centre), _triple(size), None if colour is None else tuple(colour))
         )
 
+    def camera(self, read: Callable[[], Any], *, rate: float = 25.0) -> None:
+        """Pictures of the world, for ``mutabot replay MUTANT --video``; no campaign ever takes any.
+
+        Args:
+            read: gives a picture of the world as it is now: an array of bytes (uint8) of the shape (height,
+                width, 3), or with a fourth number per pixel that is left out; None as long as there is none.
+                What it needs for that, such as a renderer, it should make when it is first called.
+            rate: pictures per simulated second.
+        """
+        if not rate > 0:
+            raise ValueError(f"a rate of {rate!r} pictures per second; it must be above 0, such as 25")
+        self._camera, self._shutter = read, 1.0 / rate
+
     def note(self, text: str) -> None:
         """Something worth telling happens now."""
         tape = self._present()
@@ -85,18 +100,29 @@ class Feed:
     def tick(self) -> None:
         """Simulated time has passed: to be called after each step, or whenever something is heard."""
         tape = tapes.running()
-        if tape is None:
-            return
+        if tape is not None:
+            with tape.aside():
+                self._tick(tape)
+
+    def _tick(self, tape: Tape) -> None:
         now = self._time()
         if tape is not self._tape:
             self._begin(tape, now)
         elif now < self._last:
             self._go_on(tape, now)
         self._last = now
+        tape.end = self._offset + now
         if now >= self._due - _HAIR:
             step = self._interval * tape.coarseness
             self._due = (floor(now / step + _HAIR) + 1) * step
             self._sample(tape, self._offset + now)
+        if tape.film is not None and self._camera is not None and now >= self._next_picture - _HAIR:
+            self._take_picture(tape, now, self._camera)
+
+    def _take_picture(self, tape: Tape, now: float, read: Callable[[], Any]) -> None:
+        self._next_picture = (floor(now / self._shutter + _HAIR) + 1) * self._shutter
+        if tape.filmed_by is self:
+            tape.picture(self._offset + now, read)
 
     def _present(self) -> Tape | None:
         tape = tapes.running()
@@ -109,7 +135,9 @@ class Feed:
         self._tape = tape
         is_first = not tape.recording.times
         self._offset = -now if is_first else tape.end + _GAP - now
-        self._last = self._due = now
+        self._last = self._due = self._next_picture = now
+        if self._camera is not None:
+            tape.filmed_by = self
         self._before = frozenset()
         for block in self._blocks:
             tape.block(block)
@@ -118,14 +146,15 @@ class Feed:
 
     def _finish(self, tape: Tape) -> None:
         """The test is over: where everything ended."""
-        now = self._offset + self._time()
-        if tape is self._tape and now > tape.end + _HAIR:
-            self._sample(tape, now)
+        with tape.aside():
+            now, times = self._offset + self._time(), tape.recording.times
+            if tape is self._tape and times and now > times[-1] + _HAIR:
+                self._sample(tape, now)
 
     def _go_on(self, tape: Tape, now: float) -> None:
         """The simulated time went back: what comes now comes after all that was."""
         self._offset = tape.end + _GAP - now
-        self._due = now
+        self._due = self._next_picture = now
         self._before = frozenset()
 
     def _sample(self, tape: Tape, now: float) -> None:

@@ -223,5 +223,6 @@ def _partner(pair: str, thing: str) -> str:
 def amount(value: float, unit: str = "m") -> str:
     """``40 mm``, ``0.31 m``, ``12 deg``."""
     if unit == "m" and value < 0.1:
-        return f"{1e3 * value if value >= 1e-4 else 0:.2g} mm"
+        millimetres = 1e3 * value if value >= 1e-4 else 0.0
+        return f"{millimetres:.0f} mm" if millimetres >= 10.0 else f"{millimetres:.2g} mm"
     return f"{value:.3g} {unit}".strip()

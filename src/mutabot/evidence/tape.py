@@ -8,7 +8,10 @@ from __future__ import annotations
 import time
 from array import array
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
 
+from .film import MOST_PICTURES, FilmWriter
 from .recording import Block, Kind, Moment, Recording, Track
 
 #: moments from which on only every second one is kept, and half as many are taken from then on
@@ -24,14 +27,22 @@ class Tape:
 
     Attributes:
         recording: it, so far.
+        end: the last moment that a feed told of, s.
         coarseness: how many times its interval a feed is to wait between two moments.
         clock: what tells the simulated time, s; None as long as no feed or simulator has told any.
         is_simulated: whether its times are simulated.
         at_end: what is to be done once more when the test is over, while its world is still there.
+        film: takes pictures down; None if the test is not filmed.
+        aside: what is read in this context is no call of the program's, whichever function reads it.
+        filmed_by: whose pictures it takes: of several simulations those of the last that began.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, film: FilmWriter | None = None) -> None:
         self.recording = Recording()
+        self.film = film
+        self.filmed_by: object = None
+        self.aside: Callable[[], AbstractContextManager[object]] = nullcontext
+        self.end = 0.0
         self.coarseness = 1
         self.clock: Callable[[], float | None] | None = None
         self.is_simulated = False
@@ -74,11 +85,6 @@ class Tape:
     def _told(self) -> float | None:
         return self.clock() if self.clock is not None else None
 
-    @property
-    def end(self) -> float:
-        """The last moment on it, s; 0 if there is none."""
-        return self.recording.times[-1] if self.recording.times else 0.0
-
     def track(self, name: str, kind: Kind, unit: str, size: tuple[float, float, float] | None) -> Track:
         """The track of this name; a new one was not there before now."""
         found = self.recording.tracks.get(name)
@@ -105,6 +111,24 @@ class Tape:
         else:
             last = self.recording.moments[-1].time
             self.problem(f"more than {_MOST_EVENTS} events in a test: those after {last:.4g} s are left out")
+
+    def picture(self, now: float, read: Callable[[], Any]) -> None:
+        """Take a picture, if the test is filmed. A camera that fails is not asked again."""
+        if self.film is None:
+            return
+        try:
+            found = read()
+            if found is not None:
+                self.film.add(now, found)
+        except Exception as error:  # the user's code and graphics may fail in any way
+            self.film = None
+            self.problem(f"pictures cannot be taken: {type(error).__name__}: {error}")
+            return
+        if self.film.count >= MOST_PICTURES:
+            self.film = None
+            self.problem(
+                f"more than {MOST_PICTURES} pictures in a test: those after {now:.4g} s are left out"
+            )
 
     def block(self, block: Block) -> None:
         """Something that stands around."""
@@ -138,10 +162,10 @@ def running() -> Tape | None:
     return _tape
 
 
-def begin() -> Tape:
-    """A test begins that is to be recorded."""
+def begin(film: FilmWriter | None = None) -> Tape:
+    """A test begins that is to be recorded, and maybe filmed."""
     global _tape  # noqa: PLW0603  # simulators know this module, not an object of ours
-    _tape = Tape()
+    _tape = Tape(film)
     return _tape
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, field
@@ -16,7 +17,7 @@ from mutabot.inside.calls.activation import Activation
 from mutabot.inside.calls.answers import Answers, handles_of
 from mutabot.inside.calls.bypasses import Bypasses
 from mutabot.inside.calls.door import Door
-from mutabot.inside.calls.passing import Passing, is_under_way
+from mutabot.inside.calls.passing import Aside, Passing, is_under_way
 from mutabot.inside.calls.trace import Recorder
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.readings.along import Along, Rehearsal, rehearse
@@ -247,7 +248,12 @@ class Session:
             self.text.start_test(test, branch, trunk.places() if trunk is not None else {})
         self._start_activations()
         has_clock = self.job.vocabulary.clock is not None
-        self.recording.start(self.job.evidence, self._simulated, is_simulated=has_clock)
+        self.recording.start(self.job.evidence, test, self._simulated, self._aside, is_simulated=has_clock)
+
+    def _aside(self) -> Aside:
+        """What is done in this context is none of the program's doing."""
+        is_main = threading.current_thread() is threading.main_thread()
+        return Aside(self.returns if is_main else None)
 
     def _look_again(self) -> None:
         """What the program has made since the last test."""

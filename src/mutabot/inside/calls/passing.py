@@ -13,8 +13,8 @@ import sys
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from fnmatch import fnmatchcase
-from types import CodeType, FrameType
-from typing import Any
+from types import CodeType, FrameType, TracebackType
+from typing import Any, Protocol
 
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import Meter
@@ -34,6 +34,37 @@ from .trace import Recorder
 #: whether an operation is already under way here: only the outermost is a site
 _under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)
 is_under_way = _under_way.get
+
+
+class _Noting(Protocol):
+    is_on: bool
+
+
+class Aside:
+    """Calls of operations in this context, and in this thread alone, are none of the program's.
+
+    A simulator enters it at every step, so it is no generator.
+
+    Args:
+        returns: what notes returned values notes none meanwhile; None for what other threads return.
+    """
+
+    __slots__ = ("_returns", "_token", "_was")
+
+    def __init__(self, returns: _Noting | None) -> None:
+        self._returns = returns
+
+    def __enter__(self) -> None:
+        self._token = _under_way.set(True)
+        if self._returns is not None:
+            self._was, self._returns.is_on = self._returns.is_on, False
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        _under_way.reset(self._token)
+        if self._returns is not None:
+            self._returns.is_on = self._was
 
 
 class Passing:

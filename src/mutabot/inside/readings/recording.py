@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
 
+from mutabot.border.job import Pictures
 from mutabot.evidence import tape as tapes
+from mutabot.evidence.film import FilmWriter
 from mutabot.evidence.recording import Told, to_text
 from mutabot.evidence.tape import Tape
 
@@ -17,17 +20,35 @@ class TestRecording:
 
     def __init__(self) -> None:
         self._tape: Tape | None = None
+        self._film: FilmWriter | None = None
+        self._filmed: str | None = None
 
-    def start(self, is_wanted: bool, clock: Callable[[], float | None], *, is_simulated: bool) -> None:
+    def film(self, pictures: Pictures) -> None:
+        """Film a test that is still to come."""
+        self._film, self._filmed = FilmWriter(pictures.file), pictures.test
+
+    def start(
+        self,
+        is_wanted: bool,
+        test: str,
+        clock: Callable[[], float | None],
+        aside: Callable[[], AbstractContextManager[object]],
+        *,
+        is_simulated: bool,
+    ) -> None:
         """A test begins.
 
         Args:
+            test: its node id.
             clock: tells its simulated time, s, as long as no feed does.
+            aside: what feeds read in this context is none of the program's calls.
             is_simulated: whether it is known that there is such a time.
         """
         tapes.stop()
-        self._tape = tapes.begin() if is_wanted else None
+        film = self._film if test == self._filmed else None
+        self._tape = tapes.begin(film) if is_wanted else None
         if self._tape is not None:
+            self._tape.aside = aside
             self._tape.clock, self._tape.is_simulated = clock, is_simulated
 
     def stop(self) -> None:

@@ -98,6 +98,8 @@ class Conductor:
             conductor = cls(job, pipe, CopyServer(job.serving, pipe, os.path.join(home, LOG)))
         else:
             conductor = cls(job, pipe_of(job, home, descriptor))
+            if job.pictures is not None:  # before its folder is hidden from this process
+                conductor.session.recording.film(job.pictures)
             conductor._make_private(job, home)
         conductor.session.returns = Returns(conductor.locator)
         conductor.session.install()

@@ -51,7 +51,7 @@ class Returns:
         self.entries: list[tuple[str, Any]] = []
         self.prepared = 0
         self.truncated = False
-        self._on = False
+        self.is_on = False
         self._locator = locator
         self._own: set[str] = set()
         self._others: dict[str, bool] = {}
@@ -89,7 +89,7 @@ class Returns:
 
     def start(self) -> None:
         """A test begins, before its fixtures."""
-        self.entries, self.prepared, self.truncated, self._on = [], 0, False, True
+        self.entries, self.prepared, self.truncated, self.is_on = [], 0, False, True
 
     def begin_call(self) -> None:
         """Its fixtures are set up."""
@@ -98,18 +98,18 @@ class Returns:
     @contextmanager
     def pause(self) -> Iterator[None]:
         """Note nothing for the moment."""
-        was, self._on = self._on, False
+        was, self.is_on = self.is_on, False
         try:
             yield
         finally:
-            self._on = was
+            self.is_on = was
 
     def stop(self) -> None:
         """What comes now is no more part of the test."""
-        self._on = False
+        self.is_on = False
 
     def _returned(self, value: Any) -> Any:
-        if self._on:
+        if self.is_on:
             function = sys._getframe(1)
             around = function.f_back
             if around is not None and around.f_code.co_filename not in self._own and self._leaves(around):
@@ -117,7 +117,7 @@ class Returns:
         return value
 
     def _raised(self) -> None:
-        if self._on:
+        if self.is_on:
             function, error = sys._getframe(1), sys.exc_info()[1]
             around = function.f_back
             if isinstance(error, Exception) and around is not None and self._leaves(around):

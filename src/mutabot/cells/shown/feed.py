@@ -11,7 +11,12 @@ from mutabot.cells.scene import Scene
 from mutabot.cells.simulation import Simulation
 from mutabot.evidence import Feed
 
+from .camera import Camera, View
 from .contacts import Contacts
+
+#: of a film: from where robot, conveyor and table are seen, pixels, pictures per simulated second
+_VIEW = View(azimuth=90.0, elevation=-33.0, distance=2.05, look_at=(0.0, 0.1, 0.96))
+_HEIGHT, _WIDTH, _RATE = 450, 600, 12.5
 
 
 def tell_of(simulation: Simulation, scene: Scene) -> Feed:
@@ -33,6 +38,7 @@ def tell_of(simulation: Simulation, scene: Scene) -> Feed:
     feed.contacts(Contacts(simulation).read)
     for fixture in scene.fixtures:
         feed.block(fixture.name, fixture.centre, fixture.size, fixture.rgba)
+    feed.camera(Camera(simulation, _HEIGHT, _WIDTH, _VIEW, is_quick=True).picture, rate=_RATE)
     simulation.after_tick.append(feed.tick)
     return feed
 

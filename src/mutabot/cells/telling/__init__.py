@@ -1,1 +1,0 @@
-"""What the cell tells mutabot of itself while a test is recorded."""

@@ -1,0 +1,1 @@
+"""What original and mutant did, to be looked at: one file per format or viewer."""

@@ -1,0 +1,1 @@
+"""Videos of original and mutant beside each other: filmed, or drawn."""

@@ -1,0 +1,99 @@
+"""Text in pictures, with whatever fonts the machine has."""
+
+from __future__ import annotations
+
+import unicodedata
+from bisect import bisect_right
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from PIL import ImageDraw, ImageFont
+
+#: fonts with the signs of units and of mathematics, which most systems have one of
+_FONTS = ("DejaVuSans.ttf", "NotoSans-Regular.ttf", "LiberationSans-Regular.ttf", "Arial.ttf")
+#: letters that are looked at to see what finds room
+_LONGEST = 600
+#: what stands for signs that other fonts lack
+_SPOKEN = {
+    "→": "to",
+    "−": "-",
+    "×": "x",
+    "µ": "u",
+    "θ": "theta",
+    "≥": ">=",
+    "≤": "<=",
+    "–": "-",
+    "…": "...",
+    "·": "-",
+    "°": " deg",
+    "±": "+-",
+}
+
+
+@dataclass(frozen=True)
+class Letters:
+    """A font in a size.
+
+    Attributes:
+        is_whole: whether it has more than the letters of English.
+    """
+
+    font: ImageFont.FreeTypeFont | ImageFont.ImageFont
+    is_whole: bool
+
+    def width(self, text: str) -> float:
+        """How wide a text is, pixels."""
+        found: float = self.font.getlength(self.known(text))
+        return found
+
+    def draw(
+        self, onto: ImageDraw.ImageDraw, place: tuple[float, float], text: str, fill: str, anchor: str = "la"
+    ) -> None:
+        """Write a text; ``anchor`` as Pillow has it."""
+        onto.text(place, self.known(text), fill=fill, font=self.font, anchor=anchor)
+
+    def lines(self, text: str, width: float, most: int) -> list[str]:
+        """A text in so many lines at most; what finds no room is left out, with three dots."""
+        lines: list[str] = []
+        rest = text[:_LONGEST].split()
+        while rest and len(lines) < most:
+            count = 1
+            while count < len(rest) and self.width(" ".join(rest[: count + 1])) <= width:
+                count += 1
+            line, rest = " ".join(rest[:count]), rest[count:]
+            is_cut = bool(rest) and len(lines) + 1 == most
+            lines.append(self._fitted(line, width, is_cut))
+        return lines
+
+    def _fitted(self, line: str, width: float, is_cut: bool) -> str:
+        if not is_cut and self.width(line) <= width:
+            return line
+        room = bisect_right(range(len(line)), width, key=lambda count: self.width(f"{line[:count]} …"))
+        return f"{line[: max(0, room - 1)].rstrip()} …"
+
+    def known(self, text: str) -> str:
+        """The text with the signs that the font has."""
+        return text if self.is_whole else letters_of_english(text)
+
+
+@lru_cache
+def letters(size: int) -> Letters:
+    """A font in a size, pixels."""
+    from PIL import ImageFont  # noqa: PLC0415  # an extra
+
+    for name in _FONTS:
+        try:
+            return Letters(ImageFont.truetype(name, size), True)
+        except OSError:
+            continue
+    return Letters(ImageFont.load_default(size), False)
+
+
+def letters_of_english(text: str) -> str:
+    """A text for fonts that have hardly any other sign."""
+    for sign, spoken in _SPOKEN.items():
+        text = text.replace(sign, spoken)
+    plain = unicodedata.normalize("NFKD", text)
+    return "".join(sign for sign in plain if sign.isascii())

@@ -1,0 +1,233 @@
+"""Recordings for Rerun: a file that its viewer opens. Needs rerun-sdk: ``mutabot[rerun]``.
+
+Writing sends nothing anywhere. The viewer would send its maker how it is used; the one that is opened here is
+told not to, by Rerun's own command, in a folder of its own: what the user has set for himself stays.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mutabot.errors import UsageError
+from mutabot.evidence.recording import Block, Kind, Recording
+from mutabot.evidence.tracks import Path as Way
+from mutabot.evidence.tracks import paths_of
+
+from .events import Weight, events
+from .shown import Shown
+from .target import check, missing, written_whole
+
+if TYPE_CHECKING:
+    import rerun
+
+_MAGIC = b"RRF2"
+#: of both sides: colours that people with any kind of sight tell apart
+_COLOURS = {"original": (86, 180, 233), "mutant": (230, 159, 0)}
+_BLOCK = (150, 156, 164, 90)
+#: seconds after which a viewer that cannot begin has ended
+_BEGINNING = 4.0
+#: m: half the width of paths, and what stands for things without a size
+_LINE, _DOT, _AXIS = 0.003, 0.012, 0.06
+
+
+class Rrd:
+    """A file for Rerun. Raises UsageError if it cannot be written, or the viewer not be opened.
+
+    Args:
+        home: where it goes if the user names no file.
+        file: the file that the user names.
+        opens: whether to open the viewer.
+    """
+
+    def __init__(self, home: Path, file: Path | None, *, opens: bool) -> None:
+        self._home, self._file, self._opens = home, file, opens
+        if file is not None:
+            check(file, "recording", ".rrd", _MAGIC)
+        try:
+            import rerun  # noqa: F401, PLC0415  # an extra
+        except ImportError as error:
+            raise missing("rerun-sdk", "--rrd" if file is not None else "--rerun", "rerun") from error
+
+    def show(self, shown: Shown) -> str:
+        """See ``Sight``."""
+        file = self._file or self._home / f"mutant-{shown.number}-round-{shown.round + 1}.rrd"
+        with written_whole(file) as part:
+            write_rrd(part, shown)
+        said = f"{file}: {file.stat().st_size / 1e3:.0f} kB for Rerun"
+        return f"{said}; {open_viewer(file, self._home)}" if self._opens else said
+
+
+def write_rrd(file: Path, shown: Shown) -> None:
+    """Write what is recorded, with the layout in which it is to be seen."""
+    import rerun  # noqa: PLC0415  # as above
+
+    name = f"mutant {shown.number}, round {shown.round + 1}: {shown.test}"
+    with rerun.RecordingStream("mutabot", recording_id=f"{shown.id} {shown.round} {shown.test}") as stream:
+        stream.set_log_time_enabled(False)
+        stream.set_log_tick_enabled(False)
+        stream.save(str(file), default_blueprint=_layout(shown))
+        stream.send_recording_name(name)
+        stream.log("about", rerun.TextDocument(_about(shown), media_type="text/markdown"), static=True)
+        stream.log("/", rerun.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+        for block in _blocks(shown):
+            _log_block(stream, block)
+        for side, recording in shown.sides:
+            _Side(stream, shown, side, recording).log()
+        stream.flush()
+        stream.disconnect()
+
+
+class _Side:
+    """One side of what is shown."""
+
+    def __init__(self, stream: rerun.RecordingStream, shown: Shown, name: str, recording: Recording) -> None:
+        self._stream, self._shown, self._name, self._recording = stream, shown, name, recording
+        self._colour = _COLOURS[name]
+
+    def log(self) -> None:
+        for name, way in paths_of(self._recording).items():
+            if way.track.kind is Kind.VALUE:
+                self._log_value(name, way)
+            else:
+                self._log_thing(name, way)
+        self._log_events()
+
+    def _log_thing(self, name: str, way: Way) -> None:
+        import rerun  # noqa: PLC0415  # as above
+
+        path = self._path("things", name)
+        turned: dict[str, Any] = {}
+        if way.track.kind is Kind.POSE:
+            turned["quaternion"] = [(*row[4:7], row[3]) for row in way.rows]  # x, y, z, w
+        moved = rerun.Transform3D.columns(translation=way.points, **turned)
+        self._stream.send_columns(path, [self._times(way.when)], moved)
+        shape: Any = rerun.Points3D(
+            [(0, 0, 0)], radii=_DOT, colors=self._colour, labels=f"{self._name} {name}"
+        )
+        if way.track.size is not None:
+            label = f"{self._name} {name}"
+            shape = rerun.Boxes3D(
+                sizes=[way.track.size], colors=self._colour, labels=label, show_labels=False
+            )
+        elif way.track.kind is Kind.POSE:
+            self._stream.log(path, rerun.TransformAxes3D(_AXIS), static=True)
+        self._stream.log(path, shape, static=True)
+        line = rerun.LineStrips3D([way.points], radii=_LINE, colors=self._colour)
+        self._stream.log(self._path("paths", name), line, static=True)
+
+    def _log_value(self, name: str, way: Way) -> None:
+        import rerun  # noqa: PLC0415  # as above
+
+        path = self._path("values", name)
+        unit = f", {way.track.unit}" if way.track.unit else ""
+        line = rerun.SeriesLines(colors=self._colour, names=f"{self._name}: {name}{unit}")
+        self._stream.log(path, line, static=True)
+        found = rerun.Scalars.columns(scalars=[row[0] for row in way.rows])
+        self._stream.send_columns(path, [self._times(way.when)], found)
+
+    def _log_events(self) -> None:
+        import rerun  # noqa: PLC0415  # as above
+
+        levels = {Weight.READING: "DEBUG", Weight.COMMAND: "INFO", Weight.FAULT: "WARN"}
+        found = events(self._shown, self._recording)
+        if found:
+            where = [f" ({one.file}:{one.line})" if one.file else "" for one in found]
+            texts = [f"{one.text}{place}" for one, place in zip(found, where, strict=True)]
+            lines = rerun.TextLog.columns(text=texts, level=[levels[one.weight] for one in found])
+            self._stream.send_columns(self._path("log"), [self._times(one.time for one in found)], lines)
+
+    def _times(self, times: Iterable[float]) -> rerun.TimeColumn:
+        import rerun  # noqa: PLC0415  # as above
+
+        return rerun.TimeColumn(self._shown.clock, duration=list(times))
+
+    def _path(self, *parts: str) -> str:
+        import rerun  # noqa: PLC0415  # as above
+
+        return str(rerun.new_entity_path([self._name, *parts]))
+
+
+def _blocks(shown: Shown) -> Sequence[Block]:
+    """What stands around on either side."""
+    return list(dict.fromkeys(block for _, found in shown.sides for block in found.blocks))
+
+
+def _log_block(stream: rerun.RecordingStream, block: Block) -> None:
+    import rerun  # noqa: PLC0415  # as above
+
+    colour = tuple(round(255 * part) for part in block.colour) if block.colour is not None else _BLOCK
+    box = rerun.Boxes3D(
+        centers=[block.centre], sizes=[block.size], colors=[colour], fill_mode="solid",
+        labels=[block.name], show_labels=False,
+    )  # fmt: skip
+    stream.log(rerun.new_entity_path(["blocks", block.name]), box, static=True)
+
+
+def _layout(shown: Shown) -> Any:
+    from rerun import blueprint as layout  # noqa: PLC0415  # as above
+
+    below = [layout.TextLogView(origin=side, name=side) for side, _ in shown.sides]
+    values = layout.TimeSeriesView(
+        name="values", contents=[f"+ /{side}/values/**" for side, _ in shown.sides]
+    )
+    space = layout.Spatial3DView(origin="/", name="world")
+    about = layout.TextDocumentView(origin="about", name="about")
+    right = layout.Vertical(about, values, row_shares=[1, 2])
+    top = layout.Horizontal(space, right, column_shares=[3, 2])
+    return layout.Blueprint(
+        layout.Vertical(top, layout.Horizontal(*below), row_shares=[3, 1]),
+        layout.TimePanel(timeline=shown.clock),
+        collapse_panels=True,
+    )
+
+
+def _about(shown: Shown) -> str:
+    return "\n\n".join(_about_lines(shown))
+
+
+def _about_lines(shown: Shown) -> Iterator[str]:
+    yield f"**Mutant {shown.number}** `{shown.id}`"
+    yield shown.what
+    yield f"Test `{shown.test}`, round {shown.round + 1}"
+    if shown.story:
+        yield shown.story
+    if shown.fault is not None:
+        yield f"Fault at {shown.fault:.2f} s of {shown.clock}"
+
+
+def open_viewer(file: Path, home: Path) -> str:
+    """Open Rerun's viewer, which goes on when this process has ended. Returns what came of it, in words.
+
+    Without a screen it is not opened. Raises UsageError if it does not begin.
+    """
+    if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        return f"there is no screen to open its viewer on: look at it elsewhere, with `rerun {file.name}`"
+    settings = home / "rerun"
+    settings.mkdir(exist_ok=True)
+    log = settings / "viewer.log"
+    environment = {**os.environ, "XDG_CONFIG_HOME": str(settings)}
+    command = [sys.executable, "-m", "rerun_cli"]
+    with log.open("wb") as said:
+        common: dict[str, Any] = {
+            "stdin": subprocess.DEVNULL, "stdout": said, "stderr": subprocess.STDOUT, "env": environment,
+        }  # fmt: skip
+        try:
+            subprocess.run([*command, "analytics", "disable"], check=True, **common)
+            # its server would listen to the whole network, and an older viewer would take the file
+            local = ["--bind", "127.0.0.1", "--port", "auto"]
+            viewer = subprocess.Popen([*command, *local, str(file)], start_new_session=True, **common)
+        except (OSError, subprocess.CalledProcessError) as error:
+            raise UsageError(f"the viewer of Rerun does not begin: {error}; {file} is written") from error
+    try:
+        viewer.wait(_BEGINNING)
+    except subprocess.TimeoutExpired:
+        return "its viewer is open"
+    if viewer.returncode == 0:
+        return "its viewer was closed"
+    last = log.read_text(encoding="utf-8", errors="replace").strip().rpartition("\n")[2]
+    return f"its viewer ended at once: {last}"

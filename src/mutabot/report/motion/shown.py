@@ -1,0 +1,66 @@
+"""What is shown: one test, of the original and of a mutant, and what is said of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mutabot.evidence.recording import Recording
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """One test in one round.
+
+    Attributes:
+        number: the mutant's number.
+        id: its id.
+        what: what it changes, in words.
+        place: ``file:line``.
+        test: node id.
+        round: 0-based.
+        original, mutant: what was recorded; None if there is nothing. A mutant in which nothing that is
+            recorded differs has none on disk.
+        story: what happened, in a sentence; empty if nothing is known.
+        apart: when both went different ways, s; None if they never did, or if that is not known.
+        ended: how the test ended in the original and in the mutant, in words; empty if that is not known.
+    """
+
+    number: int
+    id: str
+    what: str
+    place: str
+    test: str
+    round: int
+    original: Recording | None
+    mutant: Recording | None
+    story: str = ""
+    apart: float | None = None
+    ended: tuple[str, str] = ("", "")
+
+    @property
+    def title(self) -> str:
+        """Which mutant it is and what it changes."""
+        return f"mutant {self.number} · {self.place} · {self.what}"
+
+    @property
+    def fault(self) -> float | None:
+        """When the mutant changed something for the first time, s; None if it did not."""
+        return self.mutant.fault if self.mutant is not None else None
+
+    @property
+    def sides(self) -> tuple[tuple[str, Recording], ...]:
+        """The recordings that there are, with the names of their sides."""
+        both = ("original", self.original), ("mutant", self.mutant)
+        return tuple((name, found) for name, found in both if found is not None)
+
+    @property
+    def clock(self) -> str:
+        """What the times are of."""
+        return "simulated time" if all(found.is_simulated for _, found in self.sides) else "wall clock"
+
+
+def end_of(recording: Recording) -> float:
+    """The last moment of a recording, s."""
+    calls = (one.ended for one in recording.calls if one.ended is not None)
+    moments = (one.time for one in recording.moments)
+    return max((*recording.times[-1:], *calls, *moments), default=0.0)
