@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import dist
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
 
 from mutabot.evidence.path import Point, aside, simple
@@ -13,6 +13,7 @@ from mutabot.evidence.path import Point, aside, simple
 POINTS = some.lists(some.tuples(*[some.floats(-2.0, 2.0, width=32)] * 3), min_size=1, max_size=30)
 
 
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(POINTS, some.floats(0.001, 0.5))
 def test_what_is_left_out_lies_within_the_tolerance(points: list[Point], tolerance: float) -> None:
     kept = simple(points, tolerance)
@@ -33,6 +34,7 @@ def test_the_distance_from_a_line_is_that_of_its_nearest_point(point: Point, dis
     assert aside(point, [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)]) == pytest.approx(distance)
 
 
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(POINTS, some.tuples(*[some.floats(-2.0, 2.0)] * 3))
 def test_a_path_is_no_farther_than_any_of_its_points(points: list[Point], point: Point) -> None:
     assert aside(point, points) <= min(dist(point, one) for one in points) + 1e-9

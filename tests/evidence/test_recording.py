@@ -6,7 +6,7 @@ from array import array
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
 
 from mutabot.evidence.recording import (
@@ -69,6 +69,7 @@ def recordings(draw: some.DrawFn) -> Recording:
     )
 
 
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(recordings())
 def test_what_is_written_is_read_back(recording: Recording) -> None:
     assert from_bytes(to_bytes(recording)) == recording
