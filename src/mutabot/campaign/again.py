@@ -41,7 +41,7 @@ def replay_one(
     first = {(one.mutant, one.round): one for one in journal.outcomes()}
     with open_executor(request, progress) as opened:
         baseline, _ = take_baseline(request, opened, progress, repetitions=1)
-        mutant = _as_it_is_now(request, baseline, mutant)
+        mutant = as_it_is_now(request, baseline, mutant)
         looker = Looker(Campaign(request, baseline, opened, progress))
         for _ in run_controls(looker.campaign, [mutant]):
             pass
@@ -55,7 +55,7 @@ def replay_one(
     ]
 
 
-def _as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant:
+def as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant:
     """The mutant in the program as it is now: edits elsewhere move it."""
     if Place.of(mutant) in baseline.hits:
         return mutant

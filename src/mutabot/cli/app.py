@@ -16,7 +16,7 @@ import typer
 from mutabot.errors import MutabotError
 from mutabot.exit_codes import ExitCode
 
-from . import campaign, compare, init, replay, report, results
+from . import campaign, compare, init, replay, report, results, suggest
 from .options import Version
 
 _SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
@@ -48,6 +48,7 @@ app.command("list", rich_help_panel=_SETUP)(campaign.list_)
 app.command(rich_help_panel=_RUN)(campaign.run)
 app.command(rich_help_panel=_RUN)(compare.compare)
 app.command(rich_help_panel=_RUN)(replay.replay)
+app.command(rich_help_panel=_RUN)(suggest.suggest)
 app.command(rich_help_panel=_LOOK)(results.results)
 app.command(rich_help_panel=_LOOK)(results.show)
 app.command(rich_help_panel=_LOOK)(report.report)

@@ -1,0 +1,101 @@
+"""Checks that are suggested, as plain data: what each looks at, how sure it is, and what it kills."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class Suggestion:
+    """One check, proven.
+
+    Attributes:
+        test: node id of the test that it is added to, without parameters.
+        style: ``pytest``, ``unittest`` or ``pytest-bdd``.
+        moment: ``end of the test`` or ``at any moment``.
+        looks_at: the expression that it reads.
+        statement: the assertion.
+        tolerance: how far the reading may be off, in its unit; None where it must be equal.
+        band: how the tolerance was found: ``normal``, ``distribution-free`` or ``always the same``.
+        factor: multiples of the standard deviation, for a normal band.
+        spread: how far runs of the original are apart that are to read alike; None where they are equal.
+        runs: runs of the original from which the band comes.
+        alarm: share of the runs of the original that may fall outside the band, at most, as far as its kind
+            holds; with 95 % confidence.
+        fresh: fresh seeds in which it was run on the original after the band was fixed; it passed in all.
+        unseen: share of runs in which it may fail although it did not in these, with 95 % confidence.
+        kills: id of each mutant that it kills by itself, to the 0-based rounds in which it does.
+    """
+
+    test: str
+    style: str
+    moment: str
+    looks_at: str
+    statement: str
+    tolerance: float | None
+    band: str
+    factor: float | None
+    spread: float | None
+    runs: int
+    alarm: float
+    fresh: int
+    unseen: float
+    kills: Mapping[str, tuple[int, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Unsolved:
+    """A survivor that no suggestion kills.
+
+    Attributes:
+        mutant: its id.
+        reason: why not.
+        never: whether no observation at ends or moments of these tests could kill it.
+    """
+
+    mutant: str
+    reason: str
+    never: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Dropped:
+    """A check that failed its proof.
+
+    Attributes:
+        test: the test that it was added to.
+        statement: the assertion.
+        reason: how it failed.
+    """
+
+    test: str
+    statement: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Suggestions:
+    """What ``mutabot suggest`` found.
+
+    Attributes:
+        suggestions: the smallest set that kills most, those first that kill most.
+        diff: all of them as one unified diff of the project.
+        files: for ``--write``: the text of each new file, by its path in the project.
+        unsolved: survivors that none of them kills.
+        dropped: checks that failed their proof.
+        numbers: number of each survivor by its id.
+        descriptions: what each survivor does, by its id.
+        rounds: rounds of the campaign.
+        seeds: fresh seeds that were run for the bands, and as many others for the proof.
+    """
+
+    suggestions: tuple[Suggestion, ...] = ()
+    diff: str = ""
+    files: Mapping[str, str] = field(default_factory=dict)
+    unsolved: tuple[Unsolved, ...] = ()
+    dropped: tuple[Dropped, ...] = ()
+    numbers: Mapping[str, int] = field(default_factory=dict)
+    descriptions: Mapping[str, str] = field(default_factory=dict)
+    rounds: int = 0
+    seeds: int = 0

@@ -1,0 +1,90 @@
+"""Suggested checks on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rich.console import Console, RenderableType
+from rich.padding import Padding
+from rich.text import Text
+
+from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
+
+from .console import heading, plain, plural
+
+#: dropped checks that are shown
+_DROPPED = 5
+
+
+def print_suggestions(console: Console, found: Suggestions) -> None:
+    """Print what was found: each check with what it is worth, the diff, and what is left."""
+    for part in _parts(found):
+        console.print(part)
+    if found.diff and not found.files:
+        console.print()
+        console.print(Text(found.diff.rstrip("\n")), soft_wrap=True)
+
+
+def _parts(found: Suggestions) -> Iterator[RenderableType]:
+    killed = {mutant for one in found.suggestions for mutant in one.kills}
+    survivors = len(killed) + len(found.unsolved)
+    checks = plural(len(found.suggestions), "check")
+    yield Text(f"{checks} for {len(killed)} of {plural(survivors, 'survivor')}", style="bold")
+    for number, one in enumerate(found.suggestions, start=1):
+        yield heading(f"{number}  {one.test}")
+        for line in _lines(one, found):
+            yield Padding(Text(plain(line), overflow="fold"), (0, 0, 0, 3), expand=False)
+    never = [one for one in found.unsolved if one.never]
+    yield from _left("No check for", [one for one in found.unsolved if not one.never], found)
+    yield from _left("No observation in these tests can kill", never, found)
+    if found.dropped:
+        yield heading(f"Dropped: {plural(len(found.dropped), 'check')} that failed the proof")
+        for dropped in found.dropped[:_DROPPED]:
+            yield Padding(Text(plain(f"{dropped.statement}: {dropped.reason}")), (0, 0, 0, 2), expand=False)
+        if len(found.dropped) > _DROPPED:
+            yield Text(f"  and {len(found.dropped) - _DROPPED} more (--json has all)")
+
+
+def _lines(one: Suggestion, found: Suggestions) -> Iterator[str]:
+    yield one.statement
+    yield f"{one.moment}; {_band(one)}"
+    yield f"false alarms: {_alarms(one)}"
+    yield f"kills {'; '.join(_kill(mutant, rounds, found) for mutant, rounds in one.kills.items())}"
+
+
+def _band(one: Suggestion) -> str:
+    if one.tolerance is None or one.spread is None or one.spread == 0:
+        return f"equal in all {plural(one.runs, 'run')} of the original"
+    factor = f", {one.factor:.1f} standard deviations" if one.factor is not None else ""
+    return (
+        f"band ± {one.tolerance:g} ({one.band}{factor}): {plural(one.runs, 'run')} of the original "
+        f"spread {one.spread:.3g}"
+    )
+
+
+def _alarms(one: Suggestion) -> str:
+    if one.factor is not None:
+        model = f"at most {100 * one.alarm:.2g} % of runs if the spread is normal"
+    else:
+        model = f"at most {100 * one.alarm:.2g} % of runs, whatever the distribution"
+    return (
+        f"{model} (95 % confidence); none in {one.fresh} fresh seeds, which alone shows no more than "
+        f"{100 * one.unseen:.2g} %"
+    )
+
+
+def _kill(mutant: str, rounds: Sequence[int], found: Suggestions) -> str:
+    if len(rounds) == found.rounds:
+        where = "all rounds" if found.rounds > 1 else "the round"
+    else:
+        where = f"round{'s' if len(rounds) > 1 else ''} {', '.join(str(round + 1) for round in rounds)}"
+    return f"#{found.numbers.get(mutant, 0)} in {where}"
+
+
+def _left(title: str, unsolved: Sequence[Unsolved], found: Suggestions) -> Iterator[RenderableType]:
+    if not unsolved:
+        return
+    yield heading(f"{title} {plural(len(unsolved), 'survivor')}")
+    for one in unsolved:
+        text = f"#{found.numbers.get(one.mutant, 0)} {found.descriptions.get(one.mutant, '')}: {one.reason}"
+        yield Padding(Text(plain(text), overflow="fold"), (0, 0, 0, 2), expand=False)

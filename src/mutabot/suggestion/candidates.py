@@ -1,0 +1,157 @@
+"""Which checks the measured readings allow: bands from the original alone, mutants only say which to look at."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from .bands import Band, band_of, rounded
+from .checks import Check, Expected
+from .measure import Measured, Read
+from .readings import HAND, PROBE, Reading
+from .styles.style import Place
+
+#: values a label may have, runs that each must have been seen in, labels and partners that are tried
+_LABELS, _SEEN, _TRIED = 4, 4, 8
+#: how much less a reading must spread beside a label or a partner than by itself
+_STEADIER = 0.5
+_LAST = re.compile(r"(\w+)\W*$")
+
+
+def candidates(measured: Measured) -> list[Check]:
+    """All checks that would notice a survivor; per reading the plainest that notices most."""
+    found: list[Check] = []
+    for place, originals in measured.originals.items():
+        mutants = measured.mutants.get(place, {})
+        runs = list(originals.values())
+        if mutants and runs:
+            found += _at(place, runs, mutants, _readings(measured, place, runs))
+    return found
+
+
+def _at(
+    place: Place,
+    runs: Sequence[Read],
+    mutants: Mapping[str, Mapping[tuple[int, str], Read]],
+    readings: Sequence[Reading],
+) -> Iterator[Check]:
+    labels = _labels(readings, runs)
+    for reading in readings:
+        best: Check | None = None
+        for expected in _expected(reading, readings, labels, runs):
+            check = Check(place, reading, expected, _margins(reading.text, expected, mutants))
+            if check.margins and (best is None or len(check.trials) > len(best.trials)):
+                best = check
+        if best is not None:
+            yield best
+
+
+def _margins(
+    text: str, expected: Expected, mutants: Mapping[str, Mapping[tuple[int, str], Read]]
+) -> dict[str, dict[int, float]]:
+    found: dict[str, dict[int, float]] = {}
+    for mutant, reads in mutants.items():
+        for (round, _), read in reads.items():
+            margin = expected.margin(text, read)
+            if margin > 1.0:
+                known = found.setdefault(mutant, {})
+                known[round] = max(margin, known.get(round, 0.0))
+    return found
+
+
+def _readings(measured: Measured, place: Place, runs: Sequence[Read]) -> list[Reading]:
+    """The readings that every run of the original has, part by part."""
+    known = measured.readings[place]
+    texts = [text for text in runs[0] if all(text in read for read in runs)]
+    return [_reading(text, known, measured.objects) for text in texts]
+
+
+def _reading(text: str, known: Sequence[Reading], objects: Iterable[tuple[str, float]]) -> Reading:
+    """What is known of a part: of the longest reading that it begins with."""
+    fitting = [one for one in known if text == one.text or text.startswith((f"{one.text}.", f"{one.text}["))]
+    if fitting:
+        of = max(fitting, key=lambda one: len(one.text))
+        return Reading(text, of.way, of.tolerance, of.needs, of.uses)
+    tolerance = next(
+        (size for target, size in objects if f".{target.rpartition('.')[2]}" in text),
+        max((one.tolerance for one in known), default=1e-6),
+    )
+    is_read = any(f".{target.rpartition('.')[2]}" in text for target, _ in objects)
+    root = re.match(r"\w+", text)
+    return Reading(text, PROBE if is_read else HAND, tolerance, (), (root[0],) if root else ())
+
+
+def _labels(readings: Sequence[Reading], runs: Sequence[Read]) -> list[str]:
+    """Readings with a few values that come again and again: what rounds can be told apart by."""
+    found = []
+    for reading in readings:
+        values = [read[reading.text] for read in runs]
+        if any(isinstance(value, float) and not value.is_integer() for value in values) and reading.way != HAND:
+            continue
+        counts: dict[Any, int] = {}
+        for value in values:
+            counts[value] = counts.get(value, 0) + 1
+        if 2 <= len(counts) <= _LABELS and min(counts.values()) >= _SEEN and None not in counts:
+            kinds = [isinstance(values[0], kind) for kind in (str, bool, int)]
+            found.append((kinds.index(True) if True in kinds else 3, len(found), reading.text))
+    return [text for _, _, text in sorted(found)[:_TRIED]]
+
+
+def _expected(
+    reading: Reading, readings: Sequence[Reading], labels: Sequence[str], runs: Sequence[Read]
+) -> Iterator[Expected]:
+    """What a reading can be held against, the plainest first."""
+    values = [read[reading.text] for read in runs]
+    if not all(_is_number(value) for value in values):
+        yield from _equal(reading, labels, runs)
+        return
+    plain = _banded([None] * len(runs), values, reading.tolerance)
+    yield Expected(plain[0], len(runs), band=plain[1])
+    if plain[1].tolerance <= reading.tolerance:
+        return
+    for label in labels:
+        if label != reading.text:
+            keyed = _banded([read[label] for read in runs], values, reading.tolerance)
+            if keyed[1].tolerance <= _STEADIER * plain[1].tolerance:
+                yield Expected(keyed[0], len(runs), label=label, band=keyed[1])
+    partners = [one for one in readings if one.text != reading.text and _last(one) == _last(reading)]
+    for partner in partners[:_TRIED]:
+        others = [read[partner.text] for read in runs]
+        if all(_is_number(other) for other in others) and max(others) > min(others):
+            apart = [value - other for value, other in zip(values, others, strict=True)]
+            beside = _banded([None] * len(runs), apart, max(reading.tolerance, partner.tolerance))
+            if beside[1].tolerance <= _STEADIER * plain[1].tolerance:
+                yield Expected(beside[0], len(runs), minus=partner.text, band=beside[1])
+
+
+def _equal(reading: Reading, labels: Sequence[str], runs: Sequence[Read]) -> Iterator[Expected]:
+    for label in (None, *labels):
+        found: dict[Any, set[Any]] = {}
+        for read in runs:
+            found.setdefault(read[label] if label is not None else None, set()).add(read[reading.text])
+        if label != reading.text and all(len(values) == 1 for values in found.values()):
+            yield Expected({key: next(iter(values)) for key, values in found.items()}, len(runs), label=label)
+            return
+
+
+def _banded(keys: Sequence[Any], values: Sequence[float], floor: float) -> tuple[dict[Any, float], Band]:
+    groups: dict[Any, list[float]] = {}
+    for key, value in zip(keys, values, strict=True):
+        groups.setdefault(key, []).append(float(value))
+    middles, band = band_of(list(groups.values()), floor)
+    # what is written is what counts: the texts are read back
+    texts = [rounded(middle, band.tolerance) for middle in middles]
+    tolerance = float(texts[0][1]) or band.tolerance
+    band = Band(tolerance, band.spread, band.runs, band.kind, band.factor, band.alarm)
+    return {key: float(text[0]) for key, text in zip(groups, texts, strict=True)}, band
+
+
+def _last(reading: Reading) -> str:
+    found = _LAST.search(reading.text)
+    return found[1] if found else reading.text
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

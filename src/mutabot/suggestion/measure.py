@@ -1,0 +1,146 @@
+"""What could be read at the ends of tests: by the original in many rounds, and by the survivors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from mutabot.border.test_end import TestEnd
+from mutabot.campaign.again import as_it_is_now
+from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.beginning import open_executor
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.engines.choice import first_engine
+from mutabot.campaign.engines.controls import run_controls
+from mutabot.campaign.engines.fresh import task
+from mutabot.campaign.request import Progress, Request
+from mutabot.inside.readings.noted import values
+from mutabot.model import Mutant, Probe
+
+from .project import Project
+from .readings import Reading, of_objects, readings_at
+from .styles.choice import style_of
+from .styles.style import Addition, Place
+from .texts import changed_texts
+from .workspace import copy_of
+
+#: the probe that carries readings out of the tests' process
+_PROBE = f"{values.__module__}:{values.__name__}"
+
+#: what was read at the end of one test: expression to number, text or truth value
+Read = Mapping[str, Any]
+
+
+@dataclass(slots=True)
+class Measured:
+    """What was read.
+
+    Attributes:
+        originals: per place, by (round, node id), what the original's tests read.
+        mutants: the same per place and mutant id.
+        readings: per place, what is known of its readings.
+        lost: survivors that could not be run again, with the reason.
+    """
+
+    originals: dict[Place, dict[tuple[int, str], Read]] = field(default_factory=dict)
+    mutants: dict[Place, dict[str, dict[tuple[int, str], Read]]] = field(default_factory=dict)
+    readings: dict[Place, list[Reading]] = field(default_factory=dict)
+    objects: list[tuple[str, float]] = field(default_factory=list)
+    lost: dict[str, str] = field(default_factory=dict)
+
+
+def measure(
+    request: Request,
+    project: Project,
+    places: Mapping[str, Place],
+    survivors: Sequence[tuple[Mutant, Sequence[int]]],
+    progress: Progress,
+) -> Measured:
+    """Run a copy of the project whose tests note what they can read.
+
+    Args:
+        request: for all rounds, fresh ones included.
+        places: by node id with parameters.
+        survivors: each with the rounds in which it survived.
+
+    Raises what a baseline raises.
+    """
+    measured = Measured(objects=of_objects(project))
+    additions = []
+    for place in dict.fromkeys(places.values()):
+        measured.readings[place] = readings_at(project, place)
+        additions.append(_noting(place, measured.readings[place], measured.objects))
+    texts = changed_texts(project.root, insertions_of(project, additions))
+    with copy_of(request, texts) as copied:
+        vocabulary = copied.vocabulary
+        probes = (*vocabulary.probes, Probe(_PROBE, 1e9))
+        copied = replace(copied, vocabulary=replace(vocabulary, probes=probes))
+        with open_executor(copied, progress) as opened:
+            may_share = first_engine(copied).may_share
+            baseline, results = take_baseline(copied, opened, progress, repetitions=1, may_share=may_share)
+            for result in results:
+                _take(measured.originals, places, result.task.key.round, result.ends)
+            campaign = Campaign(copied, baseline, opened, progress)
+            now = [(as_it_is_now(copied, baseline, mutant), rounds) for mutant, rounds in survivors]
+            for _ in run_controls(campaign, [mutant for mutant, _ in now]):
+                pass
+            trials = [(mutant, round) for mutant, rounds in now for round in rounds]
+            progress.stage("survivors", len(trials))
+            tasks = (
+                replace(task(campaign, mutant, round, tests), begins_warm=True)
+                for mutant, round in trials
+                if (tests := baseline.judges(round, mutant))
+            )
+            for result in opened.run(tasks):
+                mutant, round = result.task.key
+                progress.advance(f"#{mutant.number} round {round + 1}")
+                found: dict[Place, dict[tuple[int, str], Read]] = {}
+                _take(found, places, round, result.ends)
+                for place, read in found.items():
+                    measured.mutants.setdefault(place, {}).setdefault(mutant.id, {}).update(read)
+    return measured
+
+
+def insertions_of(project: Project, additions: Sequence[Addition]) -> list[Any]:
+    """What puts additions where they belong, by the styles of their tests."""
+    found = []
+    by_file: dict[tuple[str, str], list[Addition]] = {}
+    for one in additions:
+        by_file.setdefault((one.place.style, one.place.file), []).append(one)
+    for same in by_file.values():
+        found += style_of(same[0].place).at_end(project, same)
+    return found
+
+
+def _take(
+    found: dict[Place, dict[tuple[int, str], Read]],
+    places: Mapping[str, Place],
+    round: int,
+    ends: Iterable[TestEnd],
+) -> None:
+    for end in ends:
+        place = places.get(end.test)
+        prefix = f"{_PROBE}."
+        read = {
+            name.removeprefix(prefix): value for name, value in end.probes.items() if name.startswith(prefix)
+        }
+        if place is not None and read and end.outcome == "passed":
+            found.setdefault(place, {})[round, end.test] = read
+
+
+def _noting(place: Place, readings: Sequence[Reading], objects: Sequence[tuple[str, float]]) -> Addition:
+    """The lines that note; they are plain statements, and never fail."""
+    pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in readings)
+    classes = [target for target, _ in objects]
+    module = values.__module__
+    return Addition(
+        place,
+        (
+            f"from {module} import note as _mutabot_note",
+            f"_mutabot_note(locals(), [{pairs}], {classes!r})",
+        ),
+        "mutabot notes what can be read",
+        tuple(place.names),
+        tuple(dict.fromkeys(line for one in readings for line in one.needs)),
+    )

@@ -1,0 +1,208 @@
+"""pytest-bdd: scenarios in feature files, whose steps are functions."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path, PurePosixPath
+
+from mutabot.suggestion.project import Project
+from mutabot.suggestion.texts import Insertion, imports_of
+
+from .feature_files import Scenario, scenario_with, scenarios_in
+from .style import (
+    Addition,
+    Function,
+    Place,
+    Written,
+    arguments_of,
+    plain_assertion_equal,
+    plain_assertion_within,
+)
+
+_KINDS = ("given", "when", "then", "step")
+_FIELD = re.compile(r"\{(\w*)[^}]*\}")
+_GROUP = re.compile(r"\(\?P<(\w+)>")
+#: what pytest-bdd gives to steps that is no fixture
+_GIVEN = {"datatable", "docstring"}
+
+
+class _Scenarios:
+    name = "pytest-bdd"
+    order = 20
+
+    def place(self, project: Project, node: str) -> Place | None:
+        file, *path = node.split("::")
+        module = project.module(file)
+        if module is None or len(path) != 1:
+            return None
+        for feature, title in _offered(project, file, module):
+            text = project.text(feature)
+            for one in scenarios_in(text):
+                if one.title and _is_named(path[0], one.title, module, title):
+                    background = [step for other in scenarios_in(text) if not other.title for step in other.steps]
+                    names = _names(project, file, [*background, *one.steps])
+                    return Place(self.name, file, node, names, one.title, feature)
+        return None
+
+    def at_end(self, project: Project, additions: Sequence[Addition]) -> list[Insertion]:
+        found: list[Insertion] = []
+        for number, one in enumerate(additions):
+            file, feature = one.place.file, one.place.feature
+            module = project.module(file)
+            assert module is not None
+            scenario = _scenario(project, one.place)
+            # a scenario that ended without a check gets one "Then", then "And"
+            first = next(other for other in additions if other.place == one.place)
+            keyword = scenario.keyword() if one is first else "And"
+            found.append(Insertion(feature, scenario.end, (f"{scenario.indent}{keyword} {one.says}",)))
+            end = len(project.lines(file))
+            found.append(Insertion(file, end, ("", "", *_step(one, number + _steps_in(module)))))
+            imports = [*one.imports, *([] if _imports_then(module) else ["from pytest_bdd import then"])]
+            found += imports_of(file, module, imports)
+        return found
+
+    def within(self, text: str, value: str, tolerance: str) -> str:
+        return plain_assertion_within(text, value, tolerance)
+
+    def equal(self, text: str, value: str) -> str:
+        return plain_assertion_equal(text, value)
+
+    def needs(self, line: str) -> tuple[str, ...]:
+        return ("import pytest",) if "pytest.approx" in line else ()
+
+    def written(self, project: Project, file: str, additions: Sequence[Addition]) -> Written:
+        name = project.import_name(file)
+        imports = [line for one in additions for line in one.imports]
+        imports += [f"import {name}", "from pathlib import Path", "from pytest_bdd import scenarios, then"]
+        lines = [
+            "",
+            f"# the steps and fixtures of {PurePosixPath(file).name}: pytest looks for them where a test is",
+            f"globals().update({{name: one for name, one in vars({name}).items() if not name.startswith(",
+            '    ("test", "__name__", "__file__", "__spec__", "__loader__", "__package__", "__doc__", "__cached__",',
+            '     "__builtins__")',
+            ")})",
+            "",
+        ]
+        files: list[tuple[str, str]] = []
+        for place in dict.fromkeys(one.place for one in additions):
+            steps = [one for one in additions if one.place == place]
+            scenario = _scenario(project, place)
+            words = [scenario.keyword(), *["And"] * (len(steps) - 1)]
+            said = [f"{scenario.indent}{word} {one.says}" for word, one in zip(words, steps, strict=True)]
+            text = "\n".join(scenario_with(project.text(place.feature), place.title, said)) + "\n"
+            feature = f"{_slug(place.title)}.feature"
+            files.append((feature, text))
+            lines.append(f'scenarios(str(Path(__file__).with_name("{feature}")))')
+        for number, one in enumerate(additions):
+            lines += ["", "", *_step(one, number)]
+        return Written(tuple(dict.fromkeys(imports)), tuple(lines), tuple(files))
+
+
+def _step(one: Addition, number: int) -> list[str]:
+    arguments = ", ".join(one.uses)
+    name = f"{_slug(one.says)[:50].strip('_')}_{number}"
+    quoted = '"' + one.says.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return [f"@then({quoted})", f"def {name}({arguments}):", *(f"    {line}" for line in one.lines)]
+
+
+def _steps_in(module: ast.Module) -> int:
+    return sum(isinstance(node, ast.FunctionDef) for node in module.body)
+
+
+def _imports_then(module: ast.Module) -> bool:
+    return any(
+        isinstance(node, ast.ImportFrom)
+        and node.module == "pytest_bdd"
+        and any(alias.name == "then" and alias.asname in {None, "then"} for alias in node.names)
+        for node in module.body
+    )
+
+
+def _scenario(project: Project, place: Place) -> Scenario:
+    found = scenarios_in(project.text(place.feature))
+    return next(one for one in found if one.title == place.title)
+
+
+def _offered(project: Project, file: str, module: ast.Module) -> Iterator[tuple[str, str | None]]:
+    """The feature files that a test file names, each with the title of the one scenario that is meant."""
+    for node in ast.walk(module):
+        if not (isinstance(node, ast.Call) and node.args):
+            continue
+        called = ast.unparse(node.func).rpartition(".")[2]
+        texts = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+        if called == "scenario" and len(texts) > 1:
+            yield from ((one, texts[1]) for one in _features(project, file, texts[0]))
+        elif called == "scenarios":
+            for text in texts:
+                yield from ((one, None) for one in _features(project, file, text))
+
+
+def _features(project: Project, file: str, name: str) -> list[str]:
+    base = (project.root / file).parent
+    path = Path(base, name)
+    found = sorted(path.rglob("*.feature")) if path.is_dir() else [path]
+    return [
+        str(one.resolve().relative_to(project.root.resolve()))
+        for one in found
+        if one.is_file() and one.resolve().is_relative_to(project.root.resolve())
+    ]
+
+
+def _is_named(function: str, title: str, module: ast.Module, only: str | None) -> bool:
+    """Whether a test function is that of a scenario: made by its title, or decorated with it."""
+    if only is not None and only != title:
+        return False
+    if only is not None:
+        return any(
+            isinstance(node, ast.FunctionDef)
+            and node.name == function
+            and any(title in ast.unparse(one) for one in node.decorator_list)
+            for node in module.body
+        )
+    name = "test_" + re.sub(r"^\d+_*", "", re.sub(r"\W", "", title.replace(" ", "_"))).lower()
+    return name in {function, re.sub(r"_\d+$", "", function)}
+
+
+def _slug(text: str) -> str:
+    return re.sub(r"\W+", "_", text).strip("_").lower()
+
+
+def _names(project: Project, file: str, steps: Sequence[tuple[str, str]]) -> tuple[str, ...]:
+    """The fixtures that these steps are given."""
+    found: dict[str, None] = {}
+    for where in (file, *project.beside(file)):
+        module = project.module(where)
+        for node in module.body if module is not None else ():
+            if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                continue
+            for text, fields in _decorated(node):
+                if any(re.fullmatch(text, step) for _, step in steps):
+                    found.update(dict.fromkeys(n for n in arguments_of(node) if n not in fields | _GIVEN))
+    return tuple(found)
+
+
+def _decorated(function: Function) -> Iterator[tuple[str, set[str]]]:
+    """The texts of the steps that a function is, as regular expressions, and the names of their fields."""
+    for one in function.decorator_list:
+        if not (isinstance(one, ast.Call) and one.args):
+            continue
+        if ast.unparse(one.func).rpartition(".")[2] not in _KINDS:
+            continue
+        how, given = "", one.args[0]
+        if isinstance(given, ast.Call) and given.args:
+            how, given = ast.unparse(given.func).rpartition(".")[2], given.args[0]
+        if not (isinstance(given, ast.Constant) and isinstance(given.value, str)):
+            continue
+        text = given.value
+        if how == "re":
+            yield text, set(_GROUP.findall(text))
+        elif how:
+            pieces = [re.escape(piece) for piece in _FIELD.split(text)[::2]]
+            yield ".*?".join(pieces), set(_FIELD.findall(text))
+        else:
+            yield re.escape(text), set()
+
+
+STYLE = _Scenarios()

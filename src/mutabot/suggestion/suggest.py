@@ -1,0 +1,184 @@
+"""The whole way from a campaign's survivors to checks that kill them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from mutabot.analysis.results import MutantResult, Results
+from mutabot.analysis.suggested import Dropped, Suggestion, Suggestions, Unsolved
+from mutabot.campaign.request import Progress, Request
+from mutabot.errors import NothingToDoError
+
+from .bands import unseen
+from .candidates import candidates
+from .checks import Check
+from .cover import smallest_cover
+from .forms import Form, InFile, InPlace
+from .measure import measure
+from .project import Project
+from .prove import Proof
+from .styles.choice import place_of
+from .styles.style import Place
+from .survivors import Survivors, survivors_of
+from .texts import diff_of
+from .unsolved import why_unsolved
+
+#: how often the smallest set is looked for anew because a check of it failed its proof
+_ATTEMPTS = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Quiet:
+    """Progress without the remarks of campaigns that only serve."""
+
+    progress: Progress
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        """As in ``Progress``."""
+        self.progress.stage(text, total)
+
+    def advance(self, line: str | None = None) -> None:
+        """As in ``Progress``."""
+        self.progress.advance(line)
+
+    def note(self, text: str) -> None:
+        """Nothing is told: the campaign itself has told it."""
+
+
+def suggest(
+    request: Request,
+    results: Results,
+    chosen: Sequence[MutantResult],
+    progress: Progress,
+    *,
+    seeds: int,
+    write: str | None = None,
+) -> Suggestions:
+    """Checks that kill these survivors of a finished campaign.
+
+    Args:
+        request: as the campaign's was.
+        results: of the campaign.
+        chosen: the survivors that are to be killed.
+        progress: is told.
+        seeds: how many fresh seeds are run for the bands, and as many others for the proof.
+        write: the new test file, relative to the project; None for changes of the tests there are.
+
+    Raises NothingToDoError if there is nothing to kill or nothing to look at, and what a campaign raises.
+    """
+    survivors = survivors_of(chosen)
+    if not survivors.to_kill:
+        return _told(Suggestions(unsolved=survivors.never), chosen, request, seeds)
+    quiet = Quiet(progress)
+    project = Project(request)
+    places, without = _places(project, survivors.tests)
+    if not places:
+        shown = next(iter(without), "no test")
+        raise NothingToDoError(
+            f"no check can be added to the tests that run survivors, such as {shown}: they are written neither "
+            "as functions of pytest, as methods of unittest nor as scenarios of pytest-bdd in files of the project"
+        )
+    calibrated = request.rounds + seeds
+    measured = measure(
+        replace(request, rounds=calibrated), project, places,
+        [(one.mutant, rounds) for one, rounds in survivors.to_kill], quiet,
+    )  # fmt: skip
+    found = candidates(measured)
+    form: Form = InFile(project, write) if write is not None else InPlace(project)
+    proof = Proof(request, form, quiet)
+    fresh = range(calibrated, calibrated + seeds)
+    chosen_checks = _proven(proof, found, survivors, [*range(request.rounds), *fresh])
+    texts = form.texts(chosen_checks) if chosen_checks else {}
+    suggestions = tuple(_suggestion(one, proof.kills[one], seeds) for one in chosen_checks)
+    killed = {mutant for one in suggestions for mutant in one.kills}
+    unsolved = [
+        *(why_unsolved(one.mutant, measured, found, proof) for one, _ in survivors.to_kill if one.mutant.id not in killed),
+        *survivors.never,
+    ]
+    dropped = tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items())
+    whole = Suggestions(
+        suggestions, diff_of(request.root, texts), texts if write is not None else {}, tuple(unsolved), dropped
+    )
+    return _told(whole, chosen, request, seeds)
+
+
+def _told(
+    whole: Suggestions, chosen: Sequence[MutantResult], request: Request, seeds: int
+) -> Suggestions:
+    return replace(
+        whole,
+        numbers={one.mutant.id: one.mutant.number for one in chosen},
+        descriptions={one.mutant.id: one.mutant.description for one in chosen},
+        rounds=request.rounds,
+        seeds=seeds,
+    )
+
+
+def _places(project: Project, tests: Sequence[str]) -> tuple[dict[str, Place], list[str]]:
+    found: dict[str, Place] = {}
+    without: list[str] = []
+    for test in tests:
+        place = place_of(project, test)
+        if place is None:
+            without.append(test)
+        else:
+            found[test] = place
+    return found, without
+
+
+def _proven(
+    proof: Proof, found: Sequence[Check], survivors: Survivors, rounds: Sequence[int]
+) -> list[Check]:
+    """The smallest set of checks that all stand their proof; largest kills first."""
+    mutants = [one.mutant.id for one, _ in survivors.to_kill]
+    chosen: list[Check] = []
+    for _ in range(_ATTEMPTS):
+        left = [one for one in found if one not in proof.failed]
+        chosen = smallest_cover(left, lambda one: _noticed(one, proof), _worth)
+        new = [one for one in chosen if one not in proof.kills]
+        if not new:
+            break
+        passing = proof.on_original(chosen, rounds)
+        for one in passing:
+            proof.on_survivors(one, mutants)
+    chosen = [one for one in chosen if one in proof.kills and one not in proof.failed]
+    return sorted(chosen, key=lambda one: -len(_noticed(one, proof)))
+
+
+def _noticed(check: Check, proof: Proof) -> frozenset[tuple[str, int]]:
+    """What a check kills, as far as it was run; else what it would by what was measured."""
+    kills: Mapping[str, Sequence[int]] | None = proof.kills.get(check)
+    if kills is None:
+        return check.trials
+    return frozenset((mutant, round) for mutant, rounds in kills.items() for round in rounds)
+
+
+def _worth(check: Check) -> float:
+    """Of checks that notice the same: the way in which the tests read already, plain, far from the band."""
+    expected = check.expected
+    effort = 10.0 * check.reading.way + 4.0 * (expected.label is not None) + 5.0 * (expected.minus is not None)
+    return min(math.log10(max(check.margin, 1.0)), 3.0) - effort - 0.01 * len(check.statement)
+
+
+def _suggestion(check: Check, kills: Mapping[str, tuple[int, ...]], seeds: int) -> Suggestion:
+    expected, band = check.expected, check.expected.band
+    return Suggestion(
+        test=check.place.node,
+        style=check.place.style,
+        moment="end of the test",
+        looks_at=check.looked_at,
+        statement=check.statement,
+        tolerance=band.tolerance if band is not None else None,
+        band=band.kind if band is not None else "always the same",
+        factor=band.factor if band is not None else None,
+        spread=band.spread if band is not None else None,
+        runs=expected.runs,
+        alarm=band.alarm if band is not None else unseen(expected.runs),
+        fresh=seeds,
+        unseen=unseen(seeds),
+        kills=kills,
+    )
+
+
