@@ -1,7 +1,7 @@
 """``mutabot suggest``: checks that kill the survivors of the last campaign."""
 
 # Commands import what they need when they run, so that `--help` is fast; typer makes options of parameters.
-# ruff: noqa: PLC0415, PLR0917
+# ruff: noqa: PLC0415
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Write = Annotated[
 Seeds = Annotated[
     int,
     typer.Option(
-        "--seeds", metavar="N", min=5, help="Fresh seeds for the tolerances, and as many others for the proof."
+        "--seeds", metavar="N", min=5, help="Fresh seeds for the tolerances, and as many for the proof."
     ),
 ]
 

@@ -7,12 +7,15 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Protocol
 
-from .checks import Check
-from .measure import insertions_of
-from .project import Project
-from .styles.choice import style_of
+from mutabot.suggestion.choosing.checks import Check
+from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.sources.texts import changed_texts, import_order
+
+from .styles.choice import insertions_of, style_of
 from .styles.style import Written
-from .texts import changed_texts
+
+#: what a new file says of itself
+_HEAD = "Checks that mutabot suggests: each was run, and kills a fault that the other tests let through."
 
 
 class Form(Protocol):
@@ -63,22 +66,18 @@ class InFile:
         return (self.file,)
 
 
-def _by_file(checks: Sequence[Check]) -> dict[tuple[str, str] | str, list[Check]]:
+def _by_file(checks: Sequence[Check]) -> dict[str, list[Check]]:
     found: dict[str, list[Check]] = {}
     for one in sorted(checks, key=lambda one: (one.place.file, one.place.style, one.place.node)):
         found.setdefault(one.place.file, []).append(one)
-    return dict(found)
+    return found
 
 
 def _text_of(written: Sequence[Written]) -> str:
-    imports = sorted(set(line for one in written for line in one.imports), key=_rank)
+    imports = sorted({line for one in written for line in one.imports}, key=import_order)
     future = [line for line in imports if line.startswith("from __future__")]
-    lines = ['"""Checks that mutabot suggests: each was run, and kills a fault that the tests let through."""', ""]
+    lines = [f'"""{_HEAD}"""', ""]
     lines += [*future, "", *(line for line in imports if line not in future)]
     for one in written:
         lines += one.lines
     return "\n".join(lines).rstrip("\n") + "\n"
-
-
-def _rank(line: str) -> tuple[bool, str]:
-    return line.startswith("from"), line.split()[1]

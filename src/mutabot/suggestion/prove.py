@@ -14,11 +14,10 @@ from mutabot.campaign.workers.task import Task, death
 from mutabot.errors import MutabotError
 from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Verdict
+from mutabot.suggestion.choosing.checks import Check
+from mutabot.suggestion.sources.workspace import copy_of
 
-from .checks import Check
 from .forms import Form
-from .workspace import copy_of
-
 
 
 @dataclass(slots=True)
@@ -54,11 +53,11 @@ class Proof:
         texts = self.form.texts(checks)
         found: dict[Check, str] = {}
         with copy_of(self.request, texts) as copied:
-            copied = _only(copied, self.form.tests(checks))
+            these = _only(copied, self.form.tests(checks))
             self.progress.stage("proof on the original", len(rounds))
-            with open_executor(copied, self.progress) as opened:
-                share = first_engine(copied).may_share
-                tasks = (Task(round, copied.job(round), startup=300.0, may_share=share) for round in rounds)
+            with open_executor(these, self.progress) as opened:
+                share = first_engine(these).may_share
+                tasks = (Task(round, these.job(round), startup=300.0, may_share=share) for round in rounds)
                 for result in opened.run(tasks):
                     self.progress.advance(f"round {result.task.key + 1}")
                     where = f"round {result.task.key + 1} of the original"

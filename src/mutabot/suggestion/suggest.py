@@ -7,22 +7,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.suggested import Dropped, Suggestion, Suggestions, Unsolved
+from mutabot.analysis.suggested import Dropped, Suggestion, Suggestions
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import NothingToDoError
+from mutabot.suggestion.choosing.bands import unseen
+from mutabot.suggestion.choosing.candidates import candidates
+from mutabot.suggestion.choosing.checks import Check
+from mutabot.suggestion.choosing.cover import smallest_cover
+from mutabot.suggestion.measuring.measure import measure
+from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.sources.texts import diff_of
 
-from .bands import unseen
-from .candidates import candidates
-from .checks import Check
-from .cover import smallest_cover
 from .forms import Form, InFile, InPlace
-from .measure import measure
-from .project import Project
 from .prove import Proof
 from .styles.choice import place_of
 from .styles.style import Place
 from .survivors import Survivors, survivors_of
-from .texts import diff_of
 from .unsolved import why_unsolved
 
 #: how often the smallest set is looked for anew because a check of it failed its proof
@@ -77,8 +77,8 @@ def suggest(
     if not places:
         shown = next(iter(without), "no test")
         raise NothingToDoError(
-            f"no check can be added to the tests that run survivors, such as {shown}: they are written neither "
-            "as functions of pytest, as methods of unittest nor as scenarios of pytest-bdd in files of the project"
+            f"no check can be added to the tests of these survivors, such as {shown}: they are "
+            "neither functions of pytest, nor methods of unittest, nor scenarios of pytest-bdd"
         )
     calibrated = request.rounds + seeds
     measured = measure(
@@ -93,20 +93,16 @@ def suggest(
     texts = form.texts(chosen_checks) if chosen_checks else {}
     suggestions = tuple(_suggestion(one, proof.kills[one], seeds) for one in chosen_checks)
     killed = {mutant for one in suggestions for mutant in one.kills}
-    unsolved = [
-        *(why_unsolved(one.mutant, measured, found, proof) for one, _ in survivors.to_kill if one.mutant.id not in killed),
-        *survivors.never,
-    ]
+    left = [one.mutant for one, _ in survivors.to_kill if one.mutant.id not in killed]
+    unsolved = [*(why_unsolved(one, measured, found, proof) for one in left), *survivors.never]
     dropped = tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items())
     whole = Suggestions(
-        suggestions, diff_of(request.root, texts), texts if write is not None else {}, tuple(unsolved), dropped
+        suggestions, diff_of(request.root, texts), texts if write else {}, tuple(unsolved), dropped
     )
     return _told(whole, chosen, request, seeds)
 
 
-def _told(
-    whole: Suggestions, chosen: Sequence[MutantResult], request: Request, seeds: int
-) -> Suggestions:
+def _told(whole: Suggestions, chosen: Sequence[MutantResult], request: Request, seeds: int) -> Suggestions:
     return replace(
         whole,
         numbers={one.mutant.id: one.mutant.number for one in chosen},
@@ -128,9 +124,7 @@ def _places(project: Project, tests: Sequence[str]) -> tuple[dict[str, Place], l
     return found, without
 
 
-def _proven(
-    proof: Proof, found: Sequence[Check], survivors: Survivors, rounds: Sequence[int]
-) -> list[Check]:
+def _proven(proof: Proof, found: Sequence[Check], survivors: Survivors, rounds: Sequence[int]) -> list[Check]:
     """The smallest set of checks that all stand their proof; largest kills first."""
     mutants = [one.mutant.id for one, _ in survivors.to_kill]
     chosen: list[Check] = []
@@ -158,7 +152,8 @@ def _noticed(check: Check, proof: Proof) -> frozenset[tuple[str, int]]:
 def _worth(check: Check) -> float:
     """Of checks that notice the same: the way in which the tests read already, plain, far from the band."""
     expected = check.expected
-    effort = 10.0 * check.reading.way + 4.0 * (expected.label is not None) + 5.0 * (expected.minus is not None)
+    beside = 4.0 * (expected.label is not None) + 5.0 * (expected.minus is not None)
+    effort = 10.0 * check.reading.way + beside
     return min(math.log10(max(check.margin, 1.0)), 3.0) - effort - 0.01 * len(check.statement)
 
 
@@ -180,5 +175,3 @@ def _suggestion(check: Check, kills: Mapping[str, tuple[int, ...]], seeds: int) 
         unseen=unseen(seeds),
         kills=kills,
     )
-
-

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from mutabot.analysis.suggested import Unsolved
 from mutabot.model import Mutant
+from mutabot.suggestion.choosing.bands import decimal
+from mutabot.suggestion.choosing.checks import Check, is_number
+from mutabot.suggestion.measuring.measure import Measured
 
-from .bands import plain
-from .checks import Check
-from .measure import Measured
 from .prove import Proof
 
 
@@ -36,10 +35,10 @@ def _nearest(mutant: Mutant, measured: Measured) -> tuple[str, float, float] | N
         for key, read in by_mutant.get(mutant.id, {}).items():
             same = originals.get(key, {})
             for text, value in read.items():
-                if not (_is_number(value) and _is_number(same.get(text))):
+                if not (is_number(value) and is_number(same.get(text))):
                     continue
                 apart = abs(value - same[text])
-                values = [one[text] for one in originals.values() if _is_number(one.get(text))]
+                values = [one[text] for one in originals.values() if is_number(one.get(text))]
                 spread = max(values) - min(values)
                 rank = apart / spread if spread > 0 else apart * 1e6
                 if apart > 1e-9 and (best is None or rank > best[0]):
@@ -47,9 +46,5 @@ def _nearest(mutant: Mutant, measured: Measured) -> tuple[str, float, float] | N
     return best[1:] if best is not None else None
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
 def _short(value: float) -> str:
-    return plain(float(f"{value:.3g}"))
+    return decimal(float(f"{value:.3g}"))

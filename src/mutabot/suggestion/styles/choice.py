@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 
-from mutabot.suggestion.project import Project
+from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.sources.texts import Insertion
 
-from . import functions, scenarios, test_cases
-from .style import Place, Style
+from . import functions, scenarios, testcases
+from .style import Addition, Place, Style
 
 
 @cache
 def styles() -> tuple[Style, ...]:
     """In the order in which they are asked."""
-    found: list[Style] = [functions.STYLE, scenarios.STYLE, test_cases.STYLE]
+    found: list[Style] = [functions.STYLE, scenarios.STYLE, testcases.STYLE]
     return tuple(sorted(found, key=lambda one: one.order))
 
 
@@ -27,3 +29,14 @@ def place_of(project: Project, test: str) -> Place | None:
     node = test.partition("[")[0]
     found = (style.place(project, node) for style in styles())
     return next((one for one in found if one is not None), None)
+
+
+def insertions_of(project: Project, additions: Sequence[Addition]) -> list[Insertion]:
+    """What puts additions where they belong, by the styles of their tests."""
+    found: list[Insertion] = []
+    by_file: dict[tuple[str, str], list[Addition]] = {}
+    for one in additions:
+        by_file.setdefault((one.place.style, one.place.file), []).append(one)
+    for same in by_file.values():
+        found += style_of(same[0].place).at_end(project, same)
+    return found

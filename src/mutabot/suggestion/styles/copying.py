@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Sequence
 
-from mutabot.suggestion.project import Project
+from mutabot.suggestion.sources.project import Project
 
 from .style import Function, end_of
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 from itertools import groupby
+from typing import TypeGuard
 
-from mutabot.suggestion.project import Project
-from mutabot.suggestion.texts import Insertion, imports_of
+from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.sources.texts import Insertion, imports_of
 
 from .copying import imports_for, text_with
 from .style import (
@@ -55,15 +56,14 @@ class _Functions:
 
 def at_ends(project: Project, additions: Sequence[Addition]) -> list[Insertion]:
     """What puts statements at the ends of functions and methods, with the imports they need."""
-    found: list[Insertion] = []
+    file = additions[0].place.file
+    module = project.module(file)
+    assert module is not None
+    found = imports_of(file, module, (line for one in additions for line in one.imports))
     for one in additions:
-        file = one.place.file
-        module = project.module(file)
-        assert module is not None
         function = functions_of(module, one.place.node.split("::")[1:])
         assert function is not None, "a place has a function"
         found += put_at_end(file, function, project.lines(file), one.lines)
-        found += imports_of(file, module, (line for line in one.imports if not _has(module, line)))
     return found
 
 
@@ -83,11 +83,11 @@ def written(project: Project, file: str, additions: Sequence[Addition]) -> Writt
             imports.append(f"import {project.import_name(file)}")
             text = [*_class_head(project, file, module, path), *text]
         lines += ["", "", *text]
-    used = {name.id for line in module.body if _is_marks(line) for name in ast.walk(line) if isinstance(name, ast.Name)}
-    marks = [ast.unparse(line) for line in module.body if _is_marks(line)]
+    marks = [line for line in module.body if _is_marks(line)]
     if marks:
-        imports += imports_for(project, file, [], used - {"pytestmark"})
-    return Written(tuple(dict.fromkeys(imports)), (*(["", *marks] if marks else []), *lines))
+        imports += imports_for(project, file, [line.value for line in marks])
+        lines = ["", *map(ast.unparse, marks), *lines]
+    return Written(tuple(dict.fromkeys(imports)), tuple(lines))
 
 
 def _class_head(project: Project, file: str, module: ast.Module, path: Sequence[str]) -> list[str]:
@@ -122,12 +122,7 @@ def _names(function: Function) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*arguments_of(function), *assigned)))
 
 
-def _has(module: ast.Module, line: str) -> bool:
-    wanted = ast.unparse(ast.parse(line))
-    return any(wanted == ast.unparse(node) for node in module.body)
-
-
-def _is_marks(node: ast.stmt) -> bool:
+def _is_marks(node: ast.stmt) -> TypeGuard[ast.Assign]:
     return isinstance(node, ast.Assign) and any(
         isinstance(one, ast.Name) and one.id == "pytestmark" for one in node.targets
     )

@@ -7,9 +7,10 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 
-from mutabot.suggestion.project import Project
-from mutabot.suggestion.texts import Insertion, imports_of
+from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.sources.texts import Insertion, imports_of, top_names
 
+from .copying import imports_for
 from .feature_files import Scenario, scenario_with, scenarios_in
 from .style import (
     Addition,
@@ -41,27 +42,28 @@ class _Scenarios:
             text = project.text(feature)
             for one in scenarios_in(text):
                 if one.title and _is_named(path[0], one.title, module, title):
-                    background = [step for other in scenarios_in(text) if not other.title for step in other.steps]
-                    names = _names(project, file, [*background, *one.steps])
+                    background = [other for other in scenarios_in(text) if not other.title]
+                    steps = [step for other in (*background, one) for step in other.steps]
+                    names = _names(project, file, steps)
                     return Place(self.name, file, node, names, one.title, feature)
         return None
 
     def at_end(self, project: Project, additions: Sequence[Addition]) -> list[Insertion]:
+        file = additions[0].place.file
+        module = project.module(file)
+        assert module is not None
         found: list[Insertion] = []
-        for number, one in enumerate(additions):
-            file, feature = one.place.file, one.place.feature
-            module = project.module(file)
-            assert module is not None
+        for one in additions:
             scenario = _scenario(project, one.place)
-            # a scenario that ended without a check gets one "Then", then "And"
             first = next(other for other in additions if other.place == one.place)
+            # a scenario that ended without a check gets one "Then", then "And"
             keyword = scenario.keyword() if one is first else "And"
-            found.append(Insertion(feature, scenario.end, (f"{scenario.indent}{keyword} {one.says}",)))
-            end = len(project.lines(file))
-            found.append(Insertion(file, end, ("", "", *_step(one, number + _steps_in(module)))))
-            imports = [*one.imports, *([] if _imports_then(module) else ["from pytest_bdd import then"])]
-            found += imports_of(file, module, imports)
-        return found
+            step = f"{scenario.indent}{keyword} {one.says}"
+            found.append(Insertion(one.place.feature, scenario.end, (step,)))
+        end = len(project.lines(file))
+        found += [Insertion(file, end, tuple(lines)) for lines in _steps(additions, module, project)]
+        imports = [line for one in additions for line in one.imports]
+        return found + imports_of(file, module, [*imports, "from pytest_bdd import then"])
 
     def within(self, text: str, value: str, tolerance: str) -> str:
         return plain_assertion_within(text, value, tolerance)
@@ -78,11 +80,10 @@ class _Scenarios:
         imports += [f"import {name}", "from pathlib import Path", "from pytest_bdd import scenarios, then"]
         lines = [
             "",
-            f"# the steps and fixtures of {PurePosixPath(file).name}: pytest looks for them where a test is",
-            f"globals().update({{name: one for name, one in vars({name}).items() if not name.startswith(",
-            '    ("test", "__name__", "__file__", "__spec__", "__loader__", "__package__", "__doc__", "__cached__",',
-            '     "__builtins__")',
-            ")})",
+            f"# steps and fixtures of {PurePosixPath(file).name}: they are looked for where the scenario is",
+            f"for _name, _one in vars({name}).items():",
+            '    if _name.startswith("__pytest_bdd") or not _name.startswith(("_", "test")):',
+            "        globals().setdefault(_name, _one)",
             "",
         ]
         files: list[tuple[str, str]] = []
@@ -95,29 +96,47 @@ class _Scenarios:
             feature = f"{_slug(place.title)}.feature"
             files.append((feature, text))
             lines.append(f'scenarios(str(Path(__file__).with_name("{feature}")))')
-        for number, one in enumerate(additions):
-            lines += ["", "", *_step(one, number)]
+        module = project.module(file)
+        assert module is not None
+        for step in _steps(additions, module, project):
+            lines += step
+        imports += imports_for(project, file, _annotations(additions, module))
         return Written(tuple(dict.fromkeys(imports)), tuple(lines), tuple(files))
 
 
-def _step(one: Addition, number: int) -> list[str]:
-    arguments = ", ".join(one.uses)
-    name = f"{_slug(one.says)[:50].strip('_')}_{number}"
-    quoted = '"' + one.says.replace("\\", "\\\\").replace('"', '\\"') + '"'
-    return [f"@then({quoted})", f"def {name}({arguments}):", *(f"    {line}" for line in one.lines)]
+def _steps(additions: Sequence[Addition], module: ast.Module, project: Project) -> Iterator[list[str]]:
+    """The functions of these steps, with the annotations that the file's other steps have."""
+    taken = top_names(module)
+    annotated = _annotated(module)
+    is_typed = any(isinstance(node, ast.FunctionDef) and node.returns is not None for node in module.body)
+    for one in additions:
+        name = base = _slug(one.says.partition(" is ")[0]) + "_is_as_it_should_be"
+        number = 1
+        while name in taken:
+            number += 1
+            name = f"{base}_{number}"
+        taken.add(name)
+        given = ", ".join(annotated.get(use, use) for use in one.uses)
+        quoted = '"' + one.says.replace("\\", "\\\\").replace('"', '\\"') + '"'
+        head = f"def {name}({given}){' -> None' if is_typed else ''}:"
+        yield ["", "", f"@then({quoted})", head, *(f"    {line}" for line in one.lines)]
 
 
-def _steps_in(module: ast.Module) -> int:
-    return sum(isinstance(node, ast.FunctionDef) for node in module.body)
-
-
-def _imports_then(module: ast.Module) -> bool:
-    return any(
-        isinstance(node, ast.ImportFrom)
-        and node.module == "pytest_bdd"
-        and any(alias.name == "then" and alias.asname in {None, "then"} for alias in node.names)
+def _annotated(module: ast.Module) -> dict[str, str]:
+    """Arguments of the file's functions as they are annotated, by name."""
+    return {
+        one.arg: f"{one.arg}: {ast.unparse(one.annotation)}"
         for node in module.body
-    )
+        if isinstance(node, ast.FunctionDef)
+        for one in node.args.args
+        if one.annotation is not None
+    }
+
+
+def _annotations(additions: Sequence[Addition], module: ast.Module) -> list[ast.AST]:
+    """The annotations that the steps have."""
+    uses = {use for one in additions for use in one.uses}
+    return [ast.parse(text) for name, text in _annotated(module).items() if name in uses]
 
 
 def _scenario(project: Project, place: Place) -> Scenario:
@@ -131,7 +150,8 @@ def _offered(project: Project, file: str, module: ast.Module) -> Iterator[tuple[
         if not (isinstance(node, ast.Call) and node.args):
             continue
         called = ast.unparse(node.func).rpartition(".")[2]
-        texts = [one.value for one in node.args if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+        constants = [one.value for one in node.args if isinstance(one, ast.Constant)]
+        texts = [one for one in constants if isinstance(one, str)]
         if called == "scenario" and len(texts) > 1:
             yield from ((one, texts[1]) for one in _features(project, file, texts[0]))
         elif called == "scenarios":
@@ -179,7 +199,8 @@ def _names(project: Project, file: str, steps: Sequence[tuple[str, str]]) -> tup
                 continue
             for text, fields in _decorated(node):
                 if any(re.fullmatch(text, step) for _, step in steps):
-                    found.update(dict.fromkeys(n for n in arguments_of(node) if n not in fields | _GIVEN))
+                    given = fields | _GIVEN
+                    found.update(dict.fromkeys(name for name in arguments_of(node) if name not in given))
     return tuple(found)
 
 

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from mutabot.suggestion.project import Project
-from mutabot.suggestion.texts import Insertion
+from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.sources.texts import Insertion
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -109,10 +109,8 @@ def functions_of(module: ast.Module, path: Sequence[str]) -> Function | None:
         if owner is None:
             return None
         body = owner.body
-    found = [
-        one for one in body if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef) and one.name == path[-1]
-    ]
-    return found[-1] if found else None
+    functions = [one for one in body if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef)]
+    return next((one for one in reversed(functions) if one.name == path[-1]), None)
 
 
 def class_of(module: ast.Module, name: str) -> ast.ClassDef | None:

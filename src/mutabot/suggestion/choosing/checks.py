@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeGuard
 
-from .bands import Band, rounded
-from .measure import Read
-from .readings import Reading
-from .styles.choice import style_of
-from .styles.style import Addition, Place
+from mutabot.suggestion.measuring.measure import Read
+from mutabot.suggestion.measuring.readings import Reading
+from mutabot.suggestion.styles.choice import style_of
+from mutabot.suggestion.styles.style import Addition, Place
 
-#: longest line of a written test
-_WIDTH = 100
+from .bands import Band, decimal
+
+_NAME = re.compile(r"[^\W\d]\w*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,14 +45,10 @@ class Expected:
         expected = self.values[key]
         if self.band is None:
             return 0.0 if found == expected and type(found) is type(expected) else 2.0
-        if not _is_number(found):
+        other = read.get(self.minus) if self.minus is not None else 0.0
+        if not (is_number(found) and is_number(other)):
             return 0.0
-        if self.minus is not None:
-            other = read.get(self.minus)
-            if not _is_number(other):
-                return 0.0
-            found -= other
-        return abs(found - expected) / self.band.tolerance
+        return float(abs(found - other - expected)) / self.band.tolerance
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +60,14 @@ class Check:
         reading: what it reads.
         expected: what it expects.
         margins: mutant id to round to how far it is outside, in tolerances; only what it would notice.
+        needs: imports of what it uses beside its reading.
     """
 
     place: Place
     reading: Reading
     expected: Expected
     margins: Mapping[str, Mapping[int, float]] = field(default_factory=dict)
+    needs: tuple[str, ...] = ()
 
     @property
     def trials(self) -> frozenset[tuple[str, int]]:
@@ -87,71 +86,65 @@ class Check:
         return self.reading.text + (f" - {minus}" if minus is not None else "")
 
     @property
-    def wanted(self) -> tuple[str, str | None]:
-        """What it expects, as a text of a program, and the tolerance."""
-        found = {}
-        tolerance = None
-        for key, value in self.expected.values.items():
-            band = self.expected.band
-            found[key], tolerance = (repr(value), None) if band is None else rounded(value, band.tolerance)
-        if self.expected.label is None:
-            return found[None], tolerance
-        inner = ", ".join(f"{_literal(key)}: {text}" for key, text in found.items())
-        return f"{{{inner}}}[{self.expected.label}]", tolerance
+    def lines(self) -> tuple[str, ...]:
+        """It in the style of its test: the assertion is the last of them."""
+        style = style_of(self.place)
+        band, label = self.expected.band, self.expected.label
+        texts = {key: self._text(value) for key, value in self.expected.values.items()}
+        head: tuple[str, ...] = ()
+        value = "expected"
+        if label is None:
+            value = texts[None]
+        else:
+            inner = ", ".join(f"{literal(key)}: {text}" for key, text in texts.items())
+            head = (f"expected = {{{inner}}}[{label}]",)
+        if band is None:
+            return *head, style.equal(self.looked_at, value)
+        return *head, style.within(self.looked_at, value, decimal(band.tolerance))
 
     @property
     def statement(self) -> str:
-        """The assertion in the style of its test."""
-        style = style_of(self.place)
-        value, tolerance = self.wanted
-        value = _literal(next(iter(self.expected.values.values()))) if self._is_plain_text else value
-        if tolerance is None:
-            return style.equal(self.looked_at, value)
-        return style.within(self.looked_at, value, tolerance)
+        """The assertion."""
+        return self.lines[-1]
 
-    @property
-    def _is_plain_text(self) -> bool:
-        only = self.expected.values.get(None)
-        return self.expected.band is None and self.expected.label is None and isinstance(only, str)
+    def _text(self, value: Any) -> str:
+        return decimal(value) if self.expected.band is not None else literal(value)
 
     @property
     def words(self) -> str:
         """What it looks at, in words that can be a step of a scenario."""
-        value, tolerance = self.wanted
-        label = self.expected.label
-        if label is not None:
-            value = f"as its {_said(label)} wants it"
-        within = f" within {tolerance}" if tolerance is not None else ""
-        return f"{_said(self.looked_at)} is {_said(value)}{within}"
+        expected = self.expected
+        of = f"what {said(expected.label)} asks for" if expected.label is not None else None
+        if expected.band is None:
+            return f"{said(self.looked_at)} is {of or said(self._text(expected.values[None]))}"
+        near = of or self._text(expected.values[None])
+        return f"{said(self.looked_at)} is within {decimal(expected.band.tolerance)} of {near}"
 
     def addition(self) -> Addition:
         """It as something that is added to a test."""
-        statement = self.statement
-        names = set(re.findall(r"[^\W\d]\w*", statement))
+        names = set(_NAME.findall(" ".join(self.lines)))
         return Addition(
             self.place,
-            tuple(_folded(statement)),
+            self.lines,
             self.words,
             tuple(name for name in self.place.names if name in names),
-            (*self.reading.needs, *style_of(self.place).needs(statement)),
+            (*self.reading.needs, *self.needs, *style_of(self.place).needs(self.statement)),
         )
 
 
-def _folded(statement: str) -> list[str]:
-    return [statement]
-
-
-def _said(text: str) -> str:
+def said(text: str) -> str:
     """An expression in words: ``world()["tool.theta_z"]`` is world tool.theta_z."""
     return re.sub(r"\s+", " ", re.sub(r"[()\[\]\"'{}]+", " ", text).replace(" .", " ")).strip()
 
 
-def _literal(value: Any) -> str:
+def literal(value: Any) -> str:
+    """A value as a text of a program."""
     text = repr(value)
     if isinstance(value, str) and '"' not in text and "\\" not in text:
         return f'"{value}"'
     return text
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and value == value
+def is_number(value: Any) -> TypeGuard[float]:
+    """Whether a value is one that can be near another."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

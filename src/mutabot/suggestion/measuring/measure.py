@@ -17,13 +17,13 @@ from mutabot.campaign.engines.fresh import task
 from mutabot.campaign.request import Progress, Request
 from mutabot.inside.readings.noted import values
 from mutabot.model import Mutant, Probe
+from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.sources.texts import changed_texts
+from mutabot.suggestion.sources.workspace import copy_of
+from mutabot.suggestion.styles.choice import insertions_of
+from mutabot.suggestion.styles.style import Addition, Place
 
-from .project import Project
 from .readings import Reading, of_objects, readings_at
-from .styles.choice import style_of
-from .styles.style import Addition, Place
-from .texts import changed_texts
-from .workspace import copy_of
 
 #: the probe that carries readings out of the tests' process
 _PROBE = f"{values.__module__}:{values.__name__}"
@@ -73,44 +73,41 @@ def measure(
         additions.append(_noting(place, measured.readings[place], measured.objects))
     texts = changed_texts(project.root, insertions_of(project, additions))
     with copy_of(request, texts) as copied:
-        vocabulary = copied.vocabulary
-        probes = (*vocabulary.probes, Probe(_PROBE, 1e9))
-        copied = replace(copied, vocabulary=replace(vocabulary, probes=probes))
-        with open_executor(copied, progress) as opened:
-            may_share = first_engine(copied).may_share
-            baseline, results = take_baseline(copied, opened, progress, repetitions=1, may_share=may_share)
+        probes = (*copied.vocabulary.probes, Probe(_PROBE, 1e9))
+        noting = replace(copied, vocabulary=replace(copied.vocabulary, probes=probes))
+        with open_executor(noting, progress) as opened:
+            may_share = first_engine(noting).may_share
+            baseline, results = take_baseline(noting, opened, progress, repetitions=1, may_share=may_share)
             for result in results:
                 _take(measured.originals, places, result.task.key.round, result.ends)
-            campaign = Campaign(copied, baseline, opened, progress)
-            now = [(as_it_is_now(copied, baseline, mutant), rounds) for mutant, rounds in survivors]
-            for _ in run_controls(campaign, [mutant for mutant, _ in now]):
-                pass
-            trials = [(mutant, round) for mutant, rounds in now for round in rounds]
-            progress.stage("survivors", len(trials))
-            tasks = (
-                replace(task(campaign, mutant, round, tests), begins_warm=True)
-                for mutant, round in trials
-                if (tests := baseline.judges(round, mutant))
-            )
-            for result in opened.run(tasks):
-                mutant, round = result.task.key
-                progress.advance(f"#{mutant.number} round {round + 1}")
-                found: dict[Place, dict[tuple[int, str], Read]] = {}
-                _take(found, places, round, result.ends)
-                for place, read in found.items():
-                    measured.mutants.setdefault(place, {}).setdefault(mutant.id, {}).update(read)
+            _run_survivors(Campaign(noting, baseline, opened, progress), measured, places, survivors)
     return measured
 
 
-def insertions_of(project: Project, additions: Sequence[Addition]) -> list[Any]:
-    """What puts additions where they belong, by the styles of their tests."""
-    found = []
-    by_file: dict[tuple[str, str], list[Addition]] = {}
-    for one in additions:
-        by_file.setdefault((one.place.style, one.place.file), []).append(one)
-    for same in by_file.values():
-        found += style_of(same[0].place).at_end(project, same)
-    return found
+def _run_survivors(
+    campaign: Campaign,
+    measured: Measured,
+    places: Mapping[str, Place],
+    survivors: Sequence[tuple[Mutant, Sequence[int]]],
+) -> None:
+    baseline, progress = campaign.baseline, campaign.progress
+    now = [(as_it_is_now(campaign.request, baseline, mutant), rounds) for mutant, rounds in survivors]
+    for _ in run_controls(campaign, [mutant for mutant, _ in now]):
+        pass
+    trials = [(mutant, round) for mutant, rounds in now for round in rounds]
+    progress.stage("survivors", len(trials))
+    tasks = (
+        replace(task(campaign, mutant, round, tests), begins_warm=True)
+        for mutant, round in trials
+        if (tests := baseline.judges(round, mutant))
+    )
+    for result in campaign.executor.run(tasks):
+        mutant, round = result.task.key
+        progress.advance(f"#{mutant.number} round {round + 1}")
+        found: dict[Place, dict[tuple[int, str], Read]] = {}
+        _take(found, places, round, result.ends)
+        for place, read in found.items():
+            measured.mutants.setdefault(place, {}).setdefault(mutant.id, {}).update(read)
 
 
 def _take(

@@ -60,7 +60,8 @@ class Project:
         for name in folders:
             path = self.root / name
             files = sorted(path.rglob("*.py")) if path.is_dir() else [path]
-            found += [str(one.relative_to(self.root)) for one in files if one.suffix == ".py" and one.exists()]
+            files = [one for one in files if one.suffix == ".py" and one.exists()]
+            found += [str(one.relative_to(self.root)) for one in files]
         return found
 
     def beside(self, file: str) -> list[str]:

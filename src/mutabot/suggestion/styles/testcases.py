@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 
-from mutabot.suggestion.project import Project
-from mutabot.suggestion.texts import Insertion
+from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.sources.texts import Insertion
 
 from .functions import STYLE as PYTEST
 from .functions import at_ends, written

@@ -11,10 +11,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from mutabot.model import Operation
-
-from .project import Project
-from .styles.style import Place
-from .texts import Name, name_in
+from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.sources.texts import Name, name_in
+from mutabot.suggestion.styles.style import Place
 
 #: from the one a reader of the tests knows best
 ORACLE, PROBE, HAND = 0, 1, 2
@@ -49,8 +48,8 @@ def readings_at(project: Project, place: Place) -> list[Reading]:
     for probe in vocabulary.probes:
         name = _module_level(module, probe.target, place) if not probe.owner else None
         if name is not None:
-            for text in (f"{name.text}()", name.text):
-                found.append(Reading(text, PROBE, probe.tolerance, _needs(name)))
+            texts = (f"{name.text}()", name.text)
+            found += [Reading(text, PROBE, probe.tolerance, _needs(name)) for text in texts]
     for operation in vocabulary.operations:
         for text, name in _reading_calls(operation, module, place):
             found.append(Reading(text, PROBE, coarse, _needs(name)))
@@ -120,9 +119,9 @@ def _lookups(project: Project, place: Place) -> Iterator[tuple[str, tuple[str, .
                 continue
             key = node.slice
             names = {one.id for one in ast.walk(key) if isinstance(one, ast.Name)}
-            if isinstance(key, ast.Call | ast.Attribute) and names and names <= set(place.names):
-                if not any(isinstance(one, ast.Call) and one.args for one in ast.walk(key)):
-                    yield ast.unparse(key), tuple(sorted(names))
+            given = any(isinstance(one, ast.Call) and one.args for one in ast.walk(key))
+            if isinstance(key, ast.Call | ast.Attribute) and not given and names <= set(place.names):
+                yield ast.unparse(key), tuple(sorted(names))
 
 
 def _needs(name: Name) -> tuple[str, ...]:

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 import ast
 import difflib
+import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
+
+#: an import that is longer is not made longer still
+_JOINED = 70
+_NO_END = "\\ No newline at end of file\n"
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,11 +23,13 @@ class Insertion:
         file: relative to the project.
         after: the 1-based line after which they come; 0 for the beginning.
         lines: without their ends.
+        instead: how many lines after that line they stand for.
     """
 
     file: str
     after: int
     lines: tuple[str, ...]
+    instead: int = 0
 
 
 def changed_texts(root: Path, insertions: Iterable[Insertion]) -> dict[str, str]:
@@ -43,8 +51,9 @@ def _changed(text: str, insertions: list[Insertion]) -> str:
     if lines and not lines[-1].endswith("\n"):
         lines[-1] += end
     for after in sorted({one.after for one in insertions}, reverse=True):
-        added = [line + end for one in insertions if one.after == after for line in one.lines]
-        lines[after:after] = added
+        here = [one for one in insertions if one.after == after]
+        added = [line + end for one in here for line in one.lines]
+        lines[after : after + max(one.instead for one in here)] = added
     return "".join(lines)
 
 
@@ -55,9 +64,8 @@ def diff_of(root: Path, texts: Mapping[str, str]) -> str:
         is_new = not (root / file).exists()
         before = [] if is_new else read_text(root, file).splitlines(keepends=True)
         name = "/dev/null" if is_new else f"a/{file}"
-        for line in difflib.unified_diff(before, text.splitlines(keepends=True), name, f"b/{file}"):
-            parts.append(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n")
-    return "".join(parts)
+        parts += difflib.unified_diff(before, text.splitlines(keepends=True), name, f"b/{file}")
+    return "".join(one if one.endswith("\n") else f"{one}\n{_NO_END}" for one in parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,17 +113,55 @@ def top_names(module: ast.Module) -> set[str]:
 
 
 def imports_of(file: str, module: ast.Module, imports: Iterable[str]) -> list[Insertion]:
-    """What puts imports into a file: each before the first of its own that sorts after it."""
-    return [Insertion(file, _line_for(module, line), (line,)) for line in sorted(set(imports))]
+    """What puts imports into a file that lacks them: in their order, or into a line of the same module.
 
-
-def _line_for(module: ast.Module, line: str) -> int:
+    All imports of a file must come at once.
+    """
+    has = {ast.unparse(node) for node in module.body}
     own = [node for node in module.body if isinstance(node, ast.Import | ast.ImportFrom)]
     own = [node for node in own if getattr(node, "module", None) != "__future__"]
+    joined: dict[int, tuple[ast.ImportFrom, set[str]]] = {}
+    found = []
+    for line in sorted(set(imports), key=import_order):
+        new = ast.parse(line).body[0]
+        if ast.unparse(new) in has:
+            continue
+        host = _host(own, new)
+        if host is not None and isinstance(new, ast.ImportFrom):
+            joined.setdefault(host.lineno, (host, set()))[1].update(alias.name for alias in new.names)
+        else:
+            found.append(Insertion(file, _line_for(module, own, line), (line,)))
+    for host, names in joined.values():
+        texts = [f"{one.name} as {one.asname}" if one.asname else one.name for one in host.names]
+        line = f"from {host.module} import {', '.join(sorted({*texts, *names}, key=_by_case))}"
+        found.append(Insertion(file, host.lineno - 1, (line,), instead=1))
+    return found
+
+
+def import_order(line: str) -> tuple[bool, str]:
+    """Plain imports first, then by module."""
+    return line.startswith("from"), line.split()[1]
+
+
+def _host(own: list[ast.Import | ast.ImportFrom], new: ast.stmt) -> ast.ImportFrom | None:
+    """An import in one line from the same module, which the new one can join."""
+    if not isinstance(new, ast.ImportFrom):
+        return None
+    froms = [node for node in own if isinstance(node, ast.ImportFrom) and not node.level]
+    lines = [node for node in froms if node.module == new.module and node.lineno == node.end_lineno]
+    return next((node for node in lines if len(ast.unparse(node)) < _JOINED), None)
+
+
+def _by_case(name: str) -> tuple[int, str]:
+    """Constants, classes, all others: as formatters of imports have it."""
+    return (0 if name.isupper() else 1 if name[:1].isupper() else 2), name
+
+
+def _line_for(module: ast.Module, own: list[ast.Import | ast.ImportFrom], line: str) -> int:
     if own:
-        first = _run(own)
-        before = [node for node in first if _rank(ast.unparse(node)) < _rank(line)]
-        return (before[-1].end_lineno or 0) if before else first[0].lineno - 1
+        block = _block(own, line.split()[1].partition(".")[0])
+        before = [node for node in block if import_order(ast.unparse(node)) < import_order(line)]
+        return (before[-1].end_lineno or 0) if before else block[0].lineno - 1
     head = [
         node
         for node in module.body[:2]
@@ -124,20 +170,24 @@ def _line_for(module: ast.Module, line: str) -> int:
     return (head[-1].end_lineno or 0) if head else 0
 
 
-def _run(nodes: list[ast.Import | ast.ImportFrom]) -> list[ast.Import | ast.ImportFrom]:
-    """The last of the blocks of imports that no empty line divides."""
-    found = [nodes[0]]
-    for node in nodes[1:]:
-        if node.lineno - (found[-1].end_lineno or 0) > 1:
-            found = []
-            found.append(node)
-        else:
-            found.append(node)
-    return found
+def _block(own: list[ast.Import | ast.ImportFrom], package: str) -> list[ast.Import | ast.ImportFrom]:
+    """The imports that no empty line divides, among which one of this package belongs."""
+    blocks: list[list[ast.Import | ast.ImportFrom]] = [[own[0]]]
+    for before, node in pairwise(own):
+        if node.lineno - (before.end_lineno or 0) > 1:
+            blocks.append([])
+        blocks[-1].append(node)
+    if package in sys.stdlib_module_names:
+        return blocks[0]
+    same = [block for block in blocks if any(_package(node) == package for node in block)]
+    foreign = [node for node in own if _package(node) not in sys.stdlib_module_names]
+    others = [block for block in blocks if any(node in foreign for node in block)]
+    return (same or others or blocks)[0]
 
 
-def _rank(line: str) -> tuple[bool, str]:
-    return line.startswith("from"), line.split()[1]
+def _package(node: ast.Import | ast.ImportFrom) -> str:
+    name = node.module or "" if isinstance(node, ast.ImportFrom) else node.names[0].name
+    return name.partition(".")[0]
 
 
 def _is_text(node: ast.expr) -> bool:

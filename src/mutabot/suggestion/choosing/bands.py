@@ -1,12 +1,12 @@
 """How far a reading may be from what the original reads, from what it read in n runs.
 
-Three ways, by what the runs look like. They are told with the check, for a band is worth no more than they are.
+Three ways, by what the runs look like; which one it was is told with the check.
 
 * ``NORMAL``: the two-sided tolerance interval of a normal distribution: it holds a share ``CONTENT`` of all
   runs, with confidence ``CONFIDENCE``, as far as the spread is normal. Factor by Howe, "Two-sided tolerance
-  limits for normal populations", JASA 64 (1969); chi-squared quantiles by Wilson and Hilferty, PNAS 17 (1931).
-  Whether the spread may be normal says the test of Shapiro and Francia with Royston's significance,
-  Statistics and Computing 3 (1993).
+  limits for normal populations", JASA 64 (1969); chi-squared quantiles by Wilson and Hilferty, PNAS 17
+  (1931). Whether the spread may be normal says the test of Shapiro and Francia with Royston's
+  significance, Statistics and Computing 3 (1993).
 * ``FREE``: the range of the runs, widened by itself on both sides. That the range alone holds a share of all
   runs is known whatever the distribution: Wilks, Ann. Math. Stat. 12 (1941).
 * ``SAME``: every run read the same.
@@ -125,10 +125,10 @@ def rounded(middle: float, tolerance: float) -> tuple[str, str]:
     digits = 1 - math.floor(math.log10(tolerance))
     step = 10.0**-digits
     whole = math.ceil(tolerance / step - 1e-9) * step
-    return plain(round(middle, digits + 1)), plain(round(whole, digits))
+    return decimal(round(middle, digits + 1)), decimal(round(whole, digits))
 
 
-def plain(value: float) -> str:
+def decimal(value: float) -> str:
     """A number as a text of a program."""
     text = repr(float(value))
     return "0.0" if text == "-0.0" else text

@@ -1,17 +1,17 @@
-"""Which checks the measured readings allow: bands from the original alone, mutants only say which to look at."""
+"""Which checks the measured readings allow: bands come from the original alone, mutants say where to look."""
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from mutabot.suggestion.measuring.measure import Measured, Read
+from mutabot.suggestion.measuring.readings import HAND, PROBE, Reading
+from mutabot.suggestion.styles.style import Place
+
 from .bands import Band, band_of, rounded
-from .checks import Check, Expected
-from .measure import Measured, Read
-from .readings import HAND, PROBE, Reading
-from .styles.style import Place
+from .checks import Check, Expected, is_number
 
 #: values a label may have, runs that each must have been seen in, labels and partners that are tried
 _LABELS, _SEEN, _TRIED = 4, 4, 8
@@ -41,7 +41,10 @@ def _at(
     for reading in readings:
         best: Check | None = None
         for expected in _expected(reading, readings, labels, runs):
-            check = Check(place, reading, expected, _margins(reading.text, expected, mutants))
+            margins = _margins(reading.text, expected, mutants)
+            beside = [one for one in readings if one.text in {expected.label, expected.minus}]
+            needs = tuple(line for one in beside for line in one.needs)
+            check = Check(place, reading, expected, margins, needs)
             if check.margins and (best is None or len(check.trials) > len(best.trials)):
                 best = check
         if best is not None:
@@ -85,10 +88,10 @@ def _reading(text: str, known: Sequence[Reading], objects: Iterable[tuple[str, f
 
 def _labels(readings: Sequence[Reading], runs: Sequence[Read]) -> list[str]:
     """Readings with a few values that come again and again: what rounds can be told apart by."""
-    found = []
+    found: list[tuple[int, int, str]] = []
     for reading in readings:
         values = [read[reading.text] for read in runs]
-        if any(isinstance(value, float) and not value.is_integer() for value in values) and reading.way != HAND:
+        if reading.way != HAND and any(isinstance(value, float) and value % 1 for value in values):
             continue
         counts: dict[Any, int] = {}
         for value in values:
@@ -104,7 +107,7 @@ def _expected(
 ) -> Iterator[Expected]:
     """What a reading can be held against, the plainest first."""
     values = [read[reading.text] for read in runs]
-    if not all(_is_number(value) for value in values):
+    if not all(is_number(value) for value in values):
         yield from _equal(reading, labels, runs)
         return
     plain = _banded([None] * len(runs), values, reading.tolerance)
@@ -119,7 +122,7 @@ def _expected(
     partners = [one for one in readings if one.text != reading.text and _last(one) == _last(reading)]
     for partner in partners[:_TRIED]:
         others = [read[partner.text] for read in runs]
-        if all(_is_number(other) for other in others) and max(others) > min(others):
+        if all(is_number(other) for other in others) and max(others) > min(others):
             apart = [value - other for value, other in zip(values, others, strict=True)]
             beside = _banded([None] * len(runs), apart, max(reading.tolerance, partner.tolerance))
             if beside[1].tolerance <= _STEADIER * plain[1].tolerance:
@@ -151,7 +154,3 @@ def _banded(keys: Sequence[Any], values: Sequence[float], floor: float) -> tuple
 def _last(reading: Reading) -> str:
     found = _LAST.search(reading.text)
     return found[1] if found else reading.text
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

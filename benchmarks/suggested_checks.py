@@ -1,0 +1,92 @@
+"""What `mutabot suggest` does for the examples: scores before and after, and false alarms in fresh seeds.
+
+    python benchmarks/suggested_checks.py [--seeds N] [--file] [example ...]
+
+Runs `mutabot run` and `mutabot suggest` on a copy of each example, with all mutants of family `robot`, applies
+the diff (with `--file`: has the checks written to a new test file), runs the campaign again, and then the
+changed tests by plain pytest once per seed, 200 of a campaign seed that nothing was measured with. Prints both
+scores per family and role, the survivors that are left with the reason, and how many runs failed. Exits with 1
+if one did, or if no score rose.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+NAMES = ("paper", "pick_and_place", "scales")
+#: campaign seed of the runs that look for false alarms; the examples' own is 1
+OTHER_SEED = "20260"
+FILE = "tests/test_suggested.py"
+
+
+def main() -> int:
+    """All examples that are named; the exit code says whether each did as it should."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("examples", nargs="*", default=NAMES)
+    parser.add_argument("--seeds", type=int, default=200)
+    parser.add_argument("--file", action="store_true")
+    given = parser.parse_args()
+    return int(not all([_example(name, given.seeds, in_file=given.file) for name in given.examples]))
+
+
+def _example(name: str, seeds: int, *, in_file: bool) -> bool:
+    with tempfile.TemporaryDirectory(prefix="suggested-") as home:
+        project = Path(home, name)
+        shutil.copytree(EXAMPLES / name, project, ignore=shutil.ignore_patterns(".mutabot", "__pycache__"))
+        before = _mutabot(project, "run", "--family", "robot", "--json")
+        found = _mutabot(project, "suggest", "--json", *(["--write", FILE] if in_file else []))
+        if not in_file:
+            subprocess.run(["patch", "-p1", "-s"], cwd=project, input=found["diff"], text=True, check=True)
+        after = _mutabot(project, "run", "--family", "robot", "--json")
+        tests = [FILE] if in_file else sorted({one["test"] for one in found["suggestions"]})
+        alarms = _alarms(project, tests, seeds)
+    print(f"\n## {name}\n")
+    print("| family · role | score before | after | check score before | after |\n|---|---|---|---|---|")
+    for old, new in zip(before["groups"], after["groups"], strict=True):
+        cells = [old["score"], new["score"], old["check_score"], new["check_score"]]
+        print(f"| {old['family']} · {old['role']} |", " | ".join(f"{100 * one:.1f} %" for one in cells), "|")
+    for one in found["suggestions"]:
+        kills = ", ".join(f"#{kill['mutant']['number']}" for kill in one["kills"])
+        print(f"\n- `{one['statement']}` ({one['band']}, {one['runs']} runs) kills {kills}")
+    for one in found["unsolved"]:
+        mutant = one["mutant"]
+        word = "never" if one["never"] else "not"
+        print(f"- {word}: #{mutant['number']} {mutant['description']}: {one['reason']}")
+    print(f"\nfalse alarms: {len(alarms)} of {seeds * len(tests)} runs {alarms[:3] or ''}; dropped in the")
+    print(f"proof: {len(found['dropped'])}", flush=True)
+    rose = [new["score"] > old["score"] for old, new in zip(before["groups"], after["groups"], strict=True)]
+    return not alarms and any(rose)
+
+
+def _mutabot(project: Path, *words: str) -> dict[str, Any]:
+    command = [sys.executable, "-m", "mutabot", "-C", str(project), *words]
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True)
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def _alarms(project: Path, tests: list[str], seeds: int) -> list[str]:
+    """The seeds with which a test fails on the original, each with the last lines of what pytest said."""
+    found = []
+    for round in range(1, seeds + 1):
+        variables = {"MUTABOT_ROUND": str(round), "MUTABOT_CAMPAIGN_SEED": OTHER_SEED}
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests]
+        done = subprocess.run(
+            command, cwd=project, env={**os.environ, **variables}, capture_output=True, text=True, check=False
+        )
+        if done.returncode:
+            found.append(f"{round}: {done.stdout[-400:]}")
+    return found
+
+
+if __name__ == "__main__":
+    sys.exit(main())

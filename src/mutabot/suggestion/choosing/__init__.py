@@ -1,0 +1,1 @@
+"""From what was read to the fewest checks that notice most."""
