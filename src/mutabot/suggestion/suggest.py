@@ -15,6 +15,7 @@ from mutabot.suggestion.choosing.candidates import candidates
 from mutabot.suggestion.choosing.checks import Check
 from mutabot.suggestion.choosing.cover import smallest_cover
 from mutabot.suggestion.measuring.measure import measure
+from mutabot.suggestion.measuring.readings import WAY
 from mutabot.suggestion.sources.project import Project
 from mutabot.suggestion.sources.texts import diff_of
 
@@ -85,7 +86,7 @@ def suggest(
         replace(request, rounds=calibrated), project, places,
         [(one.mutant, rounds) for one, rounds in survivors.to_kill], quiet,
     )  # fmt: skip
-    found = candidates(measured)
+    found = candidates(project, measured)
     form: Form = InFile(project, write) if write is not None else InPlace(project)
     proof = Proof(request, form, quiet)
     fresh = range(calibrated, calibrated + seeds)
@@ -162,7 +163,7 @@ def _suggestion(check: Check, kills: Mapping[str, tuple[int, ...]], seeds: int) 
     return Suggestion(
         test=check.place.node,
         style=check.place.style,
-        moment="end of the test",
+        moment="at any moment" if check.reading.way == WAY else "end of the test",
         looks_at=check.looked_at,
         statement=check.statement,
         tolerance=band.tolerance if band is not None else None,

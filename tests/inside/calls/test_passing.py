@@ -16,6 +16,15 @@ ROBOT = """
         def __iter__(self): return self
         def __next__(self): return next(self.parts)
 
+    class Arm:
+        def move(self, x):
+            LOG.append(x)
+            return x
+
+        async def amove(self, x):
+            LOG.append(x)
+            return x
+
     def move(x):
         LOG.append(x)
         return x
@@ -64,6 +73,19 @@ def test_plain_and_async_calls_leave_the_same_trace(make_stage: Make) -> None:
         traces.append(session.recorder.trace)
     assert traces[0] == traces[1]
     assert len(traces[0]) == 1
+
+
+@pytest.mark.parametrize("bound", [True, False])
+@pytest.mark.parametrize("name", ["move", "amove"])
+def test_a_call_through_the_class_is_read_like_any_other(make_stage: Make, name: str, bound: bool) -> None:
+    """As a wrapper that a test puts around a method calls it."""
+    call = f"robot.Arm().{name}(0.25)" if bound else f"robot.Arm.{name}(robot.Arm(), 0.25)"
+    call = f"await {call}" if name == "amove" else call
+    stage = make_stage(ROBOT, program(call), vocabulary(f"Arm.{name}"))
+    session = stage.session()
+    assert stage.run(session) == 0.25
+    (hit,) = session.recorder.trace
+    assert hit[1] == {"x": 0.25}
 
 
 @pytest.mark.parametrize(

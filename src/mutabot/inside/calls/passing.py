@@ -14,7 +14,9 @@ from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from fnmatch import fnmatchcase
 from types import CodeType, FrameType, TracebackType
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
+
+import wrapt
 
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import Meter
@@ -140,6 +142,7 @@ class Passing:
             site = self._site(sys._getframe(1), where)
             if site is None:
                 return wrapped(*args, **kwargs)
+            wrapped = _bound(wrapped, instance)
             is_async = inspect.iscoroutinefunction(wrapped)
             means = where.means if where is not None else None
             on_its_way = self._pass(door, site, is_async, wrapped, instance, args, kwargs, means)
@@ -253,6 +256,15 @@ class Passing:
             self._along.after(len(self._recorder.trace))
         if self.on_end is not None:
             self.on_end(call, read)
+
+
+def _bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:
+    """A method that is called through its class, bound: its arguments are then those of any other call."""
+    if instance is None or not isinstance(wrapped, wrapt.PartialCallableObjectProxy):
+        return wrapped
+    function = getattr(wrapped, "__wrapped__")  # noqa: B009  # its stubs do not name it
+    bind = getattr(type(function), "__get__", None)
+    return wrapped if bind is None else cast("Callable[..., Any]", bind(function, instance, type(instance)))
 
 
 def _marks_time(door: Door) -> bool:

@@ -49,36 +49,42 @@ def _lines(one: Suggestion, found: Suggestions) -> Iterator[str]:
     yield one.statement
     yield f"{one.moment}; {_band(one)}"
     yield f"false alarms: {_alarms(one)}"
-    yield f"kills {'; '.join(_kill(mutant, rounds, found) for mutant, rounds in one.kills.items())}"
+    yield f"kills {_kills(one, found)}"
 
 
 def _band(one: Suggestion) -> str:
-    if one.tolerance is None or one.spread is None or one.spread == 0:
-        return f"equal in all {plural(one.runs, 'run')} of the original"
+    if one.tolerance is None or not one.spread:
+        return f"equal in {plural(one.runs, 'run')} of the original"
     factor = f", {one.factor:.1f} standard deviations" if one.factor is not None else ""
     return (
-        f"band ± {one.tolerance:g} ({one.band}{factor}): {plural(one.runs, 'run')} of the original "
+        f"within {one.tolerance:g} ({one.band}{factor}); {plural(one.runs, 'run')} of the original "
         f"spread {one.spread:.3g}"
     )
 
 
 def _alarms(one: Suggestion) -> str:
+    seen = f"none in {one.fresh} fresh seeds, which alone shows at most {_percent(one.unseen)}"
     if one.factor is not None:
-        model = f"at most {100 * one.alarm:.2g} % of runs if the spread is normal"
-    else:
-        model = f"at most {100 * one.alarm:.2g} % of runs, whatever the distribution"
-    return (
-        f"{model} (95 % confidence); none in {one.fresh} fresh seeds, which alone shows no more than "
-        f"{100 * one.unseen:.2g} %"
-    )
+        return f"at most {_percent(one.alarm)} of runs if the spread is normal; {seen} (95 % confidence)"
+    return f"{seen}; the {one.runs} runs before show at most {_percent(one.alarm)} (95 % confidence)"
 
 
-def _kill(mutant: str, rounds: Sequence[int], found: Suggestions) -> str:
-    if len(rounds) == found.rounds:
-        where = "all rounds" if found.rounds > 1 else "the round"
-    else:
-        where = f"round{'s' if len(rounds) > 1 else ''} {', '.join(str(round + 1) for round in rounds)}"
-    return f"#{found.numbers.get(mutant, 0)} in {where}"
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g} %"
+
+
+def _kills(one: Suggestion, found: Suggestions) -> str:
+    """The mutants by the rounds in which they are killed: ``#7, #9 in all rounds``."""
+    by_rounds: dict[tuple[int, ...], list[int]] = {}
+    for mutant, rounds in one.kills.items():
+        by_rounds.setdefault(tuple(rounds), []).append(found.numbers.get(mutant, 0))
+    parts = []
+    for rounds, numbers in by_rounds.items():
+        where = f" in round{'s' if len(rounds) > 1 else ''} {', '.join(str(one + 1) for one in rounds)}"
+        if len(rounds) == found.rounds:
+            where = " in all rounds" if found.rounds > 1 else ""
+        parts.append(", ".join(f"#{number}" for number in sorted(numbers)) + where)
+    return "; ".join(parts)
 
 
 def _left(title: str, unsolved: Sequence[Unsolved], found: Suggestions) -> Iterator[RenderableType]:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from mutabot.suggestion.measuring.measure import Measured, Read
-from mutabot.suggestion.measuring.readings import HAND, PROBE, Reading
+from mutabot.suggestion.measuring.readings import HAND, PROBE, WAY, Reading
+from mutabot.suggestion.measuring.watches import watch_of
+from mutabot.suggestion.sources.project import Project
 from mutabot.suggestion.styles.style import Place
 
 from .bands import Band, band_of, rounded
@@ -18,27 +21,43 @@ _LABELS, _SEEN, _TRIED = 4, 4, 8
 #: how much less a reading must spread beside a label or a partner than by itself
 _STEADIER = 0.5
 _LAST = re.compile(r"(\w+)\W*$")
+_WAY = re.compile(r"(max|min|all) (.+)")
 
 
-def candidates(measured: Measured) -> list[Check]:
-    """All checks that would notice a survivor; per reading the plainest that notices most."""
-    found: list[Check] = []
+def candidates(project: Project, measured: Measured) -> list[Check]:
+    """All checks that would notice a survivor; per reading the plainest that notices most.
+
+    Those along the way of a test are for survivors that none at the end of a test would notice.
+    """
+    at_ends = list(_all(project, measured, along=False))
+    noticed = {mutant for one in at_ends for mutant in one.margins}
+    way = [
+        replace(one, margins={key: found for key, found in one.margins.items() if key not in noticed})
+        for one in _all(project, measured, along=True)
+    ]
+    return [*at_ends, *(one for one in way if one.margins)]
+
+
+def _all(project: Project, measured: Measured, *, along: bool) -> Iterator[Check]:
     for place, originals in measured.originals.items():
         mutants = measured.mutants.get(place, {})
         runs = list(originals.values())
         if mutants and runs:
-            found += _at(place, runs, mutants, _readings(measured, place, runs))
-    return found
+            ends = _readings(measured, place, runs)
+            chosen = _along(project, measured, place, runs) if along else ends
+            yield from _at(place, runs, mutants, chosen, ends)
 
 
 def _at(
     place: Place,
     runs: Sequence[Read],
     mutants: Mapping[str, Mapping[tuple[int, str], Read]],
+    chosen: Sequence[Reading],
     readings: Sequence[Reading],
 ) -> Iterator[Check]:
+    """The best check of each of the chosen readings; all ``readings`` may stand beside it."""
     labels = _labels(readings, runs)
-    for reading in readings:
+    for reading in chosen:
         best: Check | None = None
         for expected in _expected(reading, readings, labels, runs):
             margins = _margins(reading.text, expected, mutants)
@@ -68,7 +87,23 @@ def _readings(measured: Measured, place: Place, runs: Sequence[Read]) -> list[Re
     """The readings that every run of the original has, part by part."""
     known = measured.readings[place]
     texts = [text for text in runs[0] if all(text in read for read in runs)]
-    return [_reading(text, known, measured.objects) for text in texts]
+    return [_reading(text, known, measured.objects) for text in texts if not _WAY.match(text)]
+
+
+def _along(project: Project, measured: Measured, place: Place, runs: Sequence[Read]) -> list[Reading]:
+    """What every run of the original saw on the way."""
+    found = []
+    for text in runs[0]:
+        match = _WAY.match(text)
+        if match is None or not all(text in read for read in runs):
+            continue
+        kind, look = match[1], match[2]
+        at_end = _reading(look, measured.readings[place], measured.objects)
+        watch, needs = watch_of(project, measured.commands, place, look)
+        shown = watch.name if kind == "all" else f"{kind}({watch.name})"
+        needed = (*at_end.needs, *needs)
+        found.append(Reading(text, WAY, at_end.tolerance, needed, (), watch, shown))
+    return found
 
 
 def _reading(text: str, known: Sequence[Reading], objects: Iterable[tuple[str, float]]) -> Reading:

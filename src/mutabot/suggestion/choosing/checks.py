@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeGuard
 
 from mutabot.suggestion.measuring.measure import Read
-from mutabot.suggestion.measuring.readings import Reading
+from mutabot.suggestion.measuring.readings import WAY, Reading
 from mutabot.suggestion.styles.choice import style_of
 from mutabot.suggestion.styles.style import Addition, Place
 
@@ -83,7 +83,7 @@ class Check:
     def looked_at(self) -> str:
         """The expression that it holds against what it expects."""
         minus = self.expected.minus
-        return self.reading.text + (f" - {minus}" if minus is not None else "")
+        return self.reading.expression + (f" - {minus}" if minus is not None else "")
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -108,6 +108,8 @@ class Check:
         return self.lines[-1]
 
     def _text(self, value: Any) -> str:
+        if self.reading.way == WAY and self.expected.band is None:
+            return str(value)  # a list, as it was noted
         return decimal(value) if self.expected.band is not None else literal(value)
 
     @property
@@ -115,10 +117,13 @@ class Check:
         """What it looks at, in words that can be a step of a scenario."""
         expected = self.expected
         of = f"what {said(expected.label)} asks for" if expected.label is not None else None
+        what = said(self.looked_at)
+        if self.reading.watch is not None:
+            what = said(f"{self.reading.text} on the way".replace("args[0]", "").removeprefix("all "))
         if expected.band is None:
-            return f"{said(self.looked_at)} is {of or said(self._text(expected.values[None]))}"
+            return f"{what} is {of or said(self._text(expected.values[None]))}"
         near = of or self._text(expected.values[None])
-        return f"{said(self.looked_at)} is within {decimal(expected.band.tolerance)} of {near}"
+        return f"{what} is within {decimal(expected.band.tolerance)} of {near}"
 
     def addition(self) -> Addition:
         """It as something that is added to a test."""
@@ -129,6 +134,7 @@ class Check:
             self.words,
             tuple(name for name in self.place.names if name in names),
             (*self.reading.needs, *self.needs, *style_of(self.place).needs(self.statement)),
+            self.reading.watch,
         )
 
 

@@ -18,12 +18,13 @@ from mutabot.campaign.request import Progress, Request
 from mutabot.inside.readings.noted import values
 from mutabot.model import Mutant, Probe
 from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import changed_texts
+from mutabot.suggestion.sources.texts import Insertion, changed_texts
 from mutabot.suggestion.sources.workspace import copy_of
 from mutabot.suggestion.styles.choice import insertions_of
 from mutabot.suggestion.styles.style import Addition, Place
 
-from .readings import Reading, of_objects, readings_at
+from .commands import Command, commands_of
+from .readings import PROBE, Reading, of_objects, readings_at
 
 #: the probe that carries readings out of the tests' process
 _PROBE = f"{values.__module__}:{values.__name__}"
@@ -40,14 +41,15 @@ class Measured:
         originals: per place, by (round, node id), what the original's tests read.
         mutants: the same per place and mutant id.
         readings: per place, what is known of its readings.
-        lost: survivors that could not be run again, with the reason.
+        objects: readings of objects, each with its tolerance.
+        commands: after which it was looked.
     """
 
     originals: dict[Place, dict[tuple[int, str], Read]] = field(default_factory=dict)
     mutants: dict[Place, dict[str, dict[tuple[int, str], Read]]] = field(default_factory=dict)
     readings: dict[Place, list[Reading]] = field(default_factory=dict)
     objects: list[tuple[str, float]] = field(default_factory=list)
-    lost: dict[str, str] = field(default_factory=dict)
+    commands: list[Command] = field(default_factory=list)
 
 
 def measure(
@@ -66,12 +68,14 @@ def measure(
 
     Raises what a baseline raises.
     """
-    measured = Measured(objects=of_objects(project))
+    measured = Measured(objects=of_objects(project), commands=commands_of(project))
     additions = []
     for place in dict.fromkeys(places.values()):
         measured.readings[place] = readings_at(project, place)
         additions.append(_noting(place, measured.readings[place], measured.objects))
-    texts = changed_texts(project.root, insertions_of(project, additions))
+    insertions = insertions_of(project, additions)
+    insertions += [_watching(project, measured, file) for file in {one.file for one in places.values()}]
+    texts = changed_texts(project.root, insertions)
     with copy_of(request, texts) as copied:
         probes = (*copied.vocabulary.probes, Probe(_PROBE, 1e9))
         noting = replace(copied, vocabulary=replace(copied.vocabulary, probes=probes))
@@ -124,6 +128,19 @@ def _take(
         }
         if place is not None and read and end.outcome == "passed":
             found.setdefault(place, {})[round, end.test] = read
+
+
+def _watching(project: Project, measured: Measured, file: str) -> Insertion:
+    """The lines that look after every command of the tests of a file."""
+    module = values.__module__
+    known = next(found for place, found in measured.readings.items() if place.file == file)
+    looks = ", ".join(
+        f"({one.text!r}, lambda: {one.text})" for one in known if one.way == PROBE and not one.uses
+    )
+    classes = [target for target, _ in measured.objects]
+    line = f"_mutabot_watch({measured.commands!r}, [{looks}], {classes!r})"
+    lines = (f"from {module} import watch as _mutabot_watch", line)
+    return Insertion(file, len(project.lines(file)), lines)
 
 
 def _noting(place: Place, readings: Sequence[Reading], objects: Sequence[tuple[str, float]]) -> Addition:

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from mutabot.model import Operation
 from mutabot.suggestion.sources.project import Project
 from mutabot.suggestion.sources.texts import Name, name_in
-from mutabot.suggestion.styles.style import Place
+from mutabot.suggestion.styles.style import Place, Watch
 
 #: from the one a reader of the tests knows best
-ORACLE, PROBE, HAND = 0, 1, 2
+ORACLE, PROBE, HAND, WAY = 0, 1, 2, 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,10 +25,12 @@ class Reading:
 
     Attributes:
         text: the expression.
-        way: ``ORACLE``, ``PROBE`` or ``HAND``.
+        way: ``ORACLE``, ``PROBE``, ``HAND``, or ``WAY`` for one along the way of a test.
         tolerance: greatest difference of equal worlds in it.
         needs: imports that it needs.
         uses: names of the place that it uses.
+        watch: what looks on the way, for a reading along it.
+        shown: the expression where ``text`` is only what it was noted under.
     """
 
     text: str
@@ -36,6 +38,13 @@ class Reading:
     tolerance: float
     needs: tuple[str, ...] = ()
     uses: tuple[str, ...] = ()
+    watch: Watch | None = None
+    shown: str = ""
+
+    @property
+    def expression(self) -> str:
+        """As it stands in a test."""
+        return self.shown or self.text
 
 
 def readings_at(project: Project, place: Place) -> list[Reading]:

@@ -7,29 +7,29 @@ from collections.abc import Iterable, Sequence
 
 from mutabot.suggestion.sources.project import Project
 
-from .style import Function, end_of
+from .style import Function
 
 
-def text_with(project: Project, file: str, function: Function, additions: Sequence[str]) -> list[str]:
-    """The lines of a function, with its decorators, and with more statements at its end."""
-    lines = project.lines(file)
+def text_of(function: Function, lines: Sequence[str]) -> list[str]:
+    """The lines of a function, with its decorators."""
     start = min([function.lineno, *(one.lineno for one in function.decorator_list)]) - 1
-    found = end_of(function, lines)
-    assert found is not None, "a place has an end"
-    after, indent = found
-    end = function.end_lineno or function.lineno
-    return [*lines[start:after], *(indent + line for line in additions), *lines[after:end]]
+    return list(lines[start : function.end_lineno or function.lineno])
 
 
-def imports_for(project: Project, file: str, nodes: Iterable[ast.AST], more: Iterable[str] = ()) -> list[str]:
-    """The imports that give these pieces of a file's text their names elsewhere.
+def imports_for(
+    project: Project,
+    file: str,
+    module: ast.Module,
+    nodes: Iterable[ast.AST],
+    more: Iterable[str] = (),
+    without: Iterable[str] = (),
+) -> list[str]:
+    """The imports that give these pieces of a file's text, and ``more`` names, their meaning elsewhere.
 
-    What the file imports is imported likewise; what it defines is imported from it.
+    What the file imports is imported likewise; what it defines is imported from it, but for ``without``.
     """
-    module = project.module(file)
-    assert module is not None
     used = {one.id for node in nodes for one in ast.walk(node) if isinstance(one, ast.Name)} | set(more)
-    used = _with_fixtures(module, used)
+    used = _with_fixtures(module, used) - set(without)
     own: list[str] = []
     found: list[str] = []
     for node in module.body:

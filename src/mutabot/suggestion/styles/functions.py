@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from itertools import groupby
 from typing import TypeGuard
 
 from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import Insertion, imports_of
+from mutabot.suggestion.sources.texts import Insertion, changed_texts, imports_of
 
-from .copying import imports_for, text_with
+from .copying import imports_for, text_of
 from .style import (
     Addition,
     Function,
@@ -24,6 +23,7 @@ from .style import (
     plain_assertion_within,
     put_at_end,
 )
+from .watching import asked_for, at_start, fixture, helper, watcher
 
 
 class _Functions:
@@ -54,38 +54,59 @@ class _Functions:
         return written(project, file, additions)
 
 
-def at_ends(project: Project, additions: Sequence[Addition]) -> list[Insertion]:
-    """What puts statements at the ends of functions and methods, with the imports they need."""
+def at_ends(project: Project, additions: Sequence[Addition], *, fixtures: bool = True) -> list[Insertion]:
+    """What puts statements at the ends of functions and methods, with all that they need.
+
+    ``fixtures``: whether the tests can ask for fixtures; else they are methods of a ``TestCase``.
+    """
     file = additions[0].place.file
-    module = project.module(file)
+    module, lines = project.module(file), project.lines(file)
     assert module is not None
-    found = imports_of(file, module, (line for one in additions for line in one.imports))
-    for one in additions:
-        function = functions_of(module, one.place.node.split("::")[1:])
+    watches = list(dict.fromkeys(one.watch for one in additions if one.watch is not None))
+    imports = [line for one in additions for line in one.imports]
+    imports += ["import pytest" if fixtures else "from unittest import mock"] if watches else []
+    found = imports_of(file, module, imports)
+    for place in dict.fromkeys(one.place for one in additions):
+        function = functions_of(module, place.node.split("::")[1:])
         assert function is not None, "a place has a function"
-        found += put_at_end(file, function, project.lines(file), one.lines)
+        here = [one for one in additions if one.place == place]
+        names = list(dict.fromkeys(one.watch.name for one in here if one.watch is not None))
+        if fixtures:
+            found += asked_for(file, function, lines, names)
+        else:
+            found += at_start(file, function, lines, [f"{name} = {watcher(name)}(self)" for name in names])
+        found += put_at_end(file, function, lines, [line for one in here for line in one.lines])
+    for watch in watches:
+        text = fixture(watch) if fixtures else helper(watch)
+        found.append(Insertion(file, len(lines), ("", "", *text)))
     return found
 
 
-def written(project: Project, file: str, additions: Sequence[Addition]) -> Written:
+def written(project: Project, file: str, additions: Sequence[Addition], *, fixtures: bool = True) -> Written:
     """The functions with their additions; methods in a subclass, whose other tests do not run again."""
-    module = project.module(file)
-    assert module is not None
-    imports = [line for one in additions for line in one.imports]
+    text = changed_texts(project.root, at_ends(project, additions, fixtures=fixtures))[file]
+    module = ast.parse(text)
+    imports: list[str] = []
     lines: list[str] = []
-    for node, same in groupby(additions, key=lambda one: one.place.node):
-        path, added = node.split("::")[1:], [line for one in same for line in one.lines]
+    names = [one.watch.name for one in additions if one.watch is not None]
+    helpers = [name if fixtures else watcher(name) for name in dict.fromkeys(names)]
+    paths = [[name] for name in helpers]
+    paths += [
+        list(path) for path in dict.fromkeys(tuple(one.place.node.split("::")[1:]) for one in additions)
+    ]
+    for path in paths:
         function = functions_of(module, path)
-        assert function is not None, "a place has a function"
-        imports += imports_for(project, file, [function], _names(function))
-        text = text_with(project, file, function, added)
+        assert function is not None, "it was put there, or is a place"
+        used = arguments_of(function)
+        imports += imports_for(project, file, module, [function], used, without=helpers)
+        part = text_of(function, text.splitlines())
         if len(path) > 1:
             imports.append(f"import {project.import_name(file)}")
-            text = [*_class_head(project, file, module, path), *text]
-        lines += ["", "", *text]
+            part = [*_class_head(project, file, module, path), *part]
+        lines += ["", "", *part]
     marks = [line for line in module.body if _is_marks(line)]
     if marks:
-        imports += imports_for(project, file, [line.value for line in marks])
+        imports += imports_for(project, file, module, [line.value for line in marks])
         lines = ["", *map(ast.unparse, marks), *lines]
     return Written(tuple(dict.fromkeys(imports)), tuple(lines))
 

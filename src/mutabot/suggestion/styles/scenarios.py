@@ -21,6 +21,7 @@ from .style import (
     plain_assertion_equal,
     plain_assertion_within,
 )
+from .watching import fixture
 
 _KINDS = ("given", "when", "then", "step")
 _FIELD = re.compile(r"\{(\w*)[^}]*\}")
@@ -61,8 +62,9 @@ class _Scenarios:
             step = f"{scenario.indent}{keyword} {one.says}"
             found.append(Insertion(one.place.feature, scenario.end, (step,)))
         end = len(project.lines(file))
-        found += [Insertion(file, end, tuple(lines)) for lines in _steps(additions, module, project)]
+        found += [Insertion(file, end, tuple(lines)) for lines in _steps(additions, module)]
         imports = [line for one in additions for line in one.imports]
+        imports += ["import pytest"] if any(one.watch is not None for one in additions) else []
         return found + imports_of(file, module, [*imports, "from pytest_bdd import then"])
 
     def within(self, text: str, value: str, tolerance: str) -> str:
@@ -98,14 +100,17 @@ class _Scenarios:
             lines.append(f'scenarios(str(Path(__file__).with_name("{feature}")))')
         module = project.module(file)
         assert module is not None
-        for step in _steps(additions, module, project):
+        for step in _steps(additions, module):
             lines += step
-        imports += imports_for(project, file, _annotations(additions, module))
+        imports += imports_for(project, file, module, _annotations(additions, module))
+        imports += ["import pytest"] if any(one.watch is not None for one in additions) else []
         return Written(tuple(dict.fromkeys(imports)), tuple(lines), tuple(files))
 
 
-def _steps(additions: Sequence[Addition], module: ast.Module, project: Project) -> Iterator[list[str]]:
-    """The functions of these steps, with the annotations that the file's other steps have."""
+def _steps(additions: Sequence[Addition], module: ast.Module) -> Iterator[list[str]]:
+    """The functions of these steps and what they need, annotated as the file's other steps are."""
+    for watch in dict.fromkeys(one.watch for one in additions if one.watch is not None):
+        yield ["", "", *fixture(watch, for_all=True)]
     taken = top_names(module)
     annotated = _annotated(module)
     is_typed = any(isinstance(node, ast.FunctionDef) and node.returns is not None for node in module.body)
@@ -116,7 +121,8 @@ def _steps(additions: Sequence[Addition], module: ast.Module, project: Project) 
             number += 1
             name = f"{base}_{number}"
         taken.add(name)
-        given = ", ".join(annotated.get(use, use) for use in one.uses)
+        uses = [*one.uses, *([one.watch.name] if one.watch is not None else [])]
+        given = ", ".join(annotated.get(use, use) for use in uses)
         quoted = '"' + one.says.replace("\\", "\\\\").replace('"', '\\"') + '"'
         head = f"def {name}({given}){' -> None' if is_typed else ''}:"
         yield ["", "", f"@then({quoted})", head, *(f"    {line}" for line in one.lines)]

@@ -38,6 +38,21 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
+class Watch:
+    """What looks after every command on the way of a test.
+
+    Attributes:
+        name: of the list in which it is kept.
+        look: expression that is looked at; ``args[0]`` in it is the object that was commanded.
+        commands: each an expression of its owner and its name there.
+    """
+
+    name: str
+    look: str
+    commands: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Addition:
     """What is added to the end of a test.
 
@@ -47,6 +62,7 @@ class Addition:
         says: what they look at, in words that can be a step of a scenario.
         uses: names of the place that the statements use.
         imports: what they need.
+        watch: what they need to be there on the way of the test, or None.
     """
 
     place: Place
@@ -54,6 +70,7 @@ class Addition:
     says: str
     uses: tuple[str, ...] = ()
     imports: tuple[str, ...] = ()
+    watch: Watch | None = None
 
 
 @dataclass(frozen=True, slots=True)

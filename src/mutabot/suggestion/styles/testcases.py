@@ -26,7 +26,7 @@ class _TestCases:
         return Place(self.name, file, node, found.names) if found is not None else None
 
     def at_end(self, project: Project, additions: Sequence[Addition]) -> list[Insertion]:
-        return at_ends(project, additions)
+        return at_ends(project, additions, fixtures=False)
 
     def within(self, text: str, value: str, tolerance: str) -> str:
         return f"self.assertAlmostEqual({text}, {value}, delta={tolerance})"
@@ -43,7 +43,7 @@ class _TestCases:
         return ()
 
     def written(self, project: Project, file: str, additions: Sequence[Addition]) -> Written:
-        return written(project, file, additions)
+        return written(project, file, additions, fixtures=False)
 
 
 def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
