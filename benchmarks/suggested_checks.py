@@ -2,11 +2,11 @@
 
     python benchmarks/suggested_checks.py [--seeds N] [--file] [example ...]
 
-Runs `mutabot run` and `mutabot suggest` on a copy of each example, with all mutants of family `robot`, applies
-the diff (with `--file`: has the checks written to a new test file), runs the campaign again, and then the
-changed tests by plain pytest once per seed, 200 of a campaign seed that nothing was measured with. Prints both
-scores per family and role, the survivors that are left with the reason, and how many runs failed. Exits with 1
-if one did, or if no score rose.
+Runs `mutabot run` and `mutabot suggest` on a copy of each example, with all mutants of family `robot`,
+applies the diff (with `--file`: has the checks written to a new test file), runs the campaign again, and then
+the changed tests by plain pytest once per seed, 200 of a campaign seed that nothing was measured with. Prints
+both scores per family and role, the survivors that are left with the reason, and how many runs failed. Exits
+with 1 if one did, or if no score rose.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, default=200)
     parser.add_argument("--file", action="store_true")
     given = parser.parse_args()
-    return int(not all([_example(name, given.seeds, in_file=given.file) for name in given.examples]))
+    good = [_example(name, given.seeds, in_file=given.file) for name in given.examples]
+    return int(not all(good))
 
 
 def _example(name: str, seeds: int, *, in_file: bool) -> bool:
@@ -61,8 +62,8 @@ def _example(name: str, seeds: int, *, in_file: bool) -> bool:
         mutant = one["mutant"]
         word = "never" if one["never"] else "not"
         print(f"- {word}: #{mutant['number']} {mutant['description']}: {one['reason']}")
-    print(f"\nfalse alarms: {len(alarms)} of {seeds * len(tests)} runs {alarms[:3] or ''}; dropped in the")
-    print(f"proof: {len(found['dropped'])}", flush=True)
+    print(f"\nfalse alarms: {len(alarms)} of {seeds} runs {alarms[:3] or ''}", flush=True)
+    print(f"dropped in the proof: {len(found['dropped'])}", flush=True)
     rose = [new["score"] > old["score"] for old, new in zip(before["groups"], after["groups"], strict=True)]
     return not alarms and any(rose)
 

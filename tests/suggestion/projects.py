@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from textwrap import dedent
 from typing import Any
@@ -13,15 +15,12 @@ import pytest
 
 from mutabot.cli.app import main
 
-ROBOT = '''
-    """An arm on a rail that can go up and down; where it stops is a little uncertain."""
-
+ROBOT = """
     import random
 
     class Arm:
         def __init__(self):
             self.x, self.z, self.closed = 0.0, 0.5, False
-            self.lowest = 0.5
 
         def move_by(self, x=0.0, z=0.0):
             self.x += x + random.gauss(0.0, 0.0005)
@@ -32,14 +31,18 @@ ROBOT = '''
 
         def state(self):
             return {"x": self.x, "z": self.z, "closed": self.closed}
-'''
+"""
 PROGRAM = """
-    def run(arm):
+    def by_function(arm):
         arm.grip(False)
-        arm.move_by(x=0.3)
-        arm.move_by(z=-0.2)
+        arm.move_by(x=0.3, z=-0.1)
         arm.grip(True)
-        arm.move_by(z=0.1)
+
+    def by_case(arm):
+        arm.move_by(x=0.3, z=-0.1)
+
+    def by_steps(arm):
+        arm.move_by(x=0.3, z=-0.1)
 """
 VOCABULARY = """
     [[probe]]
@@ -66,12 +69,10 @@ PYTEST = """
         return Arm()
 
 
-    @pytest.mark.parametrize("times", [1, 2])
-    def test_goes_along_the_rail(arm, times):
-        for _ in range(times):
-            arm.x = 0.0
-            arm.z = 0.5
-            mission.run(arm)
+    @pytest.mark.parametrize("closed", [True, False])
+    def test_goes_along_the_rail(arm, closed):
+        arm.closed = closed
+        mission.by_function(arm)
         assert arm.x == pytest.approx(0.3, abs=0.05)
 """
 UNITTEST = """
@@ -86,7 +87,7 @@ UNITTEST = """
             self.arm = Arm()
 
         def test_goes_along_the_rail(self):
-            mission.run(self.arm)
+            mission.by_case(self.arm)
             self.assertAlmostEqual(self.arm.x, 0.3, delta=0.05)
 
         def test_stands_still(self):
@@ -127,7 +128,7 @@ STEPS = """
 
     @when("the program has run")
     def the_program_has_run(arm: Arm) -> None:
-        mission.run(arm)
+        mission.by_steps(arm)
 
 
     @then(parsers.parse("it is at {place:f} m"))
@@ -136,14 +137,24 @@ STEPS = """
 """
 
 
-def make(folder: Path, tests: dict[str, str], **files: str) -> Path:
-    """A project on disk: the robot, the program, these tests; ``files`` go before what is usual."""
-    texts = {"robot.py": ROBOT, "mission.py": PROGRAM, "robot.toml": VOCABULARY}
-    settings = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\nrounds = 1\nprivate_files = false\n'
-    texts["mutabot.toml"] = settings
-    texts["pytest.ini"] = "[pytest]\npythonpath = .\nmarkers = slow\n"
+#: tests by their files; each file runs a function of the program that no other runs
+TESTS = {
+    "test_functions.py": PYTEST,
+    "test_cases.py": UNITTEST,
+    "test_steps.py": STEPS,
+    "rail.feature": SCENARIO,
+}
+STYLES = {"test_functions.py": "pytest", "test_cases.py": "unittest", "test_steps.py": "pytest-bdd"}
+#: what campaigns load, which is less than all that is installed
+_PYTEST = "[pytest]\npythonpath = .\nmarkers = slow\naddopts = -p pytest_bdd.plugin\n"
+_SETTINGS = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\nprivate_files = false\n'
+
+
+def make(folder: Path, tests: Mapping[str, str] = TESTS, program: str = PROGRAM) -> Path:
+    """A project on disk: the robot, its program and these tests."""
+    texts = {"robot.py": ROBOT, "robot.toml": VOCABULARY, "mutabot.toml": _SETTINGS, "pytest.ini": _PYTEST}
+    texts["mission.py"] = program
     texts |= {f"tests/{name}": text for name, text in tests.items()}
-    texts |= {name.replace("_toml", ".toml"): text for name, text in files.items()}
     for name, text in texts.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(dedent(text).lstrip("\n"))
@@ -163,8 +174,10 @@ def patched(folder: Path, diff: str) -> None:
     subprocess.run(["patch", "-p1", "-s"], cwd=folder, input=diff, text=True, check=True)
 
 
-def passes(folder: Path, *tests: str) -> bool:
-    """Whether plain pytest passes in a project, warnings being errors."""
+def passes(folder: Path, *tests: str) -> tuple[int, int]:
+    """How many tests of a project fail and pass with plain pytest, warnings being errors."""
     command = [sys.executable, "-m", "pytest", "-q", "-W", "error", "-p", "no:cacheprovider", *tests]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    return done.returncode == 0
+    counts = {word: int(number) for number, word in re.findall(r"(\d+) (failed|passed|errors?)", done.stdout)}
+    assert not {"error", "errors"} & counts.keys(), done.stdout
+    return counts.get("failed", 0), counts.get("passed", 0)

@@ -1,4 +1,4 @@
-"""``mutabot suggest`` on small projects in all three styles: what it suggests really kills."""
+"""``mutabot suggest`` on a small project with tests in three styles: what it suggests really kills."""
 
 from __future__ import annotations
 
@@ -8,14 +8,11 @@ from typing import Any
 import pytest
 
 from mutabot.cli.app import main
+from mutabot.journal.journal import Journal
 
-from .projects import PYTEST, SCENARIO, STEPS, UNITTEST, found_by, make, passes, patched
+from .projects import STYLES, TESTS, found_by, make, passes, patched
 
-STYLES = {
-    "pytest": {"test_rail.py": PYTEST},
-    "unittest": {"test_rail.py": UNITTEST},
-    "pytest-bdd": {"test_rail.py": STEPS, "rail.feature": SCENARIO},
-}
+SUGGEST = ["suggest", "--seeds", "5"]
 
 
 def survivors(found: dict[str, Any]) -> set[str]:
@@ -28,42 +25,64 @@ def killed(found: dict[str, Any]) -> set[str]:
     return {kill["mutant"]["id"] for one in found["suggestions"] for kill in one["kills"]}
 
 
-@pytest.mark.parametrize("style", STYLES)
-@pytest.mark.usefixtures("plugins")
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A project without tests."""
+    monkeypatch.chdir(make(tmp_path, {}))
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "files", [["test_functions.py"], pytest.param(list(TESTS), marks=pytest.mark.whole)], ids=["one", "all"]
+)
 def test_what_is_suggested_kills_when_it_is_applied(
-    style: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    files: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = make(tmp_path, STYLES[style])
-    monkeypatch.chdir(folder)
+    make(folder, {name: TESTS[name] for name in files})
     before = survivors(found_by(["run"], capsys))
     tree = {path: path.read_bytes() for path in folder.rglob("*.*") if ".mutabot" not in path.parts}
 
-    found = found_by(["suggest", "--seeds", "8"], capsys)
+    found = found_by(SUGGEST, capsys)
 
     assert {path: path.read_bytes() for path in tree} == tree, "the user's tree has changed"
-    assert {one["style"] for one in found["suggestions"]} == {style}
-    never = {one["mutant"]["id"] for one in found["unsolved"]}
-    assert killed(found) | never == before
-    assert killed(found)
-    assert not killed(found) & never
+    assert {one["style"] for one in found["suggestions"]} == {
+        STYLES[name] for name in files if name in STYLES
+    }
+    assert {one["moment"] for one in found["suggestions"]} == {"end of the test", "at any moment"}
+    left = {one["mutant"]["id"] for one in found["unsolved"]}
+    assert killed(found) | left == before
+    assert killed(found).isdisjoint(left)
+    assert all(one["never"] for one in found["unsolved"])
     patched(folder, found["diff"])
-    assert passes(folder)
-    assert survivors(found_by(["run"], capsys)) == never
+    assert passes(folder)[0] == 0
+    assert survivors(found_by(["run"], capsys)) == left
 
 
-@pytest.mark.parametrize("style", STYLES)
-@pytest.mark.usefixtures("plugins")
-def test_a_written_file_runs_and_kills(
-    style: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_there_must_be_something_to_suggest_checks_for(
+    folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = make(tmp_path, STYLES[style])
-    monkeypatch.chdir(folder)
-    found_by(["run"], capsys)
+    assert main(["suggest"]) == 2
+    assert "mutabot run" in capsys.readouterr().err
+    with Journal.prepare(folder / ".mutabot" / "journal.sqlite", meta={}) as journal:
+        journal.begin({})
+        journal.finish("complete")
+    assert main(["suggest"]) == 3
+    assert "no mutants" in capsys.readouterr().err
 
-    found = found_by(["suggest", "--seeds", "8", "--write", "tests/test_more.py"], capsys)
 
-    assert (folder / "tests" / "test_more.py").is_file()
-    assert passes(folder, "tests/test_more.py")
-    assert killed(found).isdisjoint(survivors(found_by(["run"], capsys)))
-    assert main(["suggest", "--write", "tests/test_more.py"]) == 2
-    assert "exists" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("file", "said"),
+    [
+        ("mission.py", "exists"),
+        ("more.txt", "no Python file"),
+        ("nowhere/test_more.py", "no folder"),
+        ("/tmp/test_more.py", "not in the project"),
+    ],
+)
+def test_a_written_file_is_a_new_test_file_of_the_project(
+    file: str, said: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with Journal.prepare(folder / ".mutabot" / "journal.sqlite", meta={}) as journal:
+        journal.begin({})
+    assert main(["suggest", "--write", file]) == 2
+    assert said in capsys.readouterr().err

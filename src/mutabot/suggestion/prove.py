@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from mutabot.border.test_end import TestEnd
@@ -16,6 +16,7 @@ from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Verdict
 from mutabot.suggestion.choosing.checks import Check
 from mutabot.suggestion.sources.workspace import copy_of
+from mutabot.suggestion.styles.style import Place
 
 from .forms import Form
 
@@ -71,26 +72,47 @@ class Proof:
                                 found.setdefault(one, text)
         return found
 
-    def on_survivors(self, check: Check, mutants: Sequence[str]) -> None:
-        """Run a campaign of these mutants with this check alone."""
-        if check in self.kills or check in self.failed:
-            return
-        with copy_of(self.request, self.form.texts([check])) as copied:
-            request = replace(_only(copied, self.form.tests([check])), only=tuple(mutants))
+    def on_survivors(self, checks: Sequence[Check], mutants: Mapping[Place, Iterable[str]]) -> None:
+        """Run campaigns of the mutants that act in the tests of these checks, by the tests.
+
+        A test has one of the checks at a time; those of several tests are run together.
+        """
+        left = [one for one in checks if one not in self.kills and one not in self.failed]
+        while left:
+            batch = list({_own_name(one.place.node): one for one in reversed(left)}.values())
+            left = [one for one in left if one not in batch]
             try:
-                path = run_campaign(request, self.progress)
+                self._run(batch, mutants)
             except MutabotError as error:
-                self.failed[check] = f"a campaign with it ends: {str(error).splitlines()[0]}"
-                return
+                if len(batch) > 1:
+                    for one in batch:
+                        self.on_survivors([one], mutants)
+                else:
+                    self.failed[batch[0]] = f"a campaign with it ends: {str(error).splitlines()[0]}"
+
+    def _run(self, checks: Sequence[Check], mutants: Mapping[Place, Iterable[str]]) -> None:
+        only = tuple(dict.fromkeys(mutant for one in checks for mutant in mutants[one.place]))
+        with copy_of(self.request, self.form.texts(checks)) as copied:
+            these = _only(copied, self.form.tests(checks))
+            path = run_campaign(replace(these, only=only, every_test=True, repeats=False), self.progress)
             with JournalReader.open(path) as journal:
                 outcomes = journal.outcomes()
-        found: dict[str, list[int]] = {}
-        for one in outcomes:
-            if one.verdict is Verdict.KILLED and one.by is By.CHECK:
-                found.setdefault(one.mutant, []).append(one.round)
-        self.kills[check] = {mutant: tuple(sorted(rounds)) for mutant, rounds in found.items()}
-        if not found:
-            self.failed[check] = "kills no survivor when it is run"
+        by_test: dict[str, dict[str, list[int]]] = {}
+        for outcome in outcomes:
+            noticed = outcome.verdict is Verdict.KILLED
+            by_check = {_own_name(kill.test) for kill in outcome.kills if noticed and kill.by is By.CHECK}
+            for test in by_check:
+                by_test.setdefault(test, {}).setdefault(outcome.mutant, []).append(outcome.round)
+        for one in checks:
+            found = by_test.get(_own_name(one.place.node), {})
+            self.kills[one] = {mutant: tuple(sorted(rounds)) for mutant, rounds in found.items()}
+            if not found:
+                self.failed[one] = "kills no survivor when it is run"
+
+
+def _own_name(node: str) -> str:
+    """The name of a test within its file or class, without parameters: the same in whichever file it is."""
+    return node.partition("[")[0].rpartition("::")[2]
 
 
 def _only(request: Request, tests: tuple[str, ...]) -> Request:

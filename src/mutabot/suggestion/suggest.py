@@ -14,7 +14,7 @@ from mutabot.suggestion.choosing.bands import unseen
 from mutabot.suggestion.choosing.candidates import candidates
 from mutabot.suggestion.choosing.checks import Check
 from mutabot.suggestion.choosing.cover import smallest_cover
-from mutabot.suggestion.measuring.measure import measure
+from mutabot.suggestion.measuring.measure import Measured, measure
 from mutabot.suggestion.measuring.readings import WAY
 from mutabot.suggestion.sources.project import Project
 from mutabot.suggestion.sources.texts import diff_of
@@ -23,7 +23,7 @@ from .forms import Form, InFile, InPlace
 from .prove import Proof
 from .styles.choice import place_of
 from .styles.style import Place
-from .survivors import Survivors, survivors_of
+from .survivors import survivors_of
 from .unsolved import why_unsolved
 
 #: how often the smallest set is looked for anew because a check of it failed its proof
@@ -90,7 +90,7 @@ def suggest(
     form: Form = InFile(project, write) if write is not None else InPlace(project)
     proof = Proof(request, form, quiet)
     fresh = range(calibrated, calibrated + seeds)
-    chosen_checks = _proven(proof, found, survivors, [*range(request.rounds), *fresh])
+    chosen_checks = _proven(proof, found, measured, [*range(request.rounds), *fresh])
     texts = form.texts(chosen_checks) if chosen_checks else {}
     suggestions = tuple(_suggestion(one, proof.kills[one], seeds) for one in chosen_checks)
     killed = {mutant for one in suggestions for mutant in one.kills}
@@ -125,9 +125,9 @@ def _places(project: Project, tests: Sequence[str]) -> tuple[dict[str, Place], l
     return found, without
 
 
-def _proven(proof: Proof, found: Sequence[Check], survivors: Survivors, rounds: Sequence[int]) -> list[Check]:
+def _proven(proof: Proof, found: Sequence[Check], measured: Measured, rounds: Sequence[int]) -> list[Check]:
     """The smallest set of checks that all stand their proof; largest kills first."""
-    mutants = [one.mutant.id for one, _ in survivors.to_kill]
+    mutants = {place: list(found) for place, found in measured.mutants.items()}
     chosen: list[Check] = []
     for _ in range(_ATTEMPTS):
         left = [one for one in found if one not in proof.failed]
@@ -136,8 +136,7 @@ def _proven(proof: Proof, found: Sequence[Check], survivors: Survivors, rounds: 
         if not new:
             break
         passing = proof.on_original(chosen, rounds)
-        for one in passing:
-            proof.on_survivors(one, mutants)
+        proof.on_survivors(passing, mutants)
     chosen = [one for one in chosen if one in proof.kills and one not in proof.failed]
     return sorted(chosen, key=lambda one: -len(_noticed(one, proof)))
 

@@ -17,7 +17,7 @@ def why_unsolved(mutant: Mutant, measured: Measured, found: Sequence[Check], pro
     """The reason, with what differs most and how far the original itself spreads."""
     failed = [one for one in found if one in proof.failed and mutant.id in one.margins]
     if failed:
-        return Unsolved(mutant.id, f"{len(failed)} checks that would notice it failed their proof")
+        return Unsolved(mutant.id, f"what would notice it failed its proof: {failed[0].statement}")
     nearest = _nearest(mutant, measured)
     if nearest is None:
         reason = "at the ends of its tests nothing that can be read there differs"

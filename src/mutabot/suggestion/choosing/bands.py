@@ -7,8 +7,9 @@ Three ways, by what the runs look like; which one it was is told with the check.
   limits for normal populations", JASA 64 (1969); chi-squared quantiles by Wilson and Hilferty, PNAS 17
   (1931). Whether the spread may be normal says the test of Shapiro and Francia with Royston's
   significance, Statistics and Computing 3 (1993).
-* ``FREE``: the range of the runs, widened by itself on both sides. That the range alone holds a share of all
-  runs is known whatever the distribution: Wilks, Ann. Math. Stat. 12 (1941).
+* ``FREE``: the range of the runs, widened by itself on both sides, or more if a normal spread would ask for
+  more. That the range alone holds a share of all runs is known whatever the distribution: Wilks, Ann. Math.
+  Stat. 12 (1941).
 * ``SAME``: every run read the same.
 """
 
@@ -60,14 +61,14 @@ def band_of(groups: Sequence[Sequence[float]], floor: float) -> tuple[list[float
     rest = [value - middle for group, middle in zip(groups, middles, strict=True) for value in group]
     if spread <= 1e-9 * max(1.0, *(abs(value) for group in groups for value in group)):
         return middles, Band(floor, spread, count, SAME, None, unseen(count))
-    freedom = count - len(groups)
-    if smallest > 1 and may_be_normal(rest):
-        deviation = math.sqrt(sum(value * value for value in rest) / freedom)
-        factor = tolerance_factor(smallest, freedom)
-        tolerance = max(floor, factor * deviation)
-        return middles, Band(tolerance, spread, count, NORMAL, factor, 1.0 - CONTENT)
+    freedom = max(1, count - len(groups))
+    deviation = math.sqrt(sum(value * value for value in rest) / freedom)
+    factor = tolerance_factor(smallest, freedom)
+    if may_be_normal(rest):
+        return middles, Band(max(floor, factor * deviation), spread, count, NORMAL, factor, 1.0 - CONTENT)
     middles = [(min(group) + max(group)) / 2 for group in groups]
-    return middles, Band(max(floor, 1.5 * spread), spread, count, FREE, None, outside_range(smallest))
+    tolerance = max(floor, 1.5 * spread, factor * deviation)
+    return middles, Band(tolerance, spread, count, FREE, None, outside_range(smallest))
 
 
 def tolerance_factor(count: int, freedom: int) -> float:

@@ -15,6 +15,8 @@ from mutabot.suggestion.styles.style import Addition, Place
 
 from .bands import Band, decimal
 
+#: longest line that is written where it can be parted
+_WIDTH = 90
 _NAME = re.compile(r"[^\W\d]\w*")
 
 
@@ -96,8 +98,7 @@ class Check:
         if label is None:
             value = texts[None]
         else:
-            inner = ", ".join(f"{literal(key)}: {text}" for key, text in texts.items())
-            head = (f"expected = {{{inner}}}[{label}]",)
+            head = _looked_up([f"{literal(key)}: {text}" for key, text in texts.items()], label)
         if band is None:
             return *head, style.equal(self.looked_at, value)
         return *head, style.within(self.looked_at, value, decimal(band.tolerance))
@@ -119,7 +120,7 @@ class Check:
         of = f"what {said(expected.label)} asks for" if expected.label is not None else None
         what = said(self.looked_at)
         if self.reading.watch is not None:
-            what = said(f"{self.reading.text} on the way".replace("args[0]", "").removeprefix("all "))
+            what = said(f"{self.reading.text} on the way".replace("args[0].", "").removeprefix("all "))
         if expected.band is None:
             return f"{what} is {of or said(self._text(expected.values[None]))}"
         near = of or self._text(expected.values[None])
@@ -136,6 +137,14 @@ class Check:
             (*self.reading.needs, *self.needs, *style_of(self.place).needs(self.statement)),
             self.reading.watch,
         )
+
+
+def _looked_up(pairs: list[str], label: str) -> tuple[str, ...]:
+    """What is expected by a label, in one line or in one per value."""
+    line = f"expected = {{{', '.join(pairs)}}}[{label}]"
+    if len(line) <= _WIDTH:
+        return (line,)
+    return "expected = {", *(f"    {pair}," for pair in pairs), f"}}[{label}]"
 
 
 def said(text: str) -> str:

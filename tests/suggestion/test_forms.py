@@ -1,0 +1,81 @@
+"""Checks in the tests that there are and in a new file, in every style: plain pytest runs them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mutabot.campaign.request import Request
+from mutabot.settings.configuration import load_configuration
+from mutabot.suggestion.choosing.bands import band_of
+from mutabot.suggestion.choosing.checks import Check, Expected
+from mutabot.suggestion.forms import Form, InFile, InPlace
+from mutabot.suggestion.measuring.commands import commands_of
+from mutabot.suggestion.measuring.readings import PROBE, WAY, Reading
+from mutabot.suggestion.measuring.watches import watch_of
+from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.sources.texts import diff_of
+from mutabot.suggestion.styles.choice import place_of
+from mutabot.vocabulary import load
+
+from .projects import STYLES, make, passes, patched
+
+NODES = {
+    "pytest": "tests/test_functions.py::test_goes_along_the_rail[True]",
+    "unittest": "tests/test_cases.py::MissionTest::test_goes_along_the_rail",
+    "pytest-bdd": "tests/test_steps.py::test_it_goes_along_the_rail",
+}
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Project:
+    """The project with tests in three styles."""
+    folder = make(tmp_path)
+    configuration = load_configuration(folder)
+    vocabulary = load(configuration.vocabulary, folder)
+    return Project(Request(configuration, vocabulary, rounds=1, seed=1, jobs=1))
+
+
+def checks(project: Project, style: str) -> list[Check]:
+    """That the arm is where it is to be at the end, and that it never was below."""
+    place = place_of(project, NODES[style])
+    assert place is not None
+    assert place.style == style
+    _, band = band_of([[0.4, 0.401, 0.399]], 0.01)
+    at_end = "self.arm.z" if style == "unittest" else "arm.z"
+    watch, needs = watch_of(project, commands_of(project), place, "args[0].z")
+    return [
+        Check(place, Reading(at_end, PROBE, 0.01), Expected({None: 0.4}, 3, band=band)),
+        Check(
+            place,
+            Reading("min args[0].z", WAY, 0.01, needs, (), watch, f"min({watch.name})"),
+            Expected({None: 0.4}, 3, band=band),
+        ),
+    ]
+
+
+@pytest.mark.parametrize("in_file", [False, True])
+def test_added_checks_pass_on_the_original_and_notice_a_fault(project: Project, in_file: bool) -> None:
+    form: Form = InFile(project, "tests/test_more.py") if in_file else InPlace(project)
+    found = [one for style in STYLES.values() for one in checks(project, style)]
+    texts = form.texts(found)
+    assert ("tests/test_more.py" in texts) is in_file
+    patched(project.root, diff_of(project.root, texts))
+    assert {file: (project.root / file).read_text() for file in texts} == texts
+    assert passes(project.root) == (0, len(NODES) + 3 + in_file * (len(NODES) + 1))
+
+    program = project.root / "mission.py"
+    program.write_text(program.read_text().replace("z=-0.1", "z=-0.2"))
+    failed, _ = passes(project.root)
+    assert failed == len(NODES) + 1, "each test with a check fails, with both of its parameters"
+
+
+def test_a_check_leaves_the_rest_of_the_file_as_it_is(project: Project) -> None:
+    file = project.root / "tests" / "test_functions.py"
+    file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n") + "# ü".encode())
+    before = file.read_bytes().decode().splitlines(keepends=True)
+    (text,) = InPlace(project).texts(checks(project, "pytest")[:1]).values()
+    after = text.splitlines(keepends=True)
+    assert [line for line in after if line in before or line.rstrip() == "# ü"] == [*before[:-1], "# ü\r\n"]
+    assert all(line.endswith("\r\n") for line in after)
