@@ -33,13 +33,14 @@ ALLOWED = {
         "classical", "journal", "evidence",
     },
     "proposal": {"errors", "model", "border", "settings", "vocabulary", "campaign"},
+    "suggestion": {"errors", "model", "border", "journal", "campaign", "analysis"},
     "analysis": {"exit_codes", "errors", "model", "border", "vocabulary", "journal", "evidence"},
     "report": {"errors", "model", "border", "vocabulary", "journal", "analysis", "evidence"},
     "cells": {"evidence"},
     "__main__": {"cli"},
     "cli": {
         "exit_codes", "errors", "families", "model", "border", "settings", "vocabulary", "journal",
-        "campaign", "proposal", "analysis", "report",
+        "campaign", "proposal", "suggestion", "analysis", "report",
     },
 }  # fmt: skip
 FILES = files()

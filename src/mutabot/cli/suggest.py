@@ -46,9 +46,9 @@ def suggest(
     """Suggest checks that kill survivors of the last campaign, each proven by running it."""
     from mutabot.analysis.results import read_results
     from mutabot.journal.reader import JournalReader
-    from mutabot.report.suggested_json import suggested_data
+    from mutabot.report.suggested.data import suggested_data
+    from mutabot.report.suggested.text import print_suggestions
     from mutabot.report.terminal.console import make_console
-    from mutabot.report.terminal.suggested import print_suggestions
     from mutabot.suggestion import suggest as find_checks
 
     path = find_journal(context.obj)

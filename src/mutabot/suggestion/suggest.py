@@ -70,6 +70,13 @@ def suggest(
     Raises NothingToDoError if there is nothing to kill or nothing to look at, and what a campaign raises.
     """
     survivors = survivors_of(chosen)
+    if not request.vocabulary.probes:
+        progress.note(
+            "the vocabulary names no probe: only what the oracle reads and what tests have at hand can be looked "
+            "at; a [[probe]] shows more"
+        )
+    elif not survivors.to_kill:
+        progress.note("nothing that was compared differs in any survivor: a further [[probe]] may show more")
     if not survivors.to_kill:
         return _told(Suggestions(unsolved=survivors.never), chosen, request, seeds)
     quiet = Quiet(progress)

@@ -15,7 +15,6 @@ from mutabot.campaign.engines.choice import first_engine
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.fresh import task
 from mutabot.campaign.request import Progress, Request
-from mutabot.inside.readings.noted import values
 from mutabot.model import Mutant, Probe
 from mutabot.suggestion.sources.project import Project
 from mutabot.suggestion.sources.texts import Insertion, changed_texts
@@ -26,8 +25,9 @@ from mutabot.suggestion.styles.style import Addition, Place
 from .commands import Command, commands_of
 from .readings import PROBE, Reading, of_objects, readings_at
 
-#: the probe that carries readings out of the tests' process
-_PROBE = f"{values.__module__}:{values.__name__}"
+#: what notes readings in the tests' process, and the probe that carries them out of it
+_NOTED = "mutabot.inside.readings.noted"
+_PROBE = f"{_NOTED}:values"
 
 #: what was read at the end of one test: expression to number, text or truth value
 Read = Mapping[str, Any]
@@ -132,14 +132,13 @@ def _take(
 
 def _watching(project: Project, measured: Measured, file: str) -> Insertion:
     """The lines that look after every command of the tests of a file."""
-    module = values.__module__
     known = next(found for place, found in measured.readings.items() if place.file == file)
     looks = ", ".join(
         f"({one.text!r}, lambda: {one.text})" for one in known if one.way == PROBE and not one.uses
     )
     classes = [target for target, _ in measured.objects]
     line = f"_mutabot_watch({measured.commands!r}, [{looks}], {classes!r})"
-    lines = (f"from {module} import watch as _mutabot_watch", line)
+    lines = (f"from {_NOTED} import watch as _mutabot_watch", line)
     return Insertion(file, len(project.lines(file)), lines)
 
 
@@ -147,11 +146,10 @@ def _noting(place: Place, readings: Sequence[Reading], objects: Sequence[tuple[s
     """The lines that note; they are plain statements, and never fail."""
     pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in readings)
     classes = [target for target, _ in objects]
-    module = values.__module__
     return Addition(
         place,
         (
-            f"from {module} import note as _mutabot_note",
+            f"from {_NOTED} import note as _mutabot_note",
             f"_mutabot_note(locals(), [{pairs}], {classes!r})",
         ),
         "mutabot notes what can be read",

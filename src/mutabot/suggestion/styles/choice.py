@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
 
 from mutabot.suggestion.sources.project import Project
 from mutabot.suggestion.sources.texts import Insertion
 
-from . import functions, scenarios, testcases
 from .style import Addition, Place, Style
 
 
 @cache
 def styles() -> tuple[Style, ...]:
     """In the order in which they are asked."""
-    found: list[Style] = [functions.STYLE, scenarios.STYLE, testcases.STYLE]
+    names = sorted(one.name for one in iter_modules([str(Path(__file__).parent)]))
+    modules = [import_module(f"{__package__}.{name}") for name in names if name != "choice"]
+    found: list[Style] = [module.STYLE for module in modules if hasattr(module, "STYLE")]
     return tuple(sorted(found, key=lambda one: one.order))
 
 

@@ -9,8 +9,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
-
-from .console import heading, plain, plural
+from mutabot.report.terminal.console import heading, plain, plural
 
 #: dropped checks that are shown
 _DROPPED = 5

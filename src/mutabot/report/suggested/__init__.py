@@ -1,0 +1,1 @@
+"""Suggested checks: for people, and as data."""
