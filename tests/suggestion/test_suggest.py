@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,9 @@ from mutabot.journal.journal import Journal
 from .projects import STYLES, TESTS, found_by, make, passes, patched
 
 SUGGEST = ["suggest", "--seeds", "5"]
+
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "suggest.md"
 
 
 def survivors(found: dict[str, Any]) -> set[str]:
@@ -53,6 +57,9 @@ def test_what_is_suggested_kills_when_it_is_applied(
     assert killed(found) | left == before
     assert killed(found).isdisjoint(left)
     assert all(one["never"] for one in found["unsolved"])
+    documented = set(re.findall(r"^\| `(\w+)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE))
+    parts = [found, *found["suggestions"], *found["unsolved"], *found["suggestions"][0]["kills"]]
+    assert {key for part in parts for key in part} <= documented
     patched(folder, found["diff"])
     assert passes(folder)[0] == 0
     assert survivors(found_by(["run"], capsys)) == left

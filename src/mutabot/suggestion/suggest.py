@@ -72,8 +72,8 @@ def suggest(
     survivors = survivors_of(chosen)
     if not request.vocabulary.probes:
         progress.note(
-            "the vocabulary names no probe: only what the oracle reads and what tests have at hand can be looked "
-            "at; a [[probe]] shows more"
+            "the vocabulary names no probe: only what the oracle reads and what tests have at hand "
+            "can be looked at; a [[probe]] shows more"
         )
     elif not survivors.to_kill:
         progress.note("nothing that was compared differs in any survivor: a further [[probe]] may show more")
