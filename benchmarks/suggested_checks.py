@@ -12,6 +12,8 @@ with 1 if one did, or if no score rose.
 from __future__ import annotations
 
 import argparse
+import contextlib
+import importlib
 import json
 import os
 import shutil
@@ -20,6 +22,8 @@ import sys
 import tempfile
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 NAMES = ("paper", "pick_and_place", "scales")
@@ -34,7 +38,11 @@ def main() -> int:
     parser.add_argument("examples", nargs="*", default=NAMES)
     parser.add_argument("--seeds", type=int, default=200)
     parser.add_argument("--file", action="store_true")
+    parser.add_argument("--alarms", action="store_true", help=argparse.SUPPRESS)
     given = parser.parse_args()
+    if given.alarms:
+        print(json.dumps(_run_all(given.examples, given.seeds)))
+        return 0
     good = [_example(name, given.seeds, in_file=given.file) for name in given.examples]
     return int(not all(good))
 
@@ -77,15 +85,33 @@ def _mutabot(project: Path, *words: str) -> dict[str, Any]:
 
 def _alarms(project: Path, tests: list[str], seeds: int) -> list[str]:
     """The seeds with which a test fails on the original, each with the last lines of what pytest said."""
+    command = [sys.executable, __file__, "--alarms", "--seeds", str(seeds), *tests]
+    done = subprocess.run(command, cwd=project, stdout=subprocess.PIPE, text=True, check=True)
+    found: list[str] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def _run_all(tests: list[str], seeds: int) -> list[str]:
+    """One plain pytest per seed, each a fork of this process, which has imported what takes long."""
+    for name in ("numpy", "mujoco", "mink", "ruckig"):
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
+    os.environ["MUTABOT_CAMPAIGN_SEED"] = OTHER_SEED
+    sys.path.insert(0, "")  # as `python -m pytest` has it
     found = []
-    for round in range(1, seeds + 1):
-        variables = {"MUTABOT_ROUND": str(round), "MUTABOT_CAMPAIGN_SEED": OTHER_SEED}
-        command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *tests]
-        done = subprocess.run(
-            command, cwd=project, env={**os.environ, **variables}, capture_output=True, text=True, check=False
-        )
-        if done.returncode:
-            found.append(f"{round}: {done.stdout[-400:]}")
+    with tempfile.TemporaryFile() as said:
+        for round in range(1, seeds + 1):
+            child = os.fork()
+            if child == 0:
+                os.environ["MUTABOT_ROUND"] = str(round)
+                os.dup2(said.fileno(), 1)
+                code = pytest.main(["-q", "-p", "no:cacheprovider", *tests])
+                sys.stdout.flush()
+                os._exit(code)
+            _, status = os.waitpid(child, 0)
+            if status:
+                said.seek(max(0, said.seek(0, os.SEEK_END) - 600))
+                found.append(f"{round}: {said.read().decode(errors='replace')}")
     return found
 
 
