@@ -5,6 +5,7 @@ A probe on ``values`` carries it out of the process. Nothing here ever lets a te
 
 from __future__ import annotations
 
+import inspect
 import os
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -157,7 +158,10 @@ def _reader(held: Any, name: str, *, call: bool) -> Callable[[], Any]:
 def _parts_of(text: str, read: Callable[[], Any]) -> dict[str, Any]:
     found: dict[str, Any] = {}
     try:
-        for key, value in _parts(text, read(), _DEPTH):
+        whole = read()
+        if inspect.iscoroutine(whole):  # nobody awaits it here
+            whole.close()
+        for key, value in _parts(text, whole, _DEPTH):
             found[key] = value
             if len(found) >= _PARTS:
                 break

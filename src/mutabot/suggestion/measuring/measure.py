@@ -23,7 +23,7 @@ from mutabot.suggestion.styles.choice import insertions_of
 from mutabot.suggestion.styles.style import Addition, Place
 
 from .commands import Command, commands_of
-from .readings import PROBE, Reading, of_objects, readings_at
+from .readings import ORACLE, PROBE, Reading, of_objects, readings_at
 
 #: what notes readings in the tests' process, and the probe that carries them out of it
 _NOTED = "mutabot.inside.readings.noted"
@@ -144,7 +144,9 @@ def _watching(project: Project, measured: Measured, file: str) -> Insertion:
 
 def _noting(place: Place, readings: Sequence[Reading], objects: Sequence[tuple[str, float]]) -> Addition:
     """The lines that note; they are plain statements, and never fail."""
-    pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in readings)
+    # what the oracle does when it reads must not be seen by what only looks
+    ordered = sorted(readings, key=lambda one: one.way == ORACLE)
+    pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in ordered)
     classes = [target for target, _ in objects]
     return Addition(
         place,
