@@ -3,14 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from mutabot.analysis.suggested import Unsolved
 from mutabot.model import Mutant
 from mutabot.suggestion.choosing.bands import decimal
+from mutabot.suggestion.choosing.candidates import part_of_way, tolerance_of
 from mutabot.suggestion.choosing.checks import Check, is_number
 from mutabot.suggestion.measuring.measure import Measured
 
 from .prove import Proof
+
+
+@dataclass(frozen=True, slots=True)
+class _Nearest:
+    """What differs most on a mutant: the expression, by how much, and what is no difference in it."""
+
+    text: str
+    apart: float
+    spread: float
+    tolerance: float
+
+    @property
+    def rank(self) -> float:
+        """How far it is, in what the original does by itself."""
+        return self.apart / max(self.spread, self.tolerance)
+
+    @property
+    def words(self) -> str:
+        """``box.x differs by 0.003, the original itself spreads 0.005``."""
+        part = part_of_way(self.text)
+        where = self.text if part is None else f"on the way, the {part[0]} of {part[1]}"
+        own = f"the original itself spreads {_short(self.spread)}"
+        if self.tolerance >= self.spread:
+            own = f"its tolerance is {_short(self.tolerance)}"
+        return f"{where} differs by {_short(self.apart)}, {own}"
 
 
 def why_unsolved(mutant: Mutant, measured: Measured, found: Sequence[Check], proof: Proof) -> Unsolved:
@@ -18,32 +45,26 @@ def why_unsolved(mutant: Mutant, measured: Measured, found: Sequence[Check], pro
     failed = [one for one in found if one in proof.failed and mutant.id in one.margins]
     if failed:
         return Unsolved(mutant.id, f"what would notice it failed its proof: {failed[0].statement}")
-    nearest = _nearest(mutant, measured)
+    nearest = max(_differences(mutant, measured), key=lambda one: one.rank, default=None)
     if nearest is None:
-        reason = "at the ends of its tests nothing that can be read there differs"
-        return Unsolved(mutant.id, reason)
-    text, apart, spread = nearest
-    reason = f"{text} differs by {_short(apart)}, the original itself spreads {_short(spread)}"
-    return Unsolved(mutant.id, reason)
+        return Unsolved(mutant.id, "nothing differs that its tests can read at their ends or after a command")
+    return Unsolved(mutant.id, nearest.words)
 
 
-def _nearest(mutant: Mutant, measured: Measured) -> tuple[str, float, float] | None:
-    """What differs most against the original's spread: its text, the difference, the spread."""
-    best: tuple[float, str, float, float] | None = None
+def _differences(mutant: Mutant, measured: Measured) -> list[_Nearest]:
+    found = []
     for place, by_mutant in measured.mutants.items():
         originals = measured.originals.get(place, {})
         for key, read in by_mutant.get(mutant.id, {}).items():
             same = originals.get(key, {})
             for text, value in read.items():
-                if not (is_number(value) and is_number(same.get(text))):
-                    continue
-                apart = abs(value - same[text])
-                values = [one[text] for one in originals.values() if is_number(one.get(text))]
-                spread = max(values) - min(values)
-                rank = apart / spread if spread > 0 else apart * 1e6
-                if apart > 1e-9 and (best is None or rank > best[0]):
-                    best = (rank, text, apart, spread)
-    return best[1:] if best is not None else None
+                before = same.get(text)
+                if is_number(value) and is_number(before) and abs(value - before) > 0:
+                    values = [one[text] for one in originals.values() if is_number(one.get(text))]
+                    spread = max(values) - min(values)
+                    tolerance = tolerance_of(measured, place, text)
+                    found.append(_Nearest(text, abs(value - before), spread, tolerance))
+    return found
 
 
 def _short(value: float) -> str:

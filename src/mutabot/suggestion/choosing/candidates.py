@@ -45,7 +45,21 @@ def _all(project: Project, measured: Measured, *, along: bool) -> Iterator[Check
         if mutants and runs:
             ends = _readings(measured, place, runs)
             chosen = _along(project, measured, place, runs) if along else ends
-            yield from _at(place, runs, mutants, chosen, ends)
+            given = [one for one in ends if _is_given(one.text, originals, mutants)]
+            yield from _at(place, runs, mutants, chosen, ends, _labels(given, runs))
+
+
+def _is_given(
+    text: str,
+    originals: Mapping[tuple[int, str], Read],
+    mutants: Mapping[str, Mapping[tuple[int, str], Read]],
+) -> bool:
+    """Whether a reading belongs to the round and the test, and is nothing that a program did."""
+    return all(
+        read.get(text) == originals.get(key, {}).get(text)
+        for reads in mutants.values()
+        for key, read in reads.items()
+    )
 
 
 def _at(
@@ -54,9 +68,9 @@ def _at(
     mutants: Mapping[str, Mapping[tuple[int, str], Read]],
     chosen: Sequence[Reading],
     readings: Sequence[Reading],
+    labels: Sequence[str],
 ) -> Iterator[Check]:
     """The best check of each of the chosen readings; all ``readings`` may stand beside it."""
-    labels = _labels(readings, runs)
     for reading in chosen:
         best: Check | None = None
         for expected in _expected(reading, readings, labels, runs):
@@ -88,6 +102,19 @@ def _readings(measured: Measured, place: Place, runs: Sequence[Read]) -> list[Re
     known = measured.readings[place]
     texts = [text for text in runs[0] if all(text in read for read in runs)]
     return [_reading(text, known, measured.objects) for text in texts if not _WAY.match(text)]
+
+
+def part_of_way(text: str) -> tuple[str, str] | None:
+    """Which extreme of which expression a reading along the way is; None for one at the end of a test."""
+    match = _WAY.match(text)
+    return (match[1], match[2].replace("args[0].", "")) if match is not None else None
+
+
+def tolerance_of(measured: Measured, place: Place, text: str) -> float:
+    """The greatest difference of equal worlds in a reading."""
+    match = _WAY.match(text)
+    look = match[2] if match is not None else text
+    return _reading(look, measured.readings[place], measured.objects).tolerance
 
 
 def _along(project: Project, measured: Measured, place: Place, runs: Sequence[Read]) -> list[Reading]:
@@ -126,7 +153,7 @@ def _labels(readings: Sequence[Reading], runs: Sequence[Read]) -> list[str]:
     found: list[tuple[int, int, str]] = []
     for reading in readings:
         values = [read[reading.text] for read in runs]
-        if reading.way != HAND and any(isinstance(value, float) and value % 1 for value in values):
+        if reading.way != HAND and any(isinstance(value, float) for value in values):
             continue
         counts: dict[Any, int] = {}
         for value in values:
