@@ -81,6 +81,7 @@ bench: $(READY)
 	$(RUN) benchmarks/instrumentation.py
 	$(RUN) benchmarks/cell_speed.py
 	$(RUN) benchmarks/paper_seeds.py
+	$(RUN) benchmarks/suggested_checks.py
 	$(RUN) benchmarks/engines.py --output benchmarks/engines.json --page docs/engines.md
 	$(RUN) benchmarks/interval_coverage.py
 	$(RUN) benchmarks/sample_coverage.py

@@ -63,6 +63,9 @@ def suggest(
     )  # fmt: skip
     with progress_shown() as progress:
         found = find_checks(request, results, chosen, progress, seeds=seeds, write=file)
+    for name in found.files:
+        if (root / name).exists():
+            raise UsageError(f"{name} exists; --write makes new files and changes none")
     for name, text in found.files.items():
         _write(root / name, text)
     print_json(suggested_data(found)) if json else print_suggestions(make_console(), found)
@@ -92,9 +95,8 @@ def _new_file(write: Path, root: Path) -> str:
     path = write if write.is_absolute() else Path.cwd() / write
     if not path.resolve().is_relative_to(root.resolve()):
         raise UsageError(f"{write} is not in the project {root}: a test file must be among its tests")
-    for one in (path, path.with_suffix(".feature")):
-        if one.exists():
-            raise UsageError(f"{one} exists; --write makes a new file and changes none")
+    if path.exists():
+        raise UsageError(f"{path} exists; --write makes a new file and changes none")
     if not path.parent.is_dir():
         raise UsageError(f"there is no folder {path.parent}")
     if path.suffix != ".py":

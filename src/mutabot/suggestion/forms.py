@@ -9,7 +9,7 @@ from typing import Protocol
 
 from mutabot.suggestion.choosing.checks import Check
 from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import changed_texts, import_order
+from mutabot.suggestion.sources.texts import changed_texts, import_blocks
 
 from .styles.choice import insertions_of, style_of
 from .styles.style import Written
@@ -74,10 +74,8 @@ def _by_file(checks: Sequence[Check]) -> dict[str, list[Check]]:
 
 
 def _text_of(written: Sequence[Written]) -> str:
-    imports = sorted({line for one in written for line in one.imports}, key=import_order)
-    future = [line for line in imports if line.startswith("from __future__")]
-    lines = [f'"""{_HEAD}"""', ""]
-    lines += [*future, "", *(line for line in imports if line not in future)]
+    blocks = import_blocks(line for one in written for line in one.imports)
+    lines = [f'"""{_HEAD}"""', *(line for block in blocks for line in ("", *block))]
     for one in written:
         lines += one.lines
     return "\n".join(lines).rstrip("\n") + "\n"

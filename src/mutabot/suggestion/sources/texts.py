@@ -143,6 +143,28 @@ def import_order(line: str) -> tuple[bool, str]:
     return line.startswith("from"), line.split()[1]
 
 
+def import_blocks(imports: Iterable[str]) -> list[list[str]]:
+    """Imports for a new file: of the future, of the standard library, all others; each module once."""
+    plain: set[str] = set()
+    names: dict[str, set[str]] = {}
+    for line in imports:
+        node = ast.parse(line).body[0]
+        if isinstance(node, ast.ImportFrom):
+            module = "." * node.level + (node.module or "")
+            texts = (f"{one.name} as {one.asname}" if one.asname else one.name for one in node.names)
+            names.setdefault(module, set()).update(texts)
+        else:
+            plain.add(line)
+    joined = [
+        f"from {module} import {', '.join(sorted(found, key=_by_case))}" for module, found in names.items()
+    ]
+    blocks: list[list[str]] = [[], [], []]
+    for line in sorted([*plain, *joined], key=import_order):
+        package = line.split()[1].partition(".")[0]
+        blocks[0 if package == "__future__" else 1 if package in sys.stdlib_module_names else 2].append(line)
+    return [block for block in blocks if block]
+
+
 def _host(own: list[ast.Import | ast.ImportFrom], new: ast.stmt) -> ast.ImportFrom | None:
     """An import in one line from the same module, which the new one can join."""
     if not isinstance(new, ast.ImportFrom):
