@@ -42,6 +42,17 @@ def test_a_difference_within_the_spread_kills_nothing_and_is_told(
     assert why_unsolved(MUTANT, found, [], _Unproven()).reason.startswith(said)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(("mutant", "kills"), [(10.72, False), (10.73, True)])
+@pytest.mark.parametrize("seen", [{}, {"step box.x": 0.01}])
+def test_what_comes_in_steps_may_be_one_step_off(mutant: float, kills: bool, seen: dict[str, float]) -> None:
+    """As a time of a simulation: all runs end at the same tick, and then one ends at the next."""
+    found = measured([10.71] * 20, mutant, 0.001)
+    if seen:
+        found.originals = {PLACE: {key: {"box.x": 10.7, **seen} for key in found.originals[PLACE]}}
+        found.mutants = {PLACE: {MUTANT.id: {(0, PLACE.node): {"box.x": mutant - 0.01, **seen}}}}
+    assert bool(candidates(Project(None), found)) is kills  # type: ignore[arg-type]
+
+
 def test_a_difference_beyond_the_band_is_a_check() -> None:
     found = measured([0.1, 0.105, 0.102, 0.104, 0.101, 0.103], 0.5, 0.001)
     (check,) = candidates(Project(None), found)  # type: ignore[arg-type]
@@ -63,7 +74,7 @@ def test_what_differs_by_design_is_held_against_what_decides_it(label: object, o
 
 
 def test_what_no_label_decides_may_be_as_far_from_something_else() -> None:
-    places = [0.13 * number % 1 for number in range(12)]
+    places = [0.1234567 * number % 1 for number in range(12)]
     reads = [{"target.x": place, "box.x": place + 0.2} for place in places]
     found = Measured(
         originals={PLACE: {(round, PLACE.node): read for round, read in enumerate(reads)}},

@@ -85,4 +85,5 @@ def test_after_every_command_it_is_looked(robot: Any) -> None:
     arm = robot.Arm()
     assert [arm.move(), robot.Arm.move(arm)] == ["moved", "moved"]
     noted.note({})
-    assert noted.values() == {"max args[0].speed": 4.0, "min args[0].speed": 3.0}
+    found = {"max args[0].speed": 4.0, "min args[0].speed": 3.0, "step args[0].speed": None}
+    assert noted.values() == found

@@ -13,6 +13,8 @@ from dataclasses import fields, is_dataclass
 from types import ModuleType
 from typing import Any
 
+from mutabot.model.values.steps import step_of
+
 #: parts that are noted of one reading, how deep, and how long a sequence may be
 _PARTS, _DEPTH, _LENGTH = 24, 3, 8
 #: characters of a text that may be a label
@@ -104,6 +106,7 @@ def _along_the_way() -> Iterator[tuple[str, Any]]:
         if all(isinstance(value, int | float) and not isinstance(value, bool) for value in series):
             yield f"max {text}", max(series)
             yield f"min {text}", min(series)
+            yield f"step {text}", step_of(series)
         elif len(series) <= _TOLD:
             yield f"all {text}", repr(series)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from mutabot.model.values.steps import step_of
 from mutabot.suggestion.measuring.measure import Measured, Read
 from mutabot.suggestion.measuring.readings import HAND, PROBE, WAY, Reading
 from mutabot.suggestion.measuring.watches import watch_of
@@ -21,7 +22,9 @@ _LABELS, _SEEN, _TRIED = 4, 4, 8
 #: how much less a reading must spread beside a label or a partner than by itself
 _STEADIER = 0.5
 _LAST = re.compile(r"(\w+)\W*$")
-_WAY = re.compile(r"(max|min|all) (.+)")
+_WAY = re.compile(r"(max|min|all|step) (.+)")
+#: steps of a reading that are no difference, where it comes in steps: one up or down
+_STEPS = 1.5
 
 
 def candidates(project: Project, measured: Measured) -> list[Check]:
@@ -99,9 +102,19 @@ def _margins(
 
 def _readings(measured: Measured, place: Place, runs: Sequence[Read]) -> list[Reading]:
     """The readings that every run of the original has, part by part."""
-    known = measured.readings[place]
     texts = [text for text in runs[0] if all(text in read for read in runs)]
-    return [_reading(text, known, measured.objects) for text in texts if not _WAY.match(text)]
+    return [_known(measured, place, text) for text in texts if not _WAY.match(text)]
+
+
+def _known(measured: Measured, place: Place, text: str) -> Reading:
+    """What is known of a part; one that comes in steps may be a step off where it never was yet."""
+    found = _reading(text, measured.readings[place], measured.objects)
+    runs = measured.originals.get(place, {}).values()
+    own = [read[text] for read in runs if is_number(read.get(text))]
+    looked = {text, *(f"args[0]{text[text.index(one) :]}" for one in _names(measured) if one in text)}
+    noted = (read.get(f"step {one}") for read in runs for one in looked)
+    steps = [one for one in noted if is_number(one)] or [one for one in [step_of(own)] if one is not None]
+    return replace(found, tolerance=max([found.tolerance, *(_STEPS * one for one in steps)]))
 
 
 def part_of_way(text: str) -> tuple[str, str] | None:
@@ -114,7 +127,12 @@ def tolerance_of(measured: Measured, place: Place, text: str) -> float:
     """The greatest difference of equal worlds in a reading."""
     match = _WAY.match(text)
     look = match[2] if match is not None else text
-    return _reading(look, measured.readings[place], measured.objects).tolerance
+    return _known(measured, place, look).tolerance
+
+
+def _names(measured: Measured) -> list[str]:
+    """The readings of objects, as they end an expression."""
+    return [f".{target.rpartition('.')[2]}" for target, _ in measured.objects]
 
 
 def _along(project: Project, measured: Measured, place: Place, runs: Sequence[Read]) -> list[Reading]:
@@ -122,10 +140,10 @@ def _along(project: Project, measured: Measured, place: Place, runs: Sequence[Re
     found = []
     for text in runs[0]:
         match = _WAY.match(text)
-        if match is None or not all(text in read for read in runs):
+        if match is None or match[1] == "step" or not all(text in read for read in runs):
             continue
         kind, look = match[1], match[2]
-        at_end = _reading(look, measured.readings[place], measured.objects)
+        at_end = _known(measured, place, look)
         watch, needs = watch_of(project, measured.commands, place, look)
         shown = watch.name if kind == "all" else f"{kind}({watch.name})"
         needed = (*at_end.needs, *needs)
