@@ -147,12 +147,15 @@ def _check_folder(folder: Path, *, with_changes: bool) -> None:
 
 def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: str | None) -> None:
     from mutabot.analysis.stored.evidence import StoredEvidence
+    from mutabot.analysis.stored.suggested import kept_suggestions
     from mutabot.report.html.folder import Contents, write_folder
+    from mutabot.report.html.suggestion import suggest_from
     from mutabot.report.shaping.texts import Cleaner
 
     name = Path(root).name if root else ""
     with StoredEvidence(journal) as evidence:
-        written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root)))
+        suggest = suggest_from(kept_suggestions(journal, campaign.results.meta))
+        written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root), suggest=suggest))
     lines = [f"mutabot: {written.page}, {written.size / 1e6:.1f} MB in its folder: open it in a browser"]
     if written.without:
         lines.append(

@@ -26,6 +26,7 @@ def show(
     """Show everything about one mutant."""
     from mutabot.analysis.results import find_mutant, read_results
     from mutabot.analysis.stored.evidence import StoredEvidence
+    from mutabot.analysis.stored.suggested import kept_suggestions
     from mutabot.journal.reader import JournalReader
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.mutant.detail import print_mutant
@@ -42,4 +43,5 @@ def show(
         print_json(result_data(result))
     else:
         with StoredEvidence(path) as evidence:
-            print_mutant(make_console(), result, source, evidence)
+            suggestions = kept_suggestions(path, found.meta)
+            print_mutant(make_console(), result, source, evidence, suggestions)

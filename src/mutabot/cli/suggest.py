@@ -45,6 +45,7 @@ def suggest(
 ) -> None:
     """Suggest checks that kill survivors of the last campaign, each proven by running it."""
     from mutabot.analysis.results import read_results
+    from mutabot.analysis.stored.suggested import keep_suggestions
     from mutabot.journal.reader import JournalReader
     from mutabot.report.suggested.data import suggested_data
     from mutabot.report.suggested.text import print_suggestions
@@ -66,6 +67,7 @@ def suggest(
     for name in found.files:
         if (root / name).exists():
             raise UsageError(f"{name} exists; --write makes new files and changes none")
+    keep_suggestions(path, results.meta, found)
     for name, text in found.files.items():
         _write(root / name, text)
     print_json(suggested_data(found)) if json else print_suggestions(make_console(), found)

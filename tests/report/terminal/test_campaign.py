@@ -307,7 +307,7 @@ def test_rounds_that_ended_alike_are_one_line(tmp_path: Path) -> None:
     with Journal.open(path) as journal:
         on = console(100)
         print_mutant(on, find_mutant(read_results(journal), "1"), None)
-    lines = [line.strip() for line in written(on).partition("Rounds\n")[2].splitlines()]
+    lines = [line.strip() for line in written(on).partition("Rounds\n")[2].partition("\n\n")[0].splitlines()]
     assert lines == [
         f"rounds 1–3, 5: C killed by a check in {samples.TEST}",
         "such as in round 1:",

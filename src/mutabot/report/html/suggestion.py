@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from mutabot.analysis.results import MutantResult
+from mutabot.analysis.suggested import Suggestions
+from mutabot.report.suggested.text import lines_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,3 +27,18 @@ class SuggestedCheck:
 
 #: the check for a mutant; None if there is none
 Suggest = Callable[[MutantResult], SuggestedCheck | None]
+
+
+def suggest_from(found: Suggestions | None) -> Suggest | None:
+    """What knows the checks that ``mutabot suggest`` found; None if it was not asked."""
+    if found is None:
+        return None
+
+    def suggest(result: MutantResult) -> SuggestedCheck | None:
+        for one in found.suggestions:
+            if result.mutant.id in one.kills:
+                statement, *notes = lines_of(one, found)
+                return SuggestedCheck(statement, one.test, tuple(notes))
+        return None
+
+    return suggest

@@ -31,7 +31,7 @@ def _parts(found: Suggestions) -> Iterator[RenderableType]:
     yield Text(f"{checks} for {len(killed)} of {plural(survivors, 'survivor')}", style="bold")
     for number, one in enumerate(found.suggestions, start=1):
         yield heading(f"{number}  {one.test}")
-        for line in _lines(one, found):
+        for line in lines_of(one, found):
             yield Padding(Text(plain(line), overflow="fold"), (0, 0, 0, 3), expand=False)
     never = [one for one in found.unsolved if one.never]
     yield from _left("No check for", [one for one in found.unsolved if not one.never], found)
@@ -44,7 +44,8 @@ def _parts(found: Suggestions) -> Iterator[RenderableType]:
             yield Text(f"  and {len(found.dropped) - _DROPPED} more (--json has all)")
 
 
-def _lines(one: Suggestion, found: Suggestions) -> Iterator[str]:
+def lines_of(one: Suggestion, found: Suggestions) -> Iterator[str]:
+    """A check: the assertion, how sure it is, and what it kills."""
     yield one.statement
     yield f"{one.moment}; {_band(one)}"
     yield f"false alarms: {_alarms(one)}"

@@ -15,6 +15,7 @@ from mutabot.analysis.divergence import change_text
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import KillRate
 from mutabot.analysis.stored.evidence import StoredEvidence
+from mutabot.analysis.suggested import Suggestions
 from mutabot.journal.records import Replayed
 from mutabot.model import Kind, Mutant, Outcome, Quantity
 from mutabot.model.outcome import end_in_words
@@ -24,6 +25,7 @@ from mutabot.report.terminal.marks import mark_of
 from .excerpt import excerpt
 from .happened import happened_parts
 from .looked import looked_parts
+from .suggested import suggested_parts
 
 #: facts that a mutant of the program text has not
 _OF_CALLS = ("operation", "quantity")
@@ -31,15 +33,20 @@ _NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
 
 
 def print_mutant(
-    console: Console, result: MutantResult, source: str | None, evidence: StoredEvidence | None = None
+    console: Console,
+    result: MutantResult,
+    source: str | None,
+    evidence: StoredEvidence | None = None,
+    suggestions: Suggestions | None = None,
 ) -> None:
     """Print one mutant.
 
     Args:
         source: the text of its file, or None if it is not known.
         evidence: the recordings of its campaign; None without any.
+        suggestions: checks that were suggested for its campaign; None if none were looked for.
     """
-    for part in _parts(result, source, evidence):
+    for part in (*_parts(result, source, evidence), *suggested_parts(result, suggestions)):
         console.print(part)
 
 
