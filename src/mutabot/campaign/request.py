@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
 from mutabot.border.job import Job
+from mutabot.campaign.workers.pause import Pause
 from mutabot.families import USUAL
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Vocabulary
@@ -41,6 +43,7 @@ class Request:
         pairs: how many mutants of the second order to plant.
         journal: name of the journal's file in mutabot's folder.
         evidence: whether to record what the world does while tests run.
+        pause: by what the campaign can be paused; None if it cannot.
     """
 
     configuration: Configuration
@@ -67,6 +70,7 @@ class Request:
     pairs: int = 200
     journal: str = JOURNAL
     evidence: bool = False
+    pause: Pause | None = None
 
     @property
     def root(self) -> Path:
@@ -82,6 +86,10 @@ class Request:
     def journal_path(self) -> Path:
         """Where the journal of this project lies."""
         return self.root / HOME / self.journal
+
+    def clock(self) -> float:
+        """Seconds since some moment, bar those of pauses: what the campaign may spend is counted by these."""
+        return time.monotonic() if self.pause is None else self.pause.clock()
 
     def job(self, round: int, **details: Any) -> Job:
         """A job of this campaign in a round."""

@@ -51,7 +51,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
 
     Raises ConfigurationError, BaselineError, NothingToDoError, ControlError, JournalError.
     """
-    started = time.monotonic()
+    started = request.clock()
     with (
         interruptions_kept(),
         Journal.prepare(request.journal_path, meta=_meta(request)) as journal,
@@ -63,7 +63,7 @@ def run_campaign(request: Request, progress: Progress) -> Path:
                 recorded(request, progress) as evidence,
             ):
                 _run(request, opened, progress, journal, evidence)
-            journal.set_meta("seconds", time.monotonic() - started)
+            journal.set_meta("seconds", request.clock() - started)
             journal.finish("complete")
         except BaseException as error:
             with suppress(JournalError):  # on a full disk not even this can be written
@@ -79,7 +79,7 @@ def _run(
     journal: Journal,
     evidence: Evidence | None,
 ) -> None:
-    started = time.monotonic()
+    started = request.clock()
     before = Snapshot.take(request.root)
     with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress, evidence)
@@ -101,7 +101,7 @@ def _run(
         progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
         sink = Sink(journal)
         run_mutants(campaign, plan.mutants, sink)
-        look_again(campaign, plan.mutants, sink, time.monotonic() - started)
+        look_again(campaign, plan.mutants, sink, request.clock() - started)
         return
     dependencies = Dependencies(request, baseline, _collected(results), before, after, watch.opened)
     note_outdated(journal, request, dependencies)
@@ -109,7 +109,7 @@ def _run(
     sink = Sink(journal, _key_of(journal, dependencies, plan))
     try:
         run_mutants(campaign, plan.mutants, sink, done)
-        look_again(campaign, plan.mutants, sink, time.monotonic() - started)
+        look_again(campaign, plan.mutants, sink, request.clock() - started)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
     _tidy(request, journal, whole)

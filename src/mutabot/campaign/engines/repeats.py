@@ -7,7 +7,6 @@ campaign's time; how many were left is told.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -77,7 +76,7 @@ class _SecondLook:
         return sorted(found, key=self.doubts.cost)
 
     def run(self, keys: Iterable[Key], until: float | None = None) -> None:
-        """Run these once more, as far as ``until`` (``time.monotonic``) allows."""
+        """Run these once more, as far as ``until`` (``Request.clock``) allows."""
         trials: list[Trial] = [(self.doubts.mutants[mutant], round) for mutant, round in keys]
         self.looker.look(trials, self.doubts.outcomes, until)
 
@@ -89,7 +88,7 @@ class _SecondLook:
 
     def repeat_doubted(self, seconds: float) -> None:
         """Run the kills in doubt once more, and those which that puts in doubt."""
-        until = time.monotonic() + seconds
+        until = self.looker.campaign.request.clock() + seconds
         repeated: list[Key] = []
         changed: list[Key] = []
         while due := [key for key in self.doubts.in_doubt() if key not in repeated]:

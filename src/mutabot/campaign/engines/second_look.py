@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 import random
-import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import takewhile
@@ -38,11 +37,12 @@ class Looker:
         first: Mapping[tuple[str, int], Outcome],
         until: float | None = None,
     ) -> None:
-        """Run these again in fresh processes; none begins after ``until`` (``time.monotonic``)."""
-        if not trials or (until is not None and time.monotonic() >= until):
+        """Run these again in fresh processes; none begins after ``until`` (``Request.clock``)."""
+        clock = self.campaign.request.clock
+        if not trials or (until is not None and clock() >= until):
             return
         self.campaign.progress.stage("second look", len(trials))
-        self.run(takewhile(lambda _: until is None or time.monotonic() < until, trials))
+        self.run(takewhile(lambda _: until is None or clock() < until, trials))
         found = [trial for trial in trials if _key(trial) in self.found]
         doubtful = [trial for trial in found if not same_end(first[_key(trial)], self.found[_key(trial)])]
         if doubtful and self._learn_dependent(mutant for mutant, _ in doubtful):

@@ -14,4 +14,4 @@ def executor(request: Request, tell: Callable[[str], None]) -> Workers:
     def unshared(reason: str) -> None:
         tell(f"each run starts anew, imports and collection included: {reason}")
 
-    return Workers(request.root, request.arguments, request.jobs, unshared)
+    return Workers(request.root, request.arguments, request.jobs, unshared, request.pause)

@@ -24,6 +24,7 @@ from mutabot.errors import JournalError
 
 from .forkserver import Copy, ForkServer
 from .interruption import interruptible
+from .pause import Pause
 from .processes import Home, LineReader, Spawned, refuse_full_disk, usual_environment
 from .remains import claim, end_abandoned, end_left_over
 from .task import Result, Task
@@ -41,6 +42,7 @@ class Workers:
         jobs: how many are at work side by side.
         on_unshared: told why tasks that might begin as copies of a fork server, or warm, do not, once that is
             known.
+        pause: while it is on, no task begins, and no trunk branches; None if nobody can pause.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
@@ -54,6 +56,7 @@ class Workers:
         arguments: Iterable[str],
         jobs: int,
         on_unshared: Callable[[str], None] = lambda reason: None,
+        pause: Pause | None = None,
     ) -> None:
         self._root = root
         self._arguments = tuple(arguments)
@@ -63,6 +66,7 @@ class Workers:
         self._waiting = Waiting(self._jobs)
         self._servers: list[ForkServer] = []
         self._on_unshared = on_unshared
+        self._pause = pause
         self._may_share = True
         self._warm: WarmServer | None = None
         self._may_begin_warm = True
@@ -108,16 +112,26 @@ class Workers:
         waiting = iter(tasks)
         next_task = next(waiting, None)
         while True:
-            while next_task is not None and self._has_place(next_task):
+            while next_task is not None and not self._is_paused and self._has_place(next_task):
                 self._start(next_task)
                 next_task = next(waiting, None)
-            if not self._workers:
+            if next_task is None and not self._workers:
                 return
             yield from self._wait(next_task)
 
     def apart(self) -> Workers:
         """One more worker process, which shares nothing with these."""
-        return Workers(self._root, self._arguments, jobs=1)
+        return Workers(self._root, self._arguments, jobs=1, pause=self._pause)
+
+    @property
+    def _is_paused(self) -> bool:
+        return self._pause is not None and self._pause.is_on
+
+    @property
+    def _inherited(self) -> tuple[int, ...]:
+        """The descriptors that trunks need."""
+        gate = () if self._pause is None else (self._pause.reading,)
+        return (*self.pool.descriptors, *gate)
 
     def _has_place(self, task: Task) -> bool:
         if self._workers and self._is_alone(task):
@@ -135,7 +149,8 @@ class Workers:
 
     def _start(self, task: Task) -> None:
         if task.job.branching is not None:
-            branching = replace(task.job.branching, tokens=self.pool.descriptors)
+            gate = None if self._pause is None else self._pause.reading
+            branching = replace(task.job.branching, tokens=self.pool.descriptors, gate=gate)
             task = replace(task, job=replace(task.job, branching=branching))
         home = Home.make(Path(self._folder.name), task.job)
         reading, writing = os.pipe()
@@ -154,7 +169,7 @@ class Workers:
         copy = server.copy(home, writing) if server is not None else None
         if copy is not None:
             return copy
-        descriptors = self.pool.descriptors if task.is_trunk else ()
+        descriptors = self._inherited if task.is_trunk else ()
         warm = self._warm_server(task) if task.begins_warm else None
         starter = warm.starter if warm is not None else None
         process = Spawned(self._root, self._arguments, home, writing, descriptors, starter)
@@ -183,9 +198,7 @@ class Workers:
             return found
         for idle in [server for server in self._servers if server.is_idle]:
             self._end_server(idle)  # what it was for is over
-        server = ForkServer(
-            task.job, self._root, self._arguments, Path(self._folder.name), self.pool.descriptors
-        )
+        server = ForkServer(task.job, self._root, self._arguments, Path(self._folder.name), self._inherited)
         self._servers.append(server)
         self._selector.register(server.pipe, selectors.EVENT_READ, server)
         reason = server.wait_until_ready(task.startup)
@@ -203,18 +216,14 @@ class Workers:
 
     def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Line]]:
         """Until something happens, or might: ``next_task`` has no place yet."""
-        timeout = max(0.0, min(worker.until for worker in self._workers) - time.monotonic())
-        if any(worker.has_ended for worker in self._workers):
-            timeout = 0.0  # a fork server may have told so while it was asked for something else
-        if next_task is not None:
-            timeout = min(timeout, PERIOD)
-        for_token = next_task is not None and next_task.is_trunk
-        if for_token and len(self._workers) < self._jobs:
-            self._selector.register(self.pool.reading, selectors.EVENT_READ, None)
+        timeout = self._patience(next_task)
+        awaited = self._awaited(next_task)
+        if awaited is not None:
+            self._selector.register(awaited, selectors.EVENT_READ, None)
         with interruptible():
             ready = self._selector.select(timeout)
-        if self.pool.reading in self._selector.get_map():
-            self._selector.unregister(self.pool.reading)
+        if awaited is not None:
+            self._selector.unregister(awaited)
         for key, _ in ready:
             if isinstance(key.data, ForkServer):
                 key.data.listen()
@@ -223,10 +232,28 @@ class Workers:
                     yield key.data.task, line
         now = time.monotonic()
         for worker in list(self._workers):
-            if now >= worker.until and not worker.has_ended:
+            if now >= worker.deadline(self._pause) and not worker.has_ended:
                 worker.expire()
             if worker.has_ended:
                 yield from self._finish(worker)
+
+    def _patience(self, next_task: Task | None) -> float | None:
+        """Seconds until something is to be looked at, whatever happens; None if nothing is."""
+        if any(worker.has_ended for worker in self._workers):
+            return 0.0  # a fork server may have told so while it was asked for something else
+        until = min((worker.deadline(self._pause) for worker in self._workers), default=None)
+        seconds = None if until is None else max(0.0, until - time.monotonic())
+        if next_task is None or self._is_paused:
+            return seconds
+        return PERIOD if seconds is None else min(seconds, PERIOD)
+
+    def _awaited(self, next_task: Task | None) -> int | None:
+        """What tells that the next task may begin; None if only workers can."""
+        if next_task is None:
+            return None
+        if self._pause is not None and self._pause.is_on:
+            return self._pause.reading
+        return self.pool.reading if next_task.is_trunk and len(self._workers) < self._jobs else None
 
     def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Line]]:
         self._workers.remove(worker)
@@ -286,6 +313,12 @@ class _Worker:
         elif isinstance(line, TestStart) or self.task.is_trunk:
             running = self.result.running or ""
             self.until = time.monotonic() + self.task.deadlines.get(running, self.task.deadline)
+
+    def deadline(self, pause: Pause | None) -> float:
+        """When (``time.monotonic``) its time is up. A trunk that waits for the end of a pause tells nothing."""
+        if pause is None or not self.task.is_trunk:
+            return self.until
+        return max(self.until, pause.lasted_until() + self.task.deadline)
 
     def expire(self) -> None:
         """The wall clock ran out: end the process group."""

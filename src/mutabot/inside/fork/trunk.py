@@ -219,6 +219,7 @@ class Trunk:
 
     def _fork_each(self, mutants: list[Mutant]) -> None:
         for mutant in mutants:
+            self._wait_while_paused()
             self._branched.add(mutant.id)
             foot = Foot()
             self._forking = True
@@ -246,19 +247,32 @@ class Trunk:
         foot.restore()
         self.branch.become(mutant, self.branching.choices.get(mutant.id, ()))
 
+    def _wait_while_paused(self) -> None:
+        """Branches at work end meanwhile, and what they held goes back; the trunk keeps its own token."""
+        gate = self.branching.gate
+        while gate is not None and not self._is_open(gate):
+            if self._reap(self._wait(gate)):
+                self._tokens.give_back()
+
+    @staticmethod
+    def _is_open(gate: int) -> bool:
+        poll = select.poll()
+        poll.register(gate, select.POLLIN)
+        return bool(poll.poll(0))
+
     def _take_token(self) -> None:
         """The trunk's token went to the branch: wait for another, from the pool or from a branch's end."""
         while not self._tokens.take():
-            if self._reap(self._wait(pool=True)):
+            if self._reap(self._wait(self._tokens.reading)):
                 return
 
-    def _wait(self, *, pool: bool = False) -> list[int]:
-        """Sleep until a branch ends, its time is up or (``pool``) there is a free token."""
+    def _wait(self, other: int | None = None) -> list[int]:
+        """Sleep until a branch ends, its time is up, or this ``other`` descriptor can be read."""
         poll = select.poll()
         for pidfd in self._children:
             poll.register(pidfd, select.POLLIN)
-        if pool:
-            poll.register(self._tokens.reading, select.POLLIN)
+        if other is not None:
+            poll.register(other, select.POLLIN)
         until = min((child.until for child in self._children.values()), default=None)
         timeout = None if until is None else max(0.0, until - time.monotonic()) * 1e3 + 1.0
         return [descriptor for descriptor, _ in poll.poll(timeout)]

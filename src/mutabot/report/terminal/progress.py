@@ -20,13 +20,12 @@ from rich.progress import (
 )
 from rich.table import Column
 
+from mutabot.report.pace import Pace
+
 from .console import plain
 
 #: seconds between two plain lines
 EVERY = 5.0
-#: part of a stage after which the time left is worth telling: the first outcomes say little about the others
-_TELLING = 0.1
-
 
 #: columns of the terminal from which on the bar has this width
 _BARS = ((120, 40), (80, 20), (0, 10))
@@ -110,39 +109,36 @@ class Lines:
 
     def __init__(self, console: Console, *, every: float = EVERY) -> None:
         self._console, self._every = console, every
-        self._text, self._done = "", 0
-        self._total: int | None = None
-        self._began = self._last = 0.0
+        self._text, self._pace = "", Pace()
+        self._last = 0.0
 
     def stage(self, text: str, total: int | None = None) -> None:
         """Print the stage's name."""
-        self._text, self._total, self._done = text, total, 0
-        self._began = self._last = time.monotonic()
+        self._text, self._pace = text, Pace(total)
+        self._last = time.monotonic()
         self._print(f"{text}: {total}" if total is not None else text)
 
     def advance(self, line: str | None = None) -> None:
         """Count, and print how far it is if the last line is long enough ago."""
-        self._done += 1
+        self._pace.advance()
         now = time.monotonic()
-        if self._done != self._total and now - self._last < self._every:
+        if self._pace.done != self._pace.total and now - self._last < self._every:
             return
         self._last = now
-        self._print(f"{self._text} {self._how_far(now)}" + (f" ({line})" if line else ""))
+        self._print(f"{self._text} {self._how_far()}" + (f" ({line})" if line else ""))
 
     def note(self, text: str) -> None:
         """Print a line."""
         self._print(text)
 
-    def _how_far(self, now: float) -> str:
-        spent = now - self._began
-        if self._total is None:
-            return str(self._done)
-        if self._done >= self._total:
-            return f"{self._done}/{self._total}, took {spent:.0f} s"
-        done = f"{self._done}/{self._total}"
-        if self._done < _TELLING * self._total:
-            return done
-        return f"{done}, {spent / self._done * (self._total - self._done):.0f} s left"
+    def _how_far(self) -> str:
+        pace = self._pace
+        if pace.total is None:
+            return str(pace.done)
+        done = f"{pace.done}/{pace.total}"
+        if pace.is_done:
+            return f"{done}, took {pace.spent:.0f} s"
+        return done if pace.left is None else f"{done}, {pace.left:.0f} s left"
 
     def _print(self, text: str) -> None:
         self._console.print(plain(text), soft_wrap=True)
