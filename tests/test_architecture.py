@@ -36,11 +36,12 @@ ALLOWED = {
     "suggestion": {"errors", "model", "border", "journal", "campaign", "analysis"},
     "analysis": {"exit_codes", "errors", "model", "border", "vocabulary", "journal", "evidence"},
     "report": {"errors", "model", "border", "vocabulary", "journal", "analysis", "evidence"},
+    "serving": {"errors", "campaign", "analysis", "report"},
     "cells": {"evidence"},
     "__main__": {"cli"},
     "cli": {
         "exit_codes", "errors", "families", "model", "border", "settings", "vocabulary", "journal",
-        "campaign", "proposal", "suggestion", "analysis", "report",
+        "campaign", "proposal", "suggestion", "analysis", "report", "serving",
     },
 }  # fmt: skip
 FILES = files()

@@ -5,11 +5,24 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 import typer
 
+from mutabot.errors import UsageError
+
 from . import options
-from .output import echo, exit_as, print_json, progress_shown, show_results
+from .output import echo, exit_as, print_json, progress_shown, show_results, tell
 from .request import request_of
+
+if TYPE_CHECKING:
+    from mutabot.analysis.gate import Decision
+    from mutabot.analysis.results import Results
+    from mutabot.campaign.request import Progress, Request
+    from mutabot.serving.live import Live
 
 
 def check(
@@ -83,25 +96,48 @@ def run(
     min_score: options.MinScore = None,
     table: options.Table = False,
     json: options.Json = False,
+    serve: options.Serve = False,
+    port: options.Port = None,
 ) -> None:
     """Run the campaign, or go on with it: baseline, controls, mutants, scores."""
-    from mutabot.analysis.gate import decide
-    from mutabot.campaign.run import run_campaign
-
+    if port is not None and not serve:
+        raise UsageError("--port goes with --serve")
     request = request_of(
         context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
         sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
         fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline, evidence=True,
     )  # fmt: skip
-    with progress_shown() as progress:
-        journal_path = run_campaign(request, progress)
-    results = show_results(journal_path, json=json, summary=not table)
+    with ExitStack() as stack:
+        campaign = stack.enter_context(_served(request, port)).run if serve else partial(_run, request)
+        with progress_shown() as progress:
+            journal_path = campaign(progress)
+        results = show_results(journal_path, json=json, summary=not table)
+        exit_as(_decision(request, results, min_score))
+
+
+def _run(request: Request, progress: Progress) -> Path:
+    from mutabot.campaign.run import run_campaign
+
+    return run_campaign(request, progress)
+
+
+def _served(request: Request, port: int | None) -> Live:
+    """What runs the campaign with a page. Raises UsageError if the port cannot be had."""
+    from mutabot.serving.live import Live
+
+    live = Live(request, port or 0, lambda text: tell([f"mutabot: {text}"]))
+    tell([f"mutabot: live at {live.address}"])
+    return live
+
+
+def _decision(request: Request, results: Results, min_score: float | None) -> Decision:
+    from mutabot.analysis.gate import decide
+
     limit = min_score if min_score is not None else request.configuration.min_score
-    decision = decide(
+    return decide(
         results,
         min_score=None if limit is None else limit / 100,
         max_timeouts=request.configuration.timeout_limit,
         max_unstable=request.configuration.unstable_limit,
         max_errors=request.configuration.error_limit,
     )
-    exit_as(decision)

@@ -115,6 +115,19 @@ BaselineRuns = Annotated[
     int | None, typer.Option("--baseline", metavar="N", min=1, help="Run the original N times per round.")
 ]
 Round = Annotated[int | None, typer.Option("--round", metavar="N", min=1, help="Only this round.")]
+Serve = Annotated[
+    bool,
+    typer.Option(
+        "--serve",
+        help="Show the report in a browser while it fills, with pause and stop. Prints its address.",
+    ),
+]
+Port = Annotated[
+    int | None,
+    typer.Option(
+        "--port", metavar="N", min=1, max=65535, help="Port of --serve on this machine; else a free one."
+    ),
+]
 MinScore = Annotated[
     float | None,
     typer.Option(

@@ -26,6 +26,7 @@ class Pause:
         self._began: float | None = None
         self._ended = float("-inf")
         self._before = 0.0
+        self._is_closed = False
         os.write(self._writing, b"g")
 
     def __enter__(self) -> Self:
@@ -35,6 +36,7 @@ class Pause:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         with self._lock:
+            self._is_closed = True
             os.close(self.reading)
             os.close(self._writing)
 
@@ -44,18 +46,18 @@ class Pause:
         return self._began is not None
 
     def begin(self) -> bool:
-        """Pause; returns False if it was paused before."""
+        """Pause; returns False if it was paused before, or is over."""
         with self._lock:
-            if self._began is not None:
+            if self._began is not None or self._is_closed:
                 return False
             os.read(self.reading, 1)
             self._began = time.monotonic()
             return True
 
     def end(self) -> bool:
-        """Go on; returns False if it was not paused."""
+        """Go on; returns False if it was not paused, or is over."""
         with self._lock:
-            if self._began is None:
+            if self._began is None or self._is_closed:
                 return False
             self._ended = time.monotonic()
             self._before += self._ended - self._began

@@ -16,10 +16,12 @@
   let isFirst = true;
 
   mutabot.start = (data) => {
+    const older = campaign;
     campaign = prepared(data);
     mutabot.campaign = campaign;
     document.getElementById("project").textContent = mutabot.legible(campaign.name || "Mutabot");
     foot();
+    if (older) { renew(older); return; }
     addEventListener("hashchange", show);
     show();
     performance.mark("ready");
@@ -46,7 +48,7 @@
     return data;
   }
 
-  function show() {
+  function show(event) {
     if (cleanUp) cleanUp();
     cleanUp = null;
     const { parts, asked } = here();
@@ -64,10 +66,34 @@
     }
     const title = body.querySelector("h1");
     document.title = `${title ? title.textContent : "Report"} · ${mutabot.legible(campaign.name || "Mutabot")}`;
-    if (!isFirst && !body.contains(document.activeElement)) { scrollTo(0, 0); if (title) title.focus({ preventScroll: true }); }
+    if (!isFirst && event && !body.contains(document.activeElement)) { scrollTo(0, 0); if (title) title.focus({ preventScroll: true }); }
     isFirst = false;
   }
   mutabot.show = show;
+
+  /** Newer data of the same campaign: what is shown is drawn again, and the reader stays where he is. */
+  function renew(older) {
+    const body = main(), active = document.activeElement;
+    const within = [body, document.getElementById("nav")].find((one) => one.contains(active));
+    const { parts } = here();
+    mutabot.forget("mutant ", "recordings ");
+    const told = (one) => one && `${one.ends}\n${one.why}`;
+    if (parts[0] === "mutant" && told(older.byNumber.get(Number(parts[1]))) === told(campaign.byNumber.get(Number(parts[1])))) return;
+    if ((within && active.matches("select")) || (!getSelection().isCollapsed && body.contains(getSelection().anchorNode))) return; // in the midst of a choice
+    const key = !within ? null : active.id ? `#${CSS.escape(active.id)}` : active.hasAttribute("href") ? `a[href="${CSS.escape(active.getAttribute("href"))}"]`
+      : active.dataset.status ? `[data-status="${CSS.escape(active.dataset.status)}"]` : active.dataset.sort ? `[data-sort="${active.dataset.sort}"]` : null;
+    const caret = within && active.matches("input[type=search]") ? [active.selectionStart, active.selectionEnd] : null;
+    const open = [...body.querySelectorAll("details")].map((one) => one.open);
+    const [x, y] = [scrollX, scrollY];
+    body.style.minHeight = `${body.offsetHeight}px`; // rows come a little later
+    show();
+    body.querySelectorAll("details").forEach((one, index) => { one.open = Boolean(open[index]); });
+    const again = key && within.querySelector(key);
+    if (again) again.focus({ preventScroll: true });
+    if (again && caret) again.setSelectionRange(...caret);
+    scrollTo(x, y);
+    setTimeout(() => { body.style.minHeight = ""; }, 300);
+  }
 
   function navigation(current) {
     document.getElementById("nav").replaceChildren(h("ul", null, PAGES

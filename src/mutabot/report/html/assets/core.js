@@ -20,13 +20,18 @@ const mutabot = (() => {
       script.addEventListener("error", () => {
         waiting.delete(name);
         script.remove();
-        reject(new Error(`The file ${file} is missing beside this page. Copy the whole folder, or write the report again.`));
+        reject(new Error(mutabot.missing || `The file ${file} is missing beside this page. Copy the whole folder, or write the report again.`));
       });
       if (waiting.has(name)) return;
       waiting.set(name, script);
       script.src = file;
       document.head.append(script);
     });
+  }
+
+  /** Forget data of which there may be newer ones. */
+  function forget(...beginnings) {
+    for (const name of [...taken.keys()]) if (beginnings.some((one) => name.startsWith(one))) taken.delete(name);
   }
 
   const ODD = /[\u061c\u200b-\u200f\u202a-\u202e\u2060-\u2069\ufeff]/g;
@@ -104,5 +109,5 @@ const mutabot = (() => {
   /** What a page says where there is nothing to show. */
   const empty = (title, ...children) => h("div", { class: "empty" }, h("p", { class: "empty-title" }, title), h("p", null, children));
 
-  return { take, load, taken: (name) => taken.get(name), h, svg, add, address, here, percent, between, count, number, amount, duration, say, ink, empty, legible, views };
+  return { take, load, forget, taken: (name) => taken.get(name), h, svg, add, address, here, percent, between, count, number, amount, duration, say, ink, empty, legible, views };
 })();

@@ -20,11 +20,11 @@
       .map(([kind, letter, words]) => h("li", null, h("span", { class: `mark m-${kind}`, "aria-hidden": "true" }, letter), words)));
     const holder = h("div", null);
     body.append(letters, holder);
-    let order = "file";
-    let page = 1;
+    let { order, page } = mutabot.lastTests || { order: "file", page: 1 };
     const orders = { file: (one) => one.index, reaches: (one) => -one.reaches, kills: (one) => -one.kills, alone: (one) => -one.alone };
     const stop = [];
     function draw() {
+      mutabot.lastTests = { order, page };
       const sorted = [...rows].sort((one, other) => orders[order](one) - orders[order](other) || one.index - other.index);
       const pages = Math.ceil(sorted.length / PAGE);
       const head = (name, text, kind) => h("th", { scope: "col", class: kind, "aria-sort": order === name ? (name === "file" ? "ascending" : "descending") : null },

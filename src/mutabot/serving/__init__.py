@@ -1,0 +1,1 @@
+"""The report of a campaign that runs, served to browsers on this machine, with pause and stop."""

@@ -1,0 +1,196 @@
+"""The server: to this machine alone, to who knows the address, and to no page of anybody else.
+
+A page of another site cannot read anything here: it does not know the token, its name in ``Host`` is not
+this machine's (which also stops names that are made to lead here), and its ``Origin`` is not ours.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hmac
+import json
+import re
+import secrets
+import select
+import socket
+import threading
+import time
+from collections.abc import Callable, Mapping
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any
+
+from mutabot.errors import UsageError
+
+from .feed import Event, Feed
+from .pages import Page, Pages
+
+HOST = "127.0.0.1"
+#: what this machine is called here; the port is another one behind a tunnel
+_NAMES = re.compile(r"(localhost|127\.0\.0\.1|\[::1\])(:[0-9]{1,5})?", re.IGNORECASE)
+#: seconds: for one request or one write; between two signs of life; between two looks; between two states
+_PATIENCE, _HEARTBEAT, _TICK, _REST = 30.0, 15.0, 1.0, 0.2
+_HEADERS = {
+    "Cache-Control": "no-store",
+    "Content-Security-Policy": "frame-ancestors 'none'",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+}
+
+Commands = Mapping[str, Callable[[], None]]
+
+
+class Server:
+    """Serves pages and events, and takes commands, in threads of its own. Raises UsageError without its port.
+
+    Args:
+        port: of this machine; 0 for any that is free.
+        commands: what to do, by name.
+
+    Attributes:
+        address: where a browser finds it. Who knows it may see the report, and give commands.
+    """
+
+    def __init__(self, pages: Pages, feed: Feed, commands: Commands, port: int = 0) -> None:
+        token = secrets.token_urlsafe(24)
+        try:
+            self._server = _Server(port, token, pages, feed, commands)
+        except OSError as error:
+            raise UsageError(
+                f"--port {port} of {HOST} cannot be had: {error.strerror}; without --port a free one is taken"
+            ) from error
+        self.address = f"http://{HOST}:{self._server.server_address[1]}/{token}/"
+        self._thread = threading.Thread(
+            target=self._server.serve_forever, kwargs={"poll_interval": 0.1}, name="mutabot-page", daemon=True
+        )
+        self._thread.start()
+
+    def close(self) -> None:
+        """No more requests; streams end with their feed."""
+        self._server.shutdown()
+        self._thread.join()
+        self._server.server_close()
+
+
+class _Server(ThreadingHTTPServer):
+    daemon_threads = True
+    block_on_close = False  # a browser that does not read holds up nobody
+
+    def __init__(self, port: int, token: str, pages: Pages, feed: Feed, commands: Commands) -> None:
+        self.token, self.pages, self.feed, self.commands = token.encode(), pages, feed, commands
+        super().__init__((HOST, port), _Handler)
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """A browser that has gone, or is too slow: nothing of it belongs on the terminal."""
+
+
+class _Handler(BaseHTTPRequestHandler):
+    server: _Server
+    timeout = _PATIENCE
+    server_version, sys_version = "mutabot", ""
+
+    def do_GET(self) -> None:
+        """A page, data, or the stream of events."""
+        path = self._path()
+        if path is None:
+            return
+        if path == "events":
+            self._stream()
+            return
+        try:
+            page = self.server.pages.get(path)
+        except Exception as error:  # whatever is wrong with the page, the campaign goes on
+            self._refuse(HTTPStatus.INTERNAL_SERVER_ERROR, f"{type(error).__name__}: {error}")
+            return
+        if page is None:
+            self._refuse(HTTPStatus.NOT_FOUND, "there is no such page")
+        else:
+            self._send(page)
+
+    def do_POST(self) -> None:
+        """A command, from our own page alone."""
+        path = self._path()
+        if path is None:
+            return
+        command = self.server.commands.get(path)
+        if command is None:
+            self._refuse(HTTPStatus.NOT_FOUND, "there is no such command")
+        elif (self.headers.get("Origin") or "").lower() != f"http://{self.headers['Host']}".lower():
+            self._refuse(HTTPStatus.FORBIDDEN, "commands come from this page alone")
+        else:
+            command()
+            self._begin(HTTPStatus.NO_CONTENT)
+
+    def _path(self) -> str | None:
+        """What is asked for, without the token; None if the request was refused."""
+        hosts = self.headers.get_all("Host") or []
+        if len(hosts) != 1 or not _NAMES.fullmatch(hosts[0]):
+            self._refuse(HTTPStatus.MISDIRECTED_REQUEST, "open this page as localhost or 127.0.0.1")
+            return None
+        token, slash, path = self.path.partition("?")[0].removeprefix("/").partition("/")
+        if not hmac.compare_digest(token.encode("utf-8", "replace"), self.server.token):
+            self._refuse(HTTPStatus.NOT_FOUND, "there is no such page")
+            return None
+        if not slash:
+            self._begin(HTTPStatus.MOVED_PERMANENTLY, {"Location": f"/{token}/", "Content-Length": "0"})
+            return None
+        return path
+
+    def _send(self, page: Page) -> None:
+        kind = f"{page.kind}; charset=utf-8"
+        self._begin(HTTPStatus.OK, {"Content-Type": kind, "Content-Length": str(len(page.data))})
+        self.wfile.write(page.data)
+
+    def _refuse(self, status: HTTPStatus, text: str) -> None:
+        data = f"{text}\n".encode()
+        headers = {"Content-Type": "text/plain; charset=utf-8", "Content-Length": str(len(data))}
+        self._begin(status, headers)
+        with contextlib.suppress(OSError):
+            self.wfile.write(data)
+
+    def _begin(self, status: HTTPStatus, headers: Mapping[str, str] | None = None) -> None:
+        self.send_response(status)
+        for name, value in {**_HEADERS, **(headers or {})}.items():
+            self.send_header(name, value)
+        self.end_headers()
+
+    def _stream(self) -> None:
+        feed = self.server.feed
+        with feed.reader() as is_free:
+            if not is_free:
+                self._refuse(HTTPStatus.SERVICE_UNAVAILABLE, "too many pages are open")
+                return
+            self._begin(HTTPStatus.OK, {"Content-Type": "text/event-stream; charset=utf-8"})
+            self.wfile.write(b"retry: 2000\n\n")
+            last, written = _number(self.headers.get("Last-Event-ID")), time.monotonic()
+            while not self._is_gone():
+                events = feed.after(last, _TICK)
+                if events:
+                    self.wfile.write(b"".join(map(_bytes, events)))
+                    last, written = events[-1].number, time.monotonic()
+                    time.sleep(_REST)
+                elif feed.is_closed:
+                    return
+                elif time.monotonic() - written > _HEARTBEAT:
+                    self.wfile.write(b": still here\n\n")
+                    written = time.monotonic()
+
+    def _is_gone(self) -> bool:
+        """Whether the browser has closed the connection."""
+        poll = select.poll()
+        poll.register(self.connection, select.POLLIN)
+        return bool(poll.poll(0)) and not self.connection.recv(1, socket.MSG_PEEK)
+
+    def log_message(self, format: str, *args: Any) -> None:
+        """Nothing: the terminal belongs to the campaign, and the address to nobody else."""
+
+
+def _bytes(event: Event) -> bytes:
+    data = json.dumps(event.data, ensure_ascii=False, allow_nan=False)
+    return f"id: {event.number}\nevent: {event.kind}\ndata: {data}\n\n".encode("utf-8", "replace")
+
+
+def _number(text: str | None) -> int:
+    return int(text) if text is not None and re.fullmatch(r"[0-9]{1,15}", text) else 0
