@@ -45,7 +45,7 @@ class Branching:
         mutants: the mutants that are alive in this round.
         tests: per mutant id, the tests in which it is to be branched, in the order of the job's tests.
         tokens: descriptors of the token pool: reading end, writing end; filled in by whoever runs the job.
-        gate: descriptor that can be read while mutants may begin, filled in likewise; None if they always may.
+        gate: descriptor that can be read while mutants may begin, filled in likewise; None: always.
         walls: wall-clock seconds that a branch may take, by test.
         wall: the same for tests that are missing there.
         choices: for mutants of the program text, by id: the alternatives that they are.

@@ -315,7 +315,7 @@ class _Worker:
             self.until = time.monotonic() + self.task.deadlines.get(running, self.task.deadline)
 
     def deadline(self, pause: Pause | None) -> float:
-        """When (``time.monotonic``) its time is up. A trunk tells nothing while it waits for a pause to end."""
+        """When (``time.monotonic``) its time is up. A trunk in a pause has nothing to tell."""
         if pause is None or not self.task.is_trunk:
             return self.until
         return max(self.until, pause.lasted_until() + self.task.deadline)
