@@ -65,7 +65,10 @@ def listening(address: str, last: int | None = None) -> Iterator[Iterator[tuple[
 
 def _events(response: http.client.HTTPResponse) -> Iterator[tuple[int, str, Any]]:
     found: dict[str, str] = {}
+    silent = 0
     for line in response:
+        silent = silent + 1 if line.startswith(b":") else 0 if line.strip() else silent
+        assert silent < 3, "nothing came"
         name, _, value = line.decode().rstrip("\n").partition(": ")
         if name:
             found[name] = value

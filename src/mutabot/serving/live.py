@@ -93,7 +93,7 @@ class Live:
             time.sleep(_TICK)
 
     def _begin_pause(self) -> None:
-        if self._pause.begin():
+        if not self._told.ended and self._pause.begin():
             self._told.note("paused from the page: what is at work ends, nothing new begins")
             self._told.tell()
 
