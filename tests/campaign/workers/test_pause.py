@@ -6,8 +6,10 @@ import os
 import select
 import threading
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 from typing import Any
 
 import pytest
@@ -24,6 +26,7 @@ MISSION = """
         return arm.position()
 """
 TESTS = """
+    import os
     import time
     import mission
     from robot import Arm
@@ -31,44 +34,55 @@ TESTS = """
     def test_it_is_where_it_should_be():
         arm = Arm()
         mission.run(arm)
-        time.sleep(0.05)
+        written = os.open({log!r}, os.O_WRONLY | os.O_APPEND)
+        os.write(written, b"+")
+        os.close(written)
+        time.sleep(0.3)
         assert arm.x == -0.25
 """
+#: seconds that a pause lasts; more than a trunk may be silent
+LONG, PATIENCE = 4.0, 1.5
 
 
 @dataclass
 class Pausing(Quiet):
-    """A progress that pauses at the second outcome, and sees what comes while it lasts."""
+    """A progress that pauses once the second mutant is at work, and counts those that run.
 
-    pause: Pause | None = None
-    seconds: float = 0.0
-    outcomes: int = 0
+    Attributes:
+        log: has a sign for each run of the test.
+        meanwhile: how many were there in the midst of the pause, and at its end.
+    """
+
+    pause: Pause = field(default_factory=Pause)
+    log: Path = Path()
     meanwhile: list[int] = field(default_factory=list)
-    _is_mutants: bool = False
-    _watcher: threading.Thread | None = None
+    watcher: threading.Thread | None = None
 
     def stage(self, text: str, total: int | None = None) -> None:
         super().stage(text, total)
-        self._is_mutants = text == "mutants"
+        if text == "mutants":
+            self.watcher = threading.Thread(target=self._watch, args=(self._runs(),))
+            self.watcher.start()
 
-    def advance(self, line: str | None = None) -> None:
-        super().advance(line)
-        self.outcomes += self._is_mutants
-        if self.pause is not None and self.outcomes == 2 and self._watcher is None:
-            self.pause.begin()
-            self._watcher = threading.Thread(target=self._watch, args=(self.pause,))
-            self._watcher.start()
+    def _runs(self) -> int:
+        return self.log.stat().st_size
 
-    def _watch(self, pause: Pause) -> None:
-        time.sleep(self.seconds / 2)  # what is at work ends
-        self.meanwhile.append(self.outcomes)
-        time.sleep(self.seconds / 2)
-        self.meanwhile.append(self.outcomes)
-        pause.end()
+    def _watch(self, before: int) -> None:
+        until = time.monotonic() + 60.0  # so that a failure does not hang
+        while self._runs() < before + 2 and time.monotonic() < until:
+            time.sleep(0.01)
+        self.pause.begin()
+        for _ in range(2):
+            time.sleep(LONG / 2)  # in the first half, what is at work ends
+            self.meanwhile.append(self._runs())
+        self.pause.end()
 
-    def join(self) -> None:
-        assert self._watcher is not None
-        self._watcher.join()
+
+@pytest.fixture
+def log() -> Iterator[Path]:
+    """A file that no process has a private copy of."""
+    with NamedTemporaryFile(dir="/dev/shm", prefix="mutabot-test-") as file:
+        yield Path(file.name)
 
 
 def ends(path: Path) -> dict[tuple[str, int], tuple[object, ...]]:
@@ -80,20 +94,24 @@ def ends(path: Path) -> dict[tuple[str, int], tuple[object, ...]]:
 
 @pytest.mark.parametrize("engine", ["branch", "replay"])
 def test_a_paused_campaign_ends_like_one_that_is_not(
-    engine: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    engine: str, tmp_path: Path, log: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(trunk, "_PATIENCE", 1.0)  # less than the pause: the safety net must not take note
-    options: dict[str, Any] = {"engine": engine, "jobs": 1, "rounds": 1, "only": ("1-5",)}
-    folder = write_project(tmp_path / "project", MISSION, TESTS)
+    options: dict[str, Any] = {"engine": engine, "jobs": 1, "rounds": 1, "only": ("1-4",)}
+    folder = write_project(tmp_path / "project", MISSION, TESTS.format(log=str(log)))
+    (folder / "mutabot.toml").write_text(
+        (folder / "mutabot.toml").read_text() + "timeout_seconds = 1.5\n", encoding="utf-8"
+    )
     usual = ends(run_campaign(request_for(folder, **options), Quiet()))
+    assert {end[-1] for end in usual.values()} == {engine}
+    monkeypatch.setattr(trunk, "_PATIENCE", PATIENCE - 2 * 1.5)  # of a trunk, which adds twice the limit
     with Pause() as pause:
-        progress = Pausing(pause=pause, seconds=4.0)
+        progress = Pausing(pause=pause, log=log)
         path = run_campaign(request_for(folder, fresh=True, pause=pause, **options), progress)
-        progress.join()
+        assert progress.watcher is not None
+        progress.watcher.join()
+        middle, last = progress.meanwhile
+    assert middle == last < log.stat().st_size
     assert ends(path) == usual
-    first, last = progress.meanwhile
-    assert first == last < len(usual)
-    assert not [line for line in progress.lines if "died" in line]
 
 
 def test_the_time_of_pauses_does_not_count() -> None:
@@ -107,7 +125,8 @@ def test_the_time_of_pauses_does_not_count() -> None:
         assert pause.clock() == frozen >= before
         assert pause.end()
         assert not pause.end()
-        assert frozen <= pause.clock() < frozen + 0.05 + (time.monotonic() - pause.lasted_until())
+        assert frozen <= pause.clock() <= frozen + (time.monotonic() - pause.lasted_until())
+    assert not pause.begin()  # it is over
 
 
 def test_nothing_is_paused_at_first_and_a_pause_is_seen_from_outside() -> None:

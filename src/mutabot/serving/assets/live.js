@@ -10,6 +10,7 @@
   let timer = null;
   let isAway = false; // the stream is cut
   let isGone = false; // for good
+  mutabot.live = true;
   mutabot.missing = GONE;
 
   const bar = h("progress", { max: 1, "aria-label": "How far the campaign is" });

@@ -28,7 +28,7 @@
   };
 
   addEventListener("DOMContentLoaded", () => {
-    if (campaign) return;
+    if (campaign || mutabot.live) return;
     main().replaceChildren(h("h1", null, "The data of this report are missing"), mutabot.empty("There is no whole data/campaign.js beside this page.",
       "The report was not written to its end, or only a part of its folder was copied. ", h("code", null, "mutabot report --html"), " writes it again."));
   });

@@ -21,6 +21,9 @@
     .sort((one, other) => other.worst - one.worst || one.indistinguishable - other.indistinguishable || one.number - other.number);
   mutabot.worstFirst = worstFirst;
 
+  /** Whether the page is served by the campaign itself: then it says above how far it is. */
+  const isUnderWay = (campaign) => Boolean(mutabot.live) && campaign.state === "running";
+
   function state(campaign) {
     const meta = campaign.meta;
     const complete = campaign.state === "complete" && campaign.done >= campaign.planned;
@@ -30,7 +33,7 @@
       campaign.drawing && campaign.drawing.onePerSite && "one mutant per site"];
     return [
       h("p", { class: "lead" }, complete ? "complete · " : "", facts.filter(Boolean).join(" · ")),
-      complete ? null : h("p", { class: "notice" }, h("strong", null, `This campaign is not complete (${campaign.state}): `),
+      complete || isUnderWay(campaign) ? null : h("p", { class: "notice" }, h("strong", null, `This campaign is not complete (${campaign.state}): `),
         `${campaign.done} of ${campaign.planned} outcomes are known. `, "`mutabot run` goes on where it stopped."),
       campaign.attempt ? h("p", { class: "notice" }, `A later campaign ended before it ran anything: ${campaign.attempt}`) : null,
     ].flat().reduce((box, one) => { if (one) box.append(one); return box; }, h("div", { class: "state" }));
@@ -100,6 +103,7 @@
       const judged = campaign.mutants.some((one) => one.valid);
       return h("section", null, heading, judged
         ? empty(campaign.state === "complete" ? "No survivors." : "No survivors so far.", "The tests noticed every mutant that was valid. The check score above tells how many of these were found by checks, and not by an exception on the way.")
+        : isUnderWay(campaign) ? empty("Nothing is judged yet.", "A mutant is, as soon as its tests have run as the mutant and as the original.")
         : empty("Nothing was judged.", "No mutant was valid in any round; the list below says why."));
     }
     return h("section", { "aria-labelledby": "survivors" }, heading,
