@@ -146,8 +146,8 @@ class Pages:
         page = _bytes(f"mutant {number}", {**mutant_page(result), "suggestion": None, "media": []})
         with StoredEvidence(self._journal) as evidence:
             recorded = self._recorded = Recorded(evidence, snapshot.clean, **self._originals())
-            found = _recordings(recorded, result)
-            return page + (_bytes(f"recordings {number}", found) if any(found.values()) else b"")
+            data = _recordings(recorded, result)
+            return page + (_bytes(f"recordings {number}", data) if any(data.values()) else b"")
 
     def _original(self, number: int, snapshot: _Snapshot) -> bytes | None:
         originals = [*self._recorded.originals.values()] if self._recorded is not None else []
