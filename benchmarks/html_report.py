@@ -117,6 +117,7 @@ def build(folder: Path, count: int, rounds: int) -> Path:
     meta = {
         "mutabot": "0.1.0",
         "python": "3.11",
+        "draws": ["noise"],
         "root": str(folder),
         "seed": 1,
         "rounds": rounds,

@@ -119,6 +119,7 @@ def meta(**changes: Any) -> dict[str, Any]:
     return {
         "mutabot": "0.1.0", "python": "3.11", "versions": {"pytest": "9"}, "root": "/nowhere", "seed": 7,
         "rounds": 2, "engine": "replay", "jobs": 2, "started": time.time(), "vocabulary": to_data(VOCABULARY),
+        "draws": ["noise"],
         **changes,
     }  # fmt: skip
 

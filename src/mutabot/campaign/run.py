@@ -21,7 +21,7 @@ from mutabot.campaign.engines.second_look import refuse_flaky
 from mutabot.campaign.plan.earlier import carry, note_outdated
 from mutabot.campaign.plan.plan import Plan, make_plan
 from mutabot.campaign.plan.selection import numbered
-from mutabot.campaign.plan.told import reaching, summaries
+from mutabot.campaign.plan.told import drawing, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.reuse.reuse import reuse
@@ -31,7 +31,7 @@ from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Result
 from mutabot.errors import JournalError
 from mutabot.journal.journal import Journal
-from mutabot.journal.records import DRAWING, OPERATORS, REACHING
+from mutabot.journal.records import DRAWING, DRAWS, OPERATORS, REACHING
 from mutabot.model import LeftOut, Mutant
 
 from .beginning import at_it, begin, selected
@@ -92,6 +92,7 @@ def _run(
             [(one.task.key.round, one.task.key.repetition, one.ends) for one in results], whole.mutants
         )
     journal.set_meta(OPERATORS, summaries(plan.mutants))
+    journal.set_meta(DRAWS, drawing(plan.mutants))
     journal.set_meta(REACHING, to_data(reaching(baseline, plan.mutants)))
     _note_unstable(baseline, progress)
     refuse_flaky(request, baseline)

@@ -14,7 +14,7 @@ DRAWING = "drawing"
 VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
 REPEATS = "repeats"
 #: summaries of the operators of the plan by their names, and ``Reaching``
-OPERATORS, REACHING = "operators", "reaching"
+OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 
 
 @dataclass(frozen=True, slots=True)

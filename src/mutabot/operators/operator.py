@@ -122,6 +122,7 @@ class Operator(Rule):
             it these yet, so such an operator is refused.
         does_nothing: whether it promises that no call reaches the robot. A call that would is a fault of the
             operator, and the mutant gets no verdict.
+        draws: whether it adds a number that is drawn anew for each round, which reports then show.
         remembers: whether what it does to a call depends on earlier ones of the same test. It is then given
             copies, which the program cannot change afterwards, and one middleware for all calls of a test.
         is_for_oracle: whether readings that the tests' own checks take are a place for it, too.
@@ -134,6 +135,7 @@ class Operator(Rule):
     asks_neighbours: ClassVar[bool] = False
     does_nothing: ClassVar[bool] = False
     remembers: ClassVar[bool] = False
+    draws: ClassVar[bool] = False
     is_for_oracle: ClassVar[bool] = True
 
     def needs_where(self, subject: Subject) -> bool:

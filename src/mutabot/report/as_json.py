@@ -15,6 +15,7 @@ from mutabot.border.codec import to_data
 from mutabot.journal.records import (
     CONFIRMATION,
     DRAWING,
+    DRAWS,
     FLAKY,
     OPERATORS,
     REACHING,
@@ -31,7 +32,7 @@ from mutabot.model import Mutant, Outcome, Quantity, Verdict
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
-_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING}
+_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS}
 
 
 def dumps(data: Any) -> str:

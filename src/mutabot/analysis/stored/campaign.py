@@ -12,7 +12,7 @@ from mutabot.analysis.score import Group
 from mutabot.border.codec import from_data
 from mutabot.journal.files import find_journal
 from mutabot.journal.reader import JournalReader
-from mutabot.journal.records import OPERATORS, REACHING, Reaching
+from mutabot.journal.records import DRAWS, OPERATORS, REACHING, Reaching
 from mutabot.model import Mutant, Outcome
 
 from .table import frame_of
@@ -31,12 +31,14 @@ class StoredCampaign:
         operators: what each operator does, in a sentence, by its name; those of journals that do not say it
             are missing.
         reaching: which tests reach which sites.
+        draws: names of operators that draw a number for each round.
     """
 
     results: Results
     sources: Mapping[str, str] = field(default_factory=dict)
     operators: Mapping[str, str] = field(default_factory=dict)
     reaching: Reaching = field(default_factory=Reaching)
+    draws: frozenset[str] = frozenset()
 
     @property
     def meta(self) -> Mapping[str, Any]:
@@ -123,4 +125,5 @@ def open(path: str | Path = ".") -> StoredCampaign:
         sources={file: text for file, text in found.items() if text is not None},
         operators=meta.get(OPERATORS, {}),
         reaching=from_data(Reaching, meta[REACHING]) if REACHING in meta else Reaching(),
+        draws=frozenset(meta.get(DRAWS, ())),
     )

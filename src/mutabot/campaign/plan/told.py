@@ -21,6 +21,14 @@ def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
     return {name: texts[name] if family in of_text else operator(name).summary for family, name in used}
 
 
+def drawing(mutants: Iterable[Mutant]) -> list[str]:
+    """The names of the operators among them that draw a number for each round."""
+    used = {
+        single.operator for mutant in mutants for single in mutant.singles if single.family not in OF_TEXT
+    }
+    return sorted(name for name in used if operator(name).draws)
+
+
 def reaching(baseline: Baseline, mutants: Iterable[Mutant]) -> Reaching:
     """Which tests reach the sites of the mutants in any round."""
     numbers: dict[str, int] = {}

@@ -22,8 +22,6 @@ _LETTERS = {
     Verdict.UNSTABLE: "U",
     Verdict.ERROR: "E",
 }
-#: operators that draw a number for each reading
-_DRAWING = "noise"
 
 
 def letter_of(outcome: Outcome | None) -> str:
@@ -93,7 +91,7 @@ class Rows:
             "kills": self._kills(result),
             "earlier": result.earlier or result.outdated,
             "also": [[self._file(one.site.span.file), one.site.span.line] for one in others],
-            "drawn": _drawn(result),
+            "drawn": _drawn(result) if result.mutant.operator in self._campaign.draws else None,
         }
 
     def _file(self, file: str) -> int:
@@ -129,10 +127,8 @@ def _killers(outcome: Outcome) -> list[tuple[str, By | None]]:
     return [*((one.test, one.by) for one in outcome.kills), *first]
 
 
-def _drawn(result: MutantResult) -> Sequence[Sequence[Any]] | None:
-    """What noise was drawn where it first acted, per round: the round, the value before, and after."""
-    if result.mutant.operator != _DRAWING:
-        return None
+def _drawn(result: MutantResult) -> Sequence[Sequence[Any]]:
+    """What was drawn where it first acted, per round: the round, the value before, and after."""
     found = ((number, one.example) for number, one in enumerate(result.rounds) if one is not None)
     pairs = [(number, *pair) for number, pair in found if pair is not None and len(pair) == 2]
     return [one for one in pairs if all(isinstance(value, int | float) for value in one[1:])]
