@@ -28,8 +28,9 @@ test: check $(ROS1)/.ready $(ROS2)/.ready
 	$(ROS1)/bin/python -m pytest -n 2 --dist worksteal $(call of_ros,1) || test $$? -eq 5  # all skipped
 	$(ROS2)/bin/python -m pytest -n 2 --dist worksteal $(call of_ros,2) || test $$? -eq 5
 
-## the tests that take long because many nodes come up: of ROS 1 and ROS 2
-whole: $(ROS1)/.ready $(ROS2)/.ready
+## the tests that take long: many nodes come up, many runs are made
+whole: $(READY) $(REPORTS) $(ROS1)/.ready $(ROS2)/.ready
+	$(RUN) -m pytest -n 2 --dist worksteal -m whole
 	$(ROS1)/bin/python -m pytest -n 2 --dist worksteal -m whole $(call of_ros,1) || test $$? -eq 5  # all skipped
 	$(ROS2)/bin/python -m pytest -n 2 --dist worksteal -m whole $(call of_ros,2) || test $$? -eq 5
 
