@@ -151,6 +151,35 @@ def test_where_everything_ended_is_told_whenever_that_was(tape: Tape) -> None:
     assert tape.recording.times[-1] == pytest.approx(2.49)
 
 
+@pytest.mark.parametrize("time", [lambda: 1 / 0, lambda: float("nan"), lambda: None])
+def test_a_time_that_cannot_be_read_is_said_and_the_test_goes_on(tape: Tape, time: object) -> None:
+    feed = Feed(time)  # type: ignore[arg-type]  # what users may do
+    feed.point("tool", lambda: (0.0, 0.0, 0.0))
+    feed.tick()
+    feed.note("here")
+    (problem,) = tape.recording.problems
+    assert problem.startswith("the simulated time cannot be read: ")
+    assert not tape.recording.times
+
+
+def test_a_simulator_that_is_closed_leaves_the_time_as_it_was(tape: Tape) -> None:
+    world = World()
+    is_open = [True]
+
+    def told() -> float:
+        if not is_open[0]:
+            raise RuntimeError("it is closed")
+        return world.time
+
+    feed = Feed(told)
+    feed.point("tool", world.read)
+    world.run(feed, 1.0)
+    is_open[0] = False
+    assert tape.now == tape.now == pytest.approx(0.99)
+    tape.finish()
+    assert tape.recording.problems == ["the simulated time cannot be read: RuntimeError: it is closed"]
+
+
 def test_a_rate_of_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match="above 0"):
         Feed(lambda: 0.0, rate=0.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from math import floor
+from math import floor, isfinite
 from typing import Any
 
 from . import tape as tapes
@@ -94,8 +94,9 @@ class Feed:
     def note(self, text: str) -> None:
         """Something worth telling happens now."""
         tape = self._present()
-        if tape is not None:
-            tape.note(self._offset + self._time(), "note", text)
+        now = self._now(tape) if tape is not None else None
+        if tape is not None and now is not None:
+            tape.note(self._offset + now, "note", text)
 
     def tick(self) -> None:
         """Simulated time has passed: to be called after each step, or whenever something is heard."""
@@ -104,8 +105,21 @@ class Feed:
             with tape.aside():
                 self._tick(tape)
 
+    def _now(self, tape: Tape) -> float | None:
+        """The simulator's own time, s; None, and a problem, if it tells none."""
+        try:
+            now = float(self._time())
+            why = "" if isfinite(now) else f"{now} is no time"
+        except Exception as error:  # the user's code may fail in any way, and his test must go on
+            now, why = 0.0, f"{type(error).__name__}: {error}"
+        if why:
+            tape.problem(f"the simulated time cannot be read: {why}")
+        return None if why else now
+
     def _tick(self, tape: Tape) -> None:
-        now = self._time()
+        now = self._now(tape)
+        if now is None:
+            return
         if tape is not self._tape:
             self._begin(tape, now)
         elif now < self._last:
@@ -126,8 +140,9 @@ class Feed:
 
     def _present(self) -> Tape | None:
         tape = tapes.running()
-        if tape is not None and tape is not self._tape:
-            self._begin(tape, self._time())
+        now = self._now(tape) if tape is not None and tape is not self._tape else None
+        if tape is not None and now is not None:
+            self._begin(tape, now)
         return tape
 
     def _begin(self, tape: Tape, now: float) -> None:
