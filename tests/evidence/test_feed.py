@@ -180,6 +180,14 @@ def test_a_simulator_that_is_closed_leaves_the_time_as_it_was(tape: Tape) -> Non
     assert tape.recording.problems == ["the simulated time cannot be read: RuntimeError: it is closed"]
 
 
+def test_bodies_may_be_numbers(tape: Tape) -> None:
+    world = World()
+    feed = fed(world)
+    feed.contacts(lambda: [(7, 3)])  # type: ignore[list-item]  # what users may do
+    world.run(feed, 0.2)
+    assert [one.text for one in tape.recording.moments] == ["3, 7"]
+
+
 def test_a_rate_of_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match="above 0"):
         Feed(lambda: 0.0, rate=0.0)

@@ -194,14 +194,15 @@ class Feed:
 
     def _note_contacts(self, tape: Tape, now: float, read: Callable[[], Iterable[tuple[str, str]]]) -> None:
         try:
-            touching = frozenset((one, other) if one < other else (other, one) for one, other in read())
+            pairs = ((str(one), str(other)) for one, other in read())
+            touching = frozenset((one, other) if one < other else (other, one) for one, other in pairs)
         except Exception as error:  # as above
             tape.problem(f"contacts cannot be recorded: {type(error).__name__}: {error}")
             return
         if touching == self._before:
             return
-        for what, pairs in (("part", self._before - touching), ("touch", touching - self._before)):
-            for pair in sorted(pairs):
+        for what, changed in (("part", self._before - touching), ("touch", touching - self._before)):
+            for pair in sorted(changed):
                 tape.note(now, what, ", ".join(pair))
         self._before = touching
 

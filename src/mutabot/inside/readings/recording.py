@@ -82,4 +82,9 @@ class TestRecording:
         recording.fault = tape.seconds(recording.fault)
         timed = (replace(one, began=tape.seconds(one.began), ended=tape.seconds(one.ended)) for one in calls)
         recording.calls = sorted(timed, key=lambda one: one.began or 0.0)
-        return to_text(recording)
+        try:
+            return to_text(recording)
+        except (TypeError, ValueError, RecursionError) as error:  # values of the user's may be anything
+            tape.problem(f"the calls of a test cannot be recorded: {type(error).__name__}: {error}")
+            recording.calls = []
+            return to_text(recording)
