@@ -308,7 +308,7 @@ def request_for(
     configuration = configuration.model_copy(update={"pytest_args": (*configuration.pytest_args, *more)})
     return Request(
         configuration, load(configuration.vocabulary, configuration.root), rounds, configuration.seed, jobs,
-        fresh=True, families=tuple(families), engine="auto" if engine == "branch" else engine,
+        fresh=True, families=tuple(families), engine="auto" if engine == "branch" else engine, evidence=True,
     )  # fmt: skip
 
 
