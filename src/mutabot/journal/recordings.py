@@ -97,7 +97,7 @@ class Recordings:
 
     def forget(self, mutant: str, round: int) -> None:
         """Drop what is there of a mutant, or of the original, in a round."""
-        self._change("DELETE FROM recording WHERE mutant = ? AND round = ?", mutant, round)
+        self._delete("mutant = ? AND round = ?", mutant, round)
 
     def add(self, mutant: str, round: int, test: str, rank: Rank, data: bytes) -> bool:
         """Add one; of lower ranks, others make room for it. Returns whether there was room."""
@@ -128,33 +128,31 @@ class Recordings:
         """Drop those of all other mutants."""
         for (mutant,) in self._rows("SELECT DISTINCT mutant FROM recording WHERE mutant != ''"):
             if mutant not in mutants:
-                self._change("DELETE FROM recording WHERE mutant = ?", mutant)
+                self._delete("mutant = ?", mutant)
 
     def _make_room(self, rank: Rank, size: int) -> bool:
         for lower in range(rank):
             rows = self._rows(
-                "SELECT mutant, round, test, size FROM recording WHERE rank = ? ORDER BY size DESC", lower
+                "SELECT mutant, round, test FROM recording WHERE rank = ? ORDER BY size DESC", lower
             )
-            for mutant, round, test, freed in rows:
+            for mutant, round, test in rows:
                 if self._used + size <= self._limit:
                     break
-                with guarded(self.path):
-                    self._connection.execute(
-                        "DELETE FROM recording WHERE mutant = ? AND round = ? AND test = ?",
-                        (mutant, round, test),
-                    )
-                self._used -= freed
+                self._delete("mutant = ? AND round = ? AND test = ?", mutant, round, test)
                 self.dropped += 1
-        self._change("PRAGMA incremental_vacuum")
+        with guarded(self.path):
+            self._connection.execute("PRAGMA incremental_vacuum")
         return self._used + size <= self._limit
 
-    def _change(self, statement: str, *values: object) -> None:
-        with guarded(self.path):
-            self._connection.execute(statement, values)
-            self._used = self._total()
+    def _delete(self, which: str, *values: object) -> None:
+        freed = self._total(which, *values)
+        if freed:
+            with guarded(self.path):
+                self._connection.execute(f"DELETE FROM recording WHERE {which}", values)
+            self._used -= freed
 
-    def _total(self) -> int:
-        return int(self._rows("SELECT coalesce(sum(size), 0) FROM recording")[0][0])
+    def _total(self, which: str = "1", *values: object) -> int:
+        return int(self._rows(f"SELECT coalesce(sum(size), 0) FROM recording WHERE {which}", *values)[0][0])
 
     def _rows(self, statement: str, *values: object) -> list[tuple[Any, ...]]:
         with guarded(self.path):
