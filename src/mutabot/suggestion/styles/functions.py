@@ -14,19 +14,18 @@ from .style import (
     Addition,
     Function,
     Place,
+    PlainAsserts,
     Written,
     arguments_of,
     class_of,
     end_of,
     functions_of,
-    plain_assertion_equal,
-    plain_assertion_within,
     put_at_end,
 )
 from .watching import asked_for, at_start, fixture, helper, watcher
 
 
-class _Functions:
+class _Functions(PlainAsserts):
     name = "pytest"
     order = 30
 
@@ -40,15 +39,6 @@ class _Functions:
 
     def at_end(self, project: Project, additions: Sequence[Addition]) -> list[Insertion]:
         return at_ends(project, additions)
-
-    def within(self, text: str, value: str, tolerance: str) -> str:
-        return plain_assertion_within(text, value, tolerance)
-
-    def equal(self, text: str, value: str) -> str:
-        return plain_assertion_equal(text, value)
-
-    def needs(self, line: str) -> tuple[str, ...]:
-        return ("import pytest",) if "pytest.approx" in line else ()
 
     def written(self, project: Project, file: str, additions: Sequence[Addition]) -> Written:
         return written(project, file, additions)

@@ -16,10 +16,9 @@ from .style import (
     Addition,
     Function,
     Place,
+    PlainAsserts,
     Written,
     arguments_of,
-    plain_assertion_equal,
-    plain_assertion_within,
 )
 from .watching import fixture
 
@@ -30,7 +29,7 @@ _GROUP = re.compile(r"\(\?P<(\w+)>")
 _GIVEN = {"datatable", "docstring"}
 
 
-class _Scenarios:
+class _Scenarios(PlainAsserts):
     name = "pytest-bdd"
     order = 20
 
@@ -66,15 +65,6 @@ class _Scenarios:
         imports = [line for one in additions for line in one.imports]
         imports += ["import pytest"] if any(one.watch is not None for one in additions) else []
         return found + imports_of(file, module, [*imports, "from pytest_bdd import then"])
-
-    def within(self, text: str, value: str, tolerance: str) -> str:
-        return plain_assertion_within(text, value, tolerance)
-
-    def equal(self, text: str, value: str) -> str:
-        return plain_assertion_equal(text, value)
-
-    def needs(self, line: str) -> tuple[str, ...]:
-        return ("import pytest",) if "pytest.approx" in line else ()
 
     def written(self, project: Project, file: str, additions: Sequence[Addition]) -> Written:
         name = project.import_name(file)

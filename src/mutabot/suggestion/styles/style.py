@@ -141,15 +141,21 @@ def arguments_of(function: Function) -> tuple[str, ...]:
     return tuple(one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs))
 
 
-def plain_assertion_within(text: str, value: str, tolerance: str) -> str:
-    """With the assert statement and ``pytest.approx``."""
-    return f"assert {text} == pytest.approx({value}, abs={tolerance})"
+class PlainAsserts:
+    """The statements of a style that asserts with the assert statement."""
 
+    def within(self, text: str, value: str, tolerance: str) -> str:
+        """With ``pytest.approx``."""
+        return f"assert {text} == pytest.approx({value}, abs={tolerance})"
 
-def plain_assertion_equal(text: str, value: str) -> str:
-    """With the assert statement alone."""
-    plain = {"True": f"assert {text}", "False": f"assert not {text}", "None": f"assert {text} is None"}
-    return plain.get(value, f"assert {text} == {value}")
+    def equal(self, text: str, value: str) -> str:
+        """With the statement alone."""
+        plain = {"True": f"assert {text}", "False": f"assert not {text}", "None": f"assert {text} is None"}
+        return plain.get(value, f"assert {text} == {value}")
+
+    def needs(self, line: str) -> tuple[str, ...]:
+        """What a statement with a tolerance names."""
+        return ("import pytest",) if "pytest.approx" in line else ()
 
 
 def end_of(function: Function, lines: Sequence[str]) -> tuple[int, str] | None:
