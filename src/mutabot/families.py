@@ -7,6 +7,8 @@ name the one they belong to. A plug-in may name one that is not listed here: it 
 from __future__ import annotations
 
 ROBOT = "robot"
+GRADED = "graded"
+CATALOGUE = "catalogue"
 MIDDLEWARE = "middleware"
 CLASSICAL = "classical"
 TEXT = "text"
@@ -14,7 +16,7 @@ TEXT = "text"
 CONTROL = "control"
 
 #: families of mutants of calls, and of the program text; in the order of their numbers
-OF_CALLS = (ROBOT, MIDDLEWARE)
+OF_CALLS = (ROBOT, GRADED, CATALOGUE, MIDDLEWARE)
 OF_TEXT = (CLASSICAL, TEXT)
 #: all that can be asked for without a plug-in
 FAMILIES = (*OF_CALLS, *OF_TEXT)

@@ -23,7 +23,7 @@ from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 from .editor import Facts
-from .judge import IGNORED, MORE_DRAWS, Judge, Judgement, is_drawn
+from .judge import IGNORED, MORE_DRAWS, Judge, Judgement, is_drawn, is_raced
 
 ENGINES = ("branch", "replay")
 PROJECTS = Path(__file__).resolve().parent / "projects"
@@ -201,7 +201,8 @@ def compare(
         for _, one in ends:
             # what few draws say may be chance
             explained = ("unwritable", *EXPECTED.get(one.verdict, ()))
-            if is_drawn(mutants[one.id]) and plain[one.id].state not in explained:
+            rests_on_chance = is_drawn(mutants[one.id]) or is_raced(mutants[one.id])
+            if rests_on_chance and plain[one.id].state not in explained:
                 plain[one.id] = judge.mutant(mutants[one.id], draws=MORE_DRAWS)
         found.verdicts += [
             verdict(folder.name, engine, mutants[one.id], one, plain[one.id], which) for engine, one in ends

@@ -201,7 +201,7 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
     "unit_written_out": ("arguments.dx = { " + _BY.replace("'m'", "'metres'") + " }", ["dx.unit", "'m'"]),
     "unit_of_another_dimension": (
         "arguments.dx = { " + _BY.replace("'m'", "'deg'") + " }",
-        ["'deg' is no unit for a translation", "m, cm or mm"],
+        ["'deg' is no unit for a translation", "m, cm, mm, um or inch"],
     ),
     "no_unit": (
         "result = { kind = 'angle', axis = 'j1' }",

@@ -18,6 +18,7 @@ from mutabot.inside.calls.answers import Answers, handles_of
 from mutabot.inside.calls.bypasses import Bypasses
 from mutabot.inside.calls.door import Door
 from mutabot.inside.calls.passing import Aside, Passing, is_under_way
+from mutabot.inside.calls.passing_time import ProgramTime
 from mutabot.inside.calls.trace import Recorder
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.readings.along import Along, Rehearsal, rehearse
@@ -29,7 +30,7 @@ from mutabot.inside.targets.interception import Interception
 from mutabot.inside.targets.target import Finding, Handler
 from mutabot.inside.text.returns import Returns
 from mutabot.inside.text.session_text import SessionText
-from mutabot.model import Call, Choice, Mutant, Operation, Probe, Role, Span
+from mutabot.model import Call, Choice, Moment, Mutant, Operation, Probe, Role, Span
 from mutabot.model.values.quantity import Value
 
 from .evidence import Evidence, together
@@ -81,6 +82,7 @@ class Session:
     _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
     _telling: list[Door] = field(default_factory=list)
     _bypasses: Bypasses = field(init=False)
+    _time: ProgramTime = field(init=False)
 
     def __post_init__(self) -> None:
         self.recorder = Recorder(self._site_seen)
@@ -99,6 +101,7 @@ class Session:
             self.locate_definition,
         )
         self.passing.oracle_nodes = self.job.oracle_nodes
+        self._time = ProgramTime(self.job.vocabulary, lambda: self.meter, self.instances)
         self._bypasses = Bypasses(self.locate, self._calls_of, is_under_way)
 
     def install(self) -> None:
@@ -111,6 +114,8 @@ class Session:
             overrides = partial(self._handler_of_override, operation) if operation.overrides else None
             self.interception.wrap(operation, self._handler(operation), overrides)
         self.instances.watch(probe.owner for probe in vocabulary.probes)
+        if vocabulary.wait is not None:
+            self.instances.watch([vocabulary.wait.owner])
         if vocabulary.clock is not None:
             clock = vocabulary.clock
             reader = ClockReader(clock, lambda: self.meter, self._clock_is_wrong)
@@ -145,6 +150,7 @@ class Session:
         door = Door(operation, readings, partial(self.inspection.path_is_wrong, operation))
         door.handles = handles_of(self.job.vocabulary)
         door.lately = self._lately
+        door.time = self._time
         self._doors.append(door)
         return self.passing.handler(door)
 
@@ -203,11 +209,13 @@ class Session:
                 refusals = self._refusals(operation)
                 on_act = partial(self._acted, single.id)
                 made = Activation(single, operation, refusals, on_act, self._in_mutated_call)
+                made.time = self._time.now_if_known
                 self.passing.activate(made)
 
     def grow(self, trunk: Trunk) -> None:
         """Run the original from now on, and fork a branch for every mutant of the trunk's."""
         self.passing.trunk = trunk
+        trunk.is_moment = self._is_moment
 
     def become(self, mutant: Mutant, choices: tuple[Choice, ...]) -> None:
         """In a branch that was just forked: be its mutant; ``choices`` are its alternatives in the text."""
@@ -235,6 +243,7 @@ class Session:
         self.recorder.answers = Answers.of(self.job.vocabulary) if is_baseline else None
         self.recorder.start()
         self.instances.start()
+        self.passing.calls.clear()
         self.along.start(self.job.moments.get(test, 0))
         if self.returns is not None:
             self.returns.start()
@@ -265,8 +274,22 @@ class Session:
 
     def _start_activations(self) -> None:
         for activation in self.activations:
-            seed = derive(self.job.seed, self.job.round, self.test, activation.mutant.id)
-            activation.start(seed, self.job.round, self.test)
+            # all magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger
+            name = activation.mutant.ladder or activation.mutant.id
+            seed = derive(self.job.seed, self.job.round, self.test, name)
+            activation.start(seed, self.job.round, self.test, self._moment_of(activation.mutant))
+
+    def _moment_of(self, mutant: Mutant) -> Moment | None:
+        """At which calls of the running test a mutant acts."""
+        if mutant.moment is None:
+            return None
+        seed = derive(self.job.seed, self.job.round, self.test, mutant.site.id, "moment")
+        return mutant.moment.drawn(self.job.round, self.test, seed)
+
+    def _is_moment(self, mutant: Mutant, number: int) -> bool:
+        """Whether a mutant acts at this call of its site in the running test."""
+        moment = self._moment_of(mutant)
+        return moment is None or moment.holds(number, self._time.now_if_known())
 
     def end_test(self) -> None:
         """The test and its fixtures are over."""

@@ -19,6 +19,7 @@ from .call import Mishap as Mishap
 from .call import NotToldError as NotToldError
 from .call import Proceed as Proceed
 from .call import Reply as Reply
+from .moment import Moment as Moment
 from .mutant import Mutant as Mutant
 from .operation import Case as Case
 from .operation import Clock as Clock
@@ -26,6 +27,7 @@ from .operation import Operation as Operation
 from .operation import Pattern as Pattern
 from .operation import Probe as Probe
 from .operation import Vocabulary as Vocabulary
+from .operation import Wait as Wait
 from .outcome import Compared as Compared
 from .outcome import Kill as Kill
 from .outcome import LeftOut as LeftOut

@@ -43,6 +43,14 @@ def _nothing(mishap: Mishap) -> str:
     return ""
 
 
+def _no_time() -> float:
+    raise LookupError("nothing tells the time of the simulation")
+
+
+async def _no_wait(seconds: float) -> None:
+    raise LookupError("nothing lets the program's time pass")
+
+
 @dataclass(frozen=True, slots=True)
 class Reply:
     """What an operation answered, with the values it reads.
@@ -116,6 +124,8 @@ class Call:
         away: why the operator left it as it is; empty if it does not say so.
         mishaps: what befalls it, with seconds where it takes some.
         cannot: why something cannot befall it here; empty if it can.
+        time: simulated seconds since the test's first tick; raises LookupError without a clock.
+        wait: lets so many seconds pass on the program's clock; raises LookupError where nothing says how.
     """
 
     operation: Operation
@@ -128,6 +138,8 @@ class Call:
     away: str = ""
     mishaps: Mapping[Mishap, float] = field(default_factory=dict)
     cannot: Callable[[Mishap], str] = _nothing
+    time: Callable[[], float] = _no_time
+    wait: Callable[[float], Awaitable[None]] = _no_wait
 
     @property
     def is_command(self) -> bool:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from mutabot.families import GRADED
 from mutabot.model.values.notation import Notation
 
+from .moment import Moment
 from .site import Site
 
 
@@ -27,6 +29,10 @@ class Mutant:
         idle: for operators that ask, what the operation answers while the robot does nothing: a plain value,
             or the data of ``idle.Idle``.
         parts: the mutants that this one is at once; empty for a mutant of the first order.
+        magnitude: how big its fault is, in ``unit``; None for a fault without a size.
+        unit: the unit of the magnitude; None where it has none.
+        direction: which way a graded fault goes: ``+``, ``-``, or empty if it goes one way only.
+        moment: at which of its calls it acts; None for all of them.
     """
 
     number: int
@@ -40,6 +46,10 @@ class Mutant:
     description: str
     idle: Any = None
     parts: tuple[Mutant, ...] = ()
+    magnitude: float | None = None
+    unit: str | None = None
+    direction: str = ""
+    moment: Moment | None = None
 
     @property
     def id(self) -> str:
@@ -49,9 +59,18 @@ class Mutant:
         from_pattern = f"{self.pattern_name}" if self.pattern is not None else ""
         subject = "/".join(part for part in (from_pattern, self.quantity) if part) or "call"
         variant = f"={self.variant}" if self.variant else ""
+        if self.moment is not None:
+            variant += f"@{self.moment.text}"
         if not self.operation:
             return f"{self.site.id}:{self.operator}{variant}"
         return f"{self.site.id}:{subject}:{self.operator}{variant}"
+
+    @property
+    def ladder(self) -> str:
+        """What all magnitudes of one graded fault share: its id without the magnitude; else empty."""
+        if self.magnitude is None or self.family != GRADED:
+            return ""
+        return replace(self, variant=self.direction).id
 
     @property
     def singles(self) -> tuple[Mutant, ...]:

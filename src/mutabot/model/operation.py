@@ -202,6 +202,28 @@ class Clock:
 
 
 @dataclass(frozen=True, slots=True)
+class Wait:
+    """How the program's time is let pass.
+
+    Attributes:
+        target: callable that takes one number and returns when so much time has passed, as
+            ``module:qualified.name``. A method is called on the object of its class that the program uses.
+        unit: unit of that number.
+    """
+
+    target: str
+    unit: str = "s"
+    source: str = ""
+
+    @property
+    def owner(self) -> str:
+        """The class whose objects have it; empty for a plain function."""
+        module, _, qualname = self.target.partition(":")
+        parent = qualname.rpartition(".")[0]
+        return f"{module}:{parent}" if parent else ""
+
+
+@dataclass(frozen=True, slots=True)
 class Probe:
     """A reading that mutabot takes along the way and at the end of a test, to compare worlds.
 
@@ -210,12 +232,15 @@ class Probe:
             attribute of a class's objects is read from those that the program uses.
         tolerance: greatest difference between two equal worlds, in the reading's own units.
         result: what parts of it mean, where that decides how they are compared: angles and orientations.
+        better: whether ``less`` or ``more`` of it is better, where it is one number and a figure of merit;
+            else None.
     """
 
     target: str
     tolerance: float = 1e-6
     source: str = ""
     result: tuple[Quantity, ...] = ()
+    better: str | None = None
 
     @property
     def owner(self) -> str:
@@ -236,6 +261,7 @@ class Vocabulary:
         failures: exceptions that mean the simulator itself failed.
         clock: simulated time, or None if the vocabulary does not say.
         probes: end-of-test readings.
+        wait: how the program's time is let pass, or None if the vocabulary does not say.
     """
 
     operations: tuple[Operation, ...] = ()
@@ -244,6 +270,7 @@ class Vocabulary:
     failures: tuple[str, ...] = ()
     clock: Clock | None = None
     probes: tuple[Probe, ...] = ()
+    wait: Wait | None = None
 
     def operation(self, target: str) -> Operation | None:
         """The operation with this target, or None."""

@@ -33,7 +33,9 @@ class Subject:
         pattern: the text command; None for operations that are not text.
         quantity: the quantity; None where the call as a whole is meant.
         variant: which of several mutants here; empty if there is only one.
-        magnitude: how big the fault is, in the quantity's unit; None for faults without a size.
+        magnitude: how big the fault is, in ``unit``; None for faults without a size.
+        unit: the unit of the magnitude; None where it has none.
+        direction: which way a graded fault goes: ``+``, ``-``, or empty if it goes one way only.
     """
 
     operation: Operation
@@ -41,6 +43,8 @@ class Subject:
     quantity: Quantity | None = None
     variant: str = ""
     magnitude: float | None = None
+    unit: str | None = None
+    direction: str = ""
 
     @property
     def written(self) -> tuple[Quantity, ...]:
@@ -125,6 +129,12 @@ class Operator(Rule):
         draws: whether it adds a number that is drawn anew for each round, which reports then show.
         remembers: whether what it does to a call depends on earlier ones of the same test. It is then given
             copies, which the program cannot change afterwards, and one middleware for all calls of a test.
+        asks_time: whether it asks what time it is in the simulation (``call.time``); it is then used only
+            where the vocabulary names a clock.
+        asks_wait: whether it lets the program's time pass (``call.wait``); it is then used only where the
+            vocabulary says how (``wait``), or a middleware does.
+        is_raced: whether it leaves to chance what the program's processes still get done, so that equal runs
+            may end differently: survivors are run again as well as kills.
         is_for_oracle: whether readings that the tests' own checks take are a place for it, too.
     """
 
@@ -136,6 +146,9 @@ class Operator(Rule):
     does_nothing: ClassVar[bool] = False
     remembers: ClassVar[bool] = False
     draws: ClassVar[bool] = False
+    asks_time: ClassVar[bool] = False
+    asks_wait: ClassVar[bool] = False
+    is_raced: ClassVar[bool] = False
     is_for_oracle: ClassVar[bool] = True
 
     def needs_where(self, subject: Subject) -> bool:

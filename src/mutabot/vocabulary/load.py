@@ -7,14 +7,14 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mutabot.errors import ConfigurationError, UnknownNameError
-from mutabot.model import Clock, Operation, Probe, Vocabulary
+from mutabot.model import Clock, Operation, Probe, Vocabulary, Wait
 from mutabot.settings.document import Document
 from mutabot.settings.mistakes import Check, raise_errors
 from mutabot.settings.toml_lines import KeyPath
 
 from .cases.when import together
 from .crosscheck import Read, check_operations
-from .operations import check_targets, read_clock, read_operations, read_probe
+from .operations import check_targets, read_clock, read_operations, read_probe, read_wait
 from .schema import VocabularyTable
 
 _SHIPPED = Path(__file__).parent / "shipped"
@@ -42,6 +42,7 @@ def load(names: Sequence[str], root: Path) -> Vocabulary:
         failures=tuple(dict.fromkeys(merged.failures)),
         clock=merged.clock,
         probes=tuple(merged.probes.values()),
+        wait=merged.wait,
     )
 
 
@@ -61,6 +62,7 @@ class _Merged:
     checks: list[str] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
     clock: Clock | None = None
+    wait: Wait | None = None
     probes: dict[str, Probe] = field(default_factory=dict)
     own: set[str] = field(default_factory=set)
 
@@ -80,6 +82,8 @@ class _Merged:
             getattr(self, name).extend(getattr(table, name))
         if table.clock is not None and self._counts("clock", is_shipped):
             self._add_clock(check, read_clock(check, table.clock, ("clock",)))
+        if table.wait is not None and self._counts("wait", is_shipped):
+            self._add_wait(check, read_wait(check, table.wait, ("wait",)))
         for index, raw in enumerate(table.probe):
             probe = read_probe(check, raw, ("probe", index))
             if probe is not None and self._counts(f"probe {probe.target}", is_shipped):
@@ -120,6 +124,13 @@ class _Merged:
         if self.clock is not None and replace(self.clock, source="") != replace(clock, source=""):
             check.error(("clock",), f"there is another clock in {_file_of(self.clock.source)}")
         self.clock = self.clock or clock
+
+    def _add_wait(self, check: Check, wait: Wait | None) -> None:
+        if wait is None:
+            return
+        if self.wait is not None and replace(self.wait, source="") != replace(wait, source=""):
+            check.error(("wait",), f"another wait is named in {_file_of(self.wait.source)}")
+        self.wait = self.wait or wait
 
     def _add_probe(self, check: Check, probe: Probe, index: int) -> None:
         known = self.probes.setdefault(probe.target, probe)

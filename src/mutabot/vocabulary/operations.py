@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mutabot.errors import nearest_name
-from mutabot.model import Case, Clock, Operation, Path, Pattern, Probe, Quantity
+from mutabot.model import Case, Clock, Operation, Path, Pattern, Probe, Quantity, Wait
 from mutabot.model.values.signature import parse_signature
 from mutabot.model.values.units import UNITS, Dimension, dimension_of
 from mutabot.settings.mistakes import Check
@@ -20,7 +20,7 @@ from .named.names import NAMING
 from .named.refused import read_refused
 from .patterns import read_patterns
 from .quantities import read_arguments, read_result
-from .schema import ClockTable, OperationTable, ProbeTable
+from .schema import ClockTable, OperationTable, ProbeTable, WaitTable
 from .targets import target_fault
 
 
@@ -105,9 +105,7 @@ def read_clock(check: Check, raw: dict[str, Any], place: KeyPath) -> Clock | Non
     if table is None:
         return None
     check_target(check, table.tick, (*place, "tick"))
-    times = [unit for unit in UNITS if dimension_of(unit) is Dimension.TIME]
-    if table.unit not in times:
-        check.unknown((*place, "unit"), "unit", table.unit, times)
+    _check_time(check, table.unit, (*place, "unit"))
     rooted = table.time != "" and not table.time.startswith((".", "["))
     try:
         Path.parse(table.time, rooted=rooted)
@@ -118,6 +116,22 @@ def read_clock(check: Check, raw: dict[str, Any], place: KeyPath) -> Clock | Non
     return Clock(table.tick, table.time, rooted, table.unit, source_of(check, place, "clock"), table.step)
 
 
+def read_wait(check: Check, raw: dict[str, Any], place: KeyPath) -> Wait | None:
+    """``wait = { call = …, unit = … }``; None if it has mistakes, which are noted."""
+    table = check.table(WaitTable, raw, place)
+    if table is None:
+        return None
+    check_target(check, table.call, (*place, "call"))
+    _check_time(check, table.unit, (*place, "unit"))
+    return Wait(table.call, table.unit, source_of(check, place, "wait"))
+
+
+def _check_time(check: Check, unit: str, place: KeyPath) -> None:
+    times = [name for name in UNITS if dimension_of(name) is Dimension.TIME]
+    if unit not in times:
+        check.unknown(place, "unit", unit, times)
+
+
 def read_probe(check: Check, raw: Any, place: KeyPath) -> Probe | None:
     """One ``[[probe]]``; None if it has mistakes, which are noted."""
     table = check.table(ProbeTable, raw, place)
@@ -125,7 +139,7 @@ def read_probe(check: Check, raw: Any, place: KeyPath) -> Probe | None:
         return None
     check_target(check, table.call, (*place, "call"))
     result = read_result(check, table.result, (*place, "result"))
-    return Probe(table.call, table.tolerance, source_of(check, place, table.call), result)
+    return Probe(table.call, table.tolerance, source_of(check, place, table.call), result, table.better)
 
 
 def check_targets(check: Check, targets: list[str], place: KeyPath) -> None:

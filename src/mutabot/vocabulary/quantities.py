@@ -13,7 +13,7 @@ from mutabot.settings.toml_lines import KeyPath
 
 from .axes import slice_of, split_axes, spread
 from .cases.modes import ModeChoice, Undecided, read_mode_choice
-from .rules import SIDES, default_unit, default_values, faults
+from .rules import SIDES, default_unit, default_values, faults, steps_of
 from .schema import QuantityTable
 
 
@@ -176,6 +176,7 @@ def _undecided(quantity: Quantity, choice: ModeChoice | None) -> Quantity:
 
 
 def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | None) -> Quantity:
+    steps, unit = steps_of(table)
     return Quantity(
         name=name or str(path),
         path=path,
@@ -190,4 +191,8 @@ def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | No
         order=table.order,
         relative=table.relative,
         clip=(table.clip[0], table.clip[1]) if table.clip is not None else None,
+        ladder=tuple(steps) if steps is not None else None,
+        ladder_unit=unit,
+        missing=table.missing,
+        tcp=table.tcp,
     )

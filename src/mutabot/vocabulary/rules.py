@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from mutabot.errors import nearest_name
 from mutabot.model import Kind, Mode
 from mutabot.model.values.quantity import DIMENSIONS, HEADER, MEASURED, READ, WHOLE, WRITTEN
 from mutabot.model.values.rotation import QUATERNION_ORDERS, is_euler_order
-from mutabot.model.values.units import UNITS, dimension_of
+from mutabot.model.values.units import UNITS, Dimension, dimension_of
 from mutabot.settings.mistakes import shown
 
 from .axes import AXES, split_axes
-from .schema import QuantityTable
+from .schema import LadderTable, QuantityTable
+from .targets import target_fault
 
 _MOVED = (Kind.TRANSLATION, Kind.ROTATION)
 _AXES_IN_SHORT = ("x", "y", "z", "j1 … j12")
@@ -68,6 +70,9 @@ def faults(
     yield from _clip(table, written)
     yield from _noise(table)
     yield from _whole(table)
+    yield from _ladder(table)
+    yield from _missing(table, written)
+    yield from _tcp(table, written)
 
 
 def default_unit(table: QuantityTable) -> str | None:
@@ -238,6 +243,58 @@ def _whole(table: QuantityTable) -> Iterator[Fault]:
         yield Fault("order", f"{kind} angles need order = three axes in the order of the angles, {example}")
     elif order is not None and kind not in (Kind.QUATERNION, Kind.EULER):
         yield Fault("order", f"{_a(kind)} has no order")
+
+
+def steps_of(table: QuantityTable) -> tuple[list[float] | None, str | None]:
+    """The magnitudes of its ladder and their unit, if it has one of its own."""
+    ladder = table.ladder
+    return (ladder.steps, ladder.unit) if isinstance(ladder, LadderTable) else (ladder, None)
+
+
+def _ladder(table: QuantityTable) -> Iterator[Fault]:
+    steps, unit = steps_of(table)
+    if steps is None:
+        return
+    if table.kind not in MEASURED and table.range is None:
+        yield Fault("ladder", f"{_a(table.kind)} has no magnitudes; only what is a number on a scale has")
+        return
+    wrong = [step for step in steps if step <= 0]
+    if wrong:
+        yield Fault("ladder", f"magnitudes are more than 0, not {wrong[0]:g}; both directions are tried")
+    elif any(later <= earlier for earlier, later in pairwise(steps)):
+        yield Fault("ladder", f"must rise from the smallest to the greatest magnitude, got {shown(steps)}")
+    if unit is None:
+        return
+    own = DIMENSIONS.get(table.kind, frozenset())
+    if table.unit in UNITS:
+        own = frozenset({dimension_of(table.unit)})
+    elif table.kind in WHOLE:
+        own = frozenset({Dimension.ANGLE})
+    fitting = [name for name in UNITS if dimension_of(name) in (*own, Dimension.TIME, Dimension.RATIO)]
+    if unit not in UNITS:
+        yield Fault("ladder", unit, tuple(fitting))
+    elif unit not in fitting:
+        yield Fault(
+            "ladder", f"{unit!r} measures no fault of {_a(table.kind)}; use {_listed(tuple(fitting))}"
+        )
+
+
+def _missing(table: QuantityTable, written: bool) -> Iterator[Fault]:
+    if table.missing is None:
+        return
+    if written:
+        yield Fault("missing", f"{_a(table.kind)} that is sent is never missing; only a reading is")
+    elif table.missing not in ("none", "nan") and target_fault(table.missing) is not None:
+        yield Fault(
+            "missing", f'write "none", "nan" or an exception (module:Name), not {shown(table.missing)}'
+        )
+
+
+def _tcp(table: QuantityTable, written: bool) -> Iterator[Fault]:
+    if table.tcp is not None and not (written and table.kind is Kind.TRANSLATION and table.mode is Mode.TO):
+        yield Fault(
+            "tcp", 'only a target position (kind = "translation", mode = "to") has a tool in front of it'
+        )
 
 
 def _fits(kind: Kind, value: Any) -> bool:

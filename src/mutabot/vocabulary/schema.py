@@ -5,7 +5,7 @@ What the values mean together is checked where the tables are turned into operat
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -16,6 +16,13 @@ class Table(BaseModel):
     """A table of a TOML file: nothing unknown, nothing converted, only finite numbers."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class LadderTable(Table):
+    """``ladder = { steps = [1, 2, 5, 10, 20], unit = "mm" }``"""
+
+    steps: Annotated[list[float], Field(min_length=2)]
+    unit: str
 
 
 class QuantityTable(Table):
@@ -32,6 +39,9 @@ class QuantityTable(Table):
     noise: float | None = None
     order: str | None = None
     relative: bool = False
+    ladder: Annotated[list[float], Field(min_length=2)] | LadderTable | None = None
+    missing: str | None = None
+    tcp: float | None = None
 
 
 class PatternTable(Table):
@@ -52,6 +62,9 @@ class PatternTable(Table):
     clip: Any = None
     noise: Any = None
     relative: Any = None
+    ladder: Any = None
+    missing: Any = None
+    tcp: Any = None
 
 
 class DescribedTable(Table):
@@ -129,12 +142,20 @@ class ClockTable(Table):
     step: Annotated[float | None, Field(gt=0)] = None
 
 
+class WaitTable(Table):
+    """``wait = { call = "module:qualname", unit = "s" }``"""
+
+    call: str
+    unit: str = "s"
+
+
 class ProbeTable(Table):
     """One ``[[probe]]``."""
 
     call: str
     tolerance: Annotated[float, Field(ge=0)] = 1e-6
     result: dict[str, Any] | None = None
+    better: Literal["less", "more"] | None = None
 
 
 class VocabularyTable(Table):
@@ -145,4 +166,5 @@ class VocabularyTable(Table):
     checks: list[str] = Field(default_factory=list)
     failures: list[str] = Field(default_factory=list)
     clock: dict[str, Any] | None = None
+    wait: dict[str, Any] | None = None
     probe: list[Any] = Field(default_factory=list)

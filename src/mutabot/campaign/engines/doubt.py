@@ -2,7 +2,8 @@
 
 A test in simulated time whose runs of the original are equal to the last bit is taken to be deterministic. Of
 any other test a kill is in doubt if the test is known to be unreliable, or if it kills so few of the mutants
-that it judges that it might do so by failing at random.
+that it judges that it might do so by failing at random. A survivor is in doubt where its operator leaves to
+chance what happens.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from dataclasses import dataclass, field
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.failing import FAILS
 from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.operators import operator
 
 #: a mutant in a round
 Key = tuple[str, int]
@@ -52,6 +54,18 @@ class Doubts:
         kills = [key for key in self.kills() if not self.outcomes[key].repeats]
         few = self._few_lone_kills()
         return [key for key in kills if self._test(key) in self.unreliable or key in few]
+
+    def raced(self) -> list[Key]:
+        """Kills and survivors whose operator leaves to chance what happens, not repeated yet."""
+        return [
+            key
+            for key, one in self.outcomes.items()
+            if one.verdict in (Verdict.KILLED, Verdict.SURVIVED) and not one.repeats
+            if self._is_raced(self.mutants[key[0]])
+        ]
+
+    def _is_raced(self, mutant: Mutant) -> bool:
+        return any(one.operation and operator(one.operator).is_raced for one in mutant.singles)
 
     def is_certain(self, key: Key) -> bool:
         """Whether a kill was repeated before, or is one by a test that is taken to be deterministic."""

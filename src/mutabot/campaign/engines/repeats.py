@@ -31,6 +31,8 @@ from .second_look import Looker, choose, disagreement, flaky_of, unconfirmed
 
 #: repeats of kills in doubt may take this share of the time that the campaign has taken, or so many seconds
 SHARE, SECONDS = 0.2, 10.0
+#: how often an outcome is repeated whose operator leaves to chance what happens
+RACES = 3
 _CONFIRMED = (Verdict.SURVIVED, Verdict.TIMEOUT, Verdict.KILLED)
 
 
@@ -57,7 +59,9 @@ def look_again(campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, spent:
     if request.confirm:
         second.confirm(wanted)
     elif request.repeats:
-        second.repeat_doubted(max(SHARE * spent, SECONDS))
+        seconds = max(SHARE * spent, SECONDS)
+        second.repeat_raced(seconds)
+        second.repeat_doubted(seconds)
     journal.set_meta(REPEATS, to_data(second.repeats()))
 
 
@@ -86,12 +90,39 @@ class _SecondLook:
         self.sink.journal.set_meta(CONFIRMATION, {"checked": len(keys), "unstable": len(changed)})
         self.progress.note(f"confirm: {len(keys) - len(changed)} of {len(keys)} outcomes are confirmed")
 
+    def repeat_raced(self, seconds: float) -> None:
+        """Run what chance decides several times more; what does not always end alike becomes unstable."""
+        until = self.looker.campaign.request.clock() + seconds
+        keys = sorted(self.doubts.raced(), key=self.doubts.cost)
+        due, changed, looked = list(keys), list[Key](), set[Key]()
+        for again in range(RACES):
+            for key in due:
+                self.looker.found.pop(key, None)
+            self.run(due, until)
+            due = [key for key in due if key in self.looker.found]
+            looked.update(due)
+            for key in due:
+                first = self.doubts.outcomes[key]
+                if self._is_changed(key):
+                    changed.append(key)
+                    self.sink.add_outcome(unconfirmed(first, self.looker.found[key]))
+                else:
+                    self.sink.add_outcome(replace(first, repeats=first.repeats + again + 1))
+            due = [key for key in due if key not in changed]
+        if keys:
+            left = f"; {len(keys) - len(looked)} were left" if len(looked) < len(keys) else ""
+            again = len(looked) - len(changed)
+            self.progress.note(
+                f"repeats: {again} of {len(looked)} ends left to chance are always alike{left}"
+            )
+
     def repeat_doubted(self, seconds: float) -> None:
         """Run the kills in doubt once more, and those which that puts in doubt."""
         until = self.looker.campaign.request.clock() + seconds
+        raced = set(self.doubts.raced())
         repeated: list[Key] = []
         changed: list[Key] = []
-        while due := [key for key in self.doubts.in_doubt() if key not in repeated]:
+        while due := [key for key in self.doubts.in_doubt() if key not in raced.union(repeated)]:
             new = sorted((key for key in due if key not in self.looker.found), key=self.doubts.cost)
             self.run(new, until)
             looked = [key for key in due if key in self.looker.found]

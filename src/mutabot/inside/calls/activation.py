@@ -14,7 +14,7 @@ from mutabot.errors import OperatorError
 from mutabot.inside.evidence import REFUSALS, Evidence
 from mutabot.inside.exception_groups import leaves
 from mutabot.inside.targets.names import is_named
-from mutabot.model import Call, Middleware, Mutant, Operation, Reply, Role, Span
+from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Proceed, Reply, Role, Span
 from mutabot.model.named import Refused
 from mutabot.model.values.answer import restore
 from mutabot.operators import Operator, Subject, operator
@@ -41,6 +41,7 @@ class Activation:
         evidence: what it did in the running test.
         rule: its operator.
         watched: how the robot says that it refuses the last mutated call of the running test.
+        time: simulated seconds since the test's first tick; None without a clock.
     """
 
     mutant: Mutant
@@ -51,12 +52,14 @@ class Activation:
     evidence: Evidence = field(default_factory=Evidence)
     rule: Operator = field(init=False)
     watched: tuple[Refused, ...] = ()
+    time: Callable[[], float | None] = lambda: None
     _told_by: tuple[Refused, ...] = ()
     _commands: int = 0
     _told: int = 0
     _is_passed: bool = False
     _middleware: Middleware | None = None
     _idle: Idle | None = None
+    _moment: Moment | None = None
     _test: tuple[int, str] = (0, "")
     _early: Evidence = field(default_factory=Evidence)
 
@@ -64,13 +67,17 @@ class Activation:
         """What it did before the first test counts in every test."""
         self._early = self.evidence
 
-    def start(self, seed: int, round: int = 0, test: str = "") -> None:
-        """A new test begins; the mutant's randomness follows from ``seed`` alone."""
+    def start(self, seed: int, round: int = 0, test: str = "", moment: Moment | None = None) -> None:
+        """A new test begins; the mutant's randomness follows from ``seed`` alone.
+
+        ``moment``: at which calls of the test it acts; None for all.
+        """
         self.evidence = replace(self._early, away=dict(self._early.away))
         self.rule = operator(self.mutant.operator)
         self._middleware = self.rule.middleware(self._subject(), Random(seed))
         self._idle = Idle.of(self.mutant.idle) if self.rule.asks_idle else None
         self._test = (round, test)
+        self._moment = moment
         self.watched = ()
 
     def is_here(self, site: tuple[Span, Role], target: str) -> bool:
@@ -82,13 +89,14 @@ class Activation:
         """Whether the call is the text command that the mutant is about."""
         return (call.pattern.text if call.pattern is not None else None) == self.mutant.pattern
 
-    async def perform(self, door: Door, call: Call, is_async: bool) -> tuple[Any, Reply | None]:
+    async def perform(self, door: Door, call: Call, is_async: bool, number: int) -> tuple[Any, Reply | None]:
         """Let the robot do what the mutant makes of a call.
 
         Args:
             door: its operation's.
             call: what the program says.
             is_async: whether what the operation returns is to be awaited; if not, nothing here suspends.
+            number: of the call among those of its site in this test, from 1.
 
         Returns what the program receives, and the robot's last answer.
         """
@@ -97,10 +105,11 @@ class Activation:
         passage = Passage(kept_call(call) if self.rule.remembers else call)
         performer = _Performer(self, door, passage, is_async)
         self._commands, self._told, self._is_passed = 0, 0, False
+        is_due = self._moment is None or self._moment.holds(number, self.time())
         try:
             if self._idle is not None:
                 passage.call = replace(passage.call, idle=self._answer(self._idle, door, call))
-            reply = await passed(passage, self._middleware, performer.proceed)
+            reply = await passed(passage, self._middleware if is_due else _not_yet, performer.proceed)
             reply = passage.received = mishaps.heard_of(passage.call, reply)
             self.note(passage)
             last = passage.answered[-1] if passage.answered else None
@@ -148,8 +157,18 @@ class Activation:
             self.evidence.said = said
 
     def _subject(self) -> Subject:
-        pattern = self.operation.pattern(self.mutant.pattern)
-        return subject_of(self.rule, self.operation, pattern, self.mutant.quantity, self.mutant.variant)
+        mutant = self.mutant
+        pattern = self.operation.pattern(mutant.pattern)
+        found = subject_of(self.rule, self.operation, pattern, mutant.quantity, mutant.variant)
+        if mutant.magnitude is None:
+            return found
+        return replace(  # a magnitude that is demanded need not be one of the operator's own
+            found,
+            variant=mutant.variant,
+            magnitude=mutant.magnitude,
+            unit=mutant.unit,
+            direction=mutant.direction,
+        )
 
     def _answer(self, idle: Idle, door: Door, call: Call) -> Reply:
         """What the command answers while the robot does nothing: what it answered here in the baseline.
@@ -183,6 +202,11 @@ class Activation:
             return (passage.call.values.get(name), after)
         received = passage.received.values.get(name) if passage.received is not None else None
         return (passage.answered[-1].values.get(name), received)
+
+
+async def _not_yet(call: Call, proceed: Proceed) -> Reply:
+    """A call that is not at the mutant's moment."""
+    return await proceed(call.as_is("it is not the moment"))
 
 
 @dataclass(slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import sys
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
@@ -24,6 +24,7 @@ from mutabot.model.values.quantity import Value, is_reading_of, same
 from .answers import snapshot
 from .arguments import Arguments, signature_for
 from .mishaps import why_not
+from .passing_time import ProgramTime
 from .writer import Message, Writer
 
 
@@ -62,6 +63,7 @@ class Door:
         calls: how often it was called.
         lately: values that last came by under the names of a middleware, by target; doors share it.
         handles: classes that are part of the robot API: their objects are never copied.
+        time: the program's time; None where nothing tells.
     """
 
     def __init__(
@@ -80,6 +82,7 @@ class Door:
         self.calls = 0
         self.lately: dict[str, Mapping[str, Value]] = {}
         self.handles: Collection[str] = ()
+        self.time: ProgramTime | None = None
 
     def reset(self) -> None:
         """Forget earlier answers and commands: a new test begins."""
@@ -108,7 +111,10 @@ class Door:
             return await self._where(quantity, invocation, pattern)
 
         cannot = partial(why_not, means)
-        return Call(self.operation, pattern, values, current=current, payload=invocation, cannot=cannot)
+        found = Call(self.operation, pattern, values, current=current, payload=invocation, cannot=cannot)
+        if self.time is None:
+            return found
+        return replace(found, time=self.time.now, wait=self.time.wait if means is None else means.sleep)
 
     def perform(self, call: Call, original: Call) -> Any:
         """Do what the call says; returns the operation's own result (an awaitable for async ones)."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import inspect
 import sys
+from collections import Counter
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from fnmatch import fnmatchcase
@@ -87,6 +88,7 @@ class Passing:
         trunk: set while this process runs the original and forks a branch per mutant.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
         activations: the mutants of calls that are at work: none for the original.
+        calls: how often each site has been called in the running test, by operation and pattern.
     """
 
     def __init__(
@@ -112,6 +114,7 @@ class Passing:
         self.activations: list[Activation] = []
         self.oracle_nodes: tuple[str, ...] = ()
         self._operator = ""
+        self.calls: Counter[tuple[Span, str, str | None]] = Counter()
 
     def activate(self, activation: Activation) -> None:
         """Let a mutant be at work from now on."""
@@ -186,8 +189,9 @@ class Passing:
             try:
                 # 2. A trunk forks a branch for each mutant that differs from here on, and goes on as the
                 #    original; a branch comes back from here as its mutant.
+                number = self._counted(site[0], call)
                 if self.trunk is not None:
-                    self.trunk.fork_at(site[0], call)
+                    self.trunk.fork_at(site[0], call, number)
                 # 3. The robot does what the program says, or what a mutant at this site makes of it.
                 mutant = self._mutant_of(site, call)
                 if mutant is None:
@@ -196,7 +200,7 @@ class Passing:
                     reply = await self._perform(door, call, is_async)
                     result = reply.payload
                 else:
-                    result, reply = await mutant.perform(door, call, is_async)
+                    result, reply = await mutant.perform(door, call, is_async, number)
                 # 4. The program receives the result.
                 return result
             finally:
@@ -207,6 +211,12 @@ class Passing:
                 _under_way.reset(token)
             except ValueError:  # a coroutine that was given up is closed from elsewhere
                 pass
+
+    def _counted(self, span: Span, call: Call) -> int:
+        """The number of a call among those of its site in the running test, from 1."""
+        key = (span, call.operation.target, call.pattern.text if call.pattern is not None else None)
+        self.calls[key] += 1
+        return self.calls[key]
 
     async def _leave_alone(
         self,

@@ -84,6 +84,8 @@ class Trunk:
         log: device and inode of this process's log.
         branch: what every branch does.
         where_is: tells where a process is, in words, or None.
+        is_moment: whether a mutant acts at a call, given the call's number among those of its site in the
+            running test.
     """
 
     branching: Branching
@@ -91,6 +93,7 @@ class Trunk:
     log: tuple[int, int] | None
     branch: Branch
     where_is: Callable[[int], str | None] = lambda _: None
+    is_moment: Callable[[Mutant, int], bool] = lambda mutant, number: True
     _tokens: Tokens = field(init=False)
     _live: dict[Key, list[Mutant]] = field(default_factory=dict)
     _tests: dict[str, frozenset[str]] = field(default_factory=dict)
@@ -128,14 +131,15 @@ class Trunk:
         self._branched.clear()
         self._copied = False
 
-    def fork_at(self, span: Span, call: Call) -> None:
-        """Fork for every live mutant of this call that has no branch in this test yet.
+    def fork_at(self, span: Span, call: Call, number: int) -> None:
+        """Fork for every live mutant that acts at this call and has no branch in this test yet.
 
         In a branch this process is its mutant from here on.
         """
         pattern = call.pattern.text if call.pattern is not None else None
         key = (span, call.operation.target, pattern)
-        self._fork(key, self._live.get(key, ()))
+        here = self._live.get(key, ())
+        self._fork(key, [one for one in here if one.moment is None or self.is_moment(one, number)])
 
     def fork_at_place(self, place: int, indexes: frozenset[int]) -> None:
         """The same at a place of the program text, for the mutants that are these alternatives."""

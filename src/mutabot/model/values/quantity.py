@@ -43,6 +43,20 @@ class Kind(StrEnum):
     FLAG = "flag"
     FRAME_ID = "frame_id"
     STAMP = "stamp"
+    SPEED = "speed"
+    ACCELERATION = "acceleration"
+    JERK = "jerk"
+    FORCE = "force"
+    TORQUE = "torque"
+    MASS = "mass"
+    TEMPERATURE = "temperature"
+    VOLTAGE = "voltage"
+    CURRENT = "current"
+    PRESSURE = "pressure"
+    FREQUENCY = "frequency"
+    RATIO = "ratio"
+    COUNT = "count"
+    NUMBER = "number"
     SETTING = "setting"
 
 
@@ -57,9 +71,16 @@ class Mode(StrEnum):
 WHOLE = frozenset({Kind.ROTATION_VECTOR, Kind.QUATERNION, Kind.EULER})
 #: what a message says of itself: the name of the frame it is given in, and when that was; written and read
 HEADER = frozenset({Kind.FRAME_ID, Kind.STAMP})
+#: numbers on a scale that say neither where something is nor how long it takes; written and read
+PLAIN = frozenset(
+    {
+        Kind.SPEED, Kind.ACCELERATION, Kind.JERK, Kind.FORCE, Kind.TORQUE, Kind.MASS, Kind.TEMPERATURE,
+        Kind.VOLTAGE, Kind.CURRENT, Kind.PRESSURE, Kind.FREQUENCY, Kind.RATIO, Kind.COUNT, Kind.NUMBER,
+    }
+)  # fmt: skip
 #: kinds that are written to the robot
 WRITTEN = frozenset(
-    {Kind.TRANSLATION, Kind.ROTATION, Kind.OPENING, Kind.OUTPUT, Kind.DURATION, *WHOLE, *HEADER}
+    {Kind.TRANSLATION, Kind.ROTATION, Kind.OPENING, Kind.OUTPUT, Kind.DURATION, *WHOLE, *HEADER, *PLAIN}
 )
 #: kinds that are read from the robot
 READ = frozenset(
@@ -72,6 +93,7 @@ READ = frozenset(
         Kind.FLAG,
         *WHOLE,
         *HEADER,
+        *PLAIN,
     }
 )
 #: kinds whose values are numbers on a scale, with a unit
@@ -85,6 +107,7 @@ MEASURED = frozenset(
         Kind.ANGLE,
         Kind.DISTANCE,
         *WHOLE,
+        *PLAIN,
     }
 )
 #: what each kind measures; kinds that are missing carry no unit
@@ -99,6 +122,18 @@ DIMENSIONS: dict[Kind, frozenset[Dimension]] = {
     Kind.DISTANCE: frozenset({Dimension.LENGTH}),
     Kind.ROTATION_VECTOR: frozenset({Dimension.ANGLE}),
     Kind.EULER: frozenset({Dimension.ANGLE}),
+    Kind.SPEED: frozenset({Dimension.SPEED, Dimension.ANGULAR_SPEED}),
+    Kind.ACCELERATION: frozenset({Dimension.ACCELERATION, Dimension.ANGULAR_ACCELERATION}),
+    Kind.JERK: frozenset({Dimension.JERK, Dimension.ANGULAR_JERK}),
+    Kind.FORCE: frozenset({Dimension.FORCE}),
+    Kind.TORQUE: frozenset({Dimension.TORQUE}),
+    Kind.MASS: frozenset({Dimension.MASS}),
+    Kind.TEMPERATURE: frozenset({Dimension.TEMPERATURE}),
+    Kind.VOLTAGE: frozenset({Dimension.VOLTAGE}),
+    Kind.CURRENT: frozenset({Dimension.CURRENT}),
+    Kind.PRESSURE: frozenset({Dimension.PRESSURE}),
+    Kind.FREQUENCY: frozenset({Dimension.FREQUENCY}),
+    Kind.RATIO: frozenset({Dimension.RATIO}),
 }
 #: the reading that tells where a written kind is now
 READING_OF: dict[Kind, Kind] = {Kind.TRANSLATION: Kind.POSITION, Kind.ROTATION: Kind.ORIENTATION}
@@ -124,6 +159,13 @@ class Quantity:
         order: of the parts of a quaternion (``wxyz`` or ``xyzw``), or the axes of Euler angles; else None.
         relative: whether the program computes this absolute target from where the robot is, so that it hides
             a relative move.
+        ladder: the magnitudes of graded faults to try, in ``ladder_unit``, rising; None for the usual ones.
+        ladder_unit: the unit of these; it measures what the quantity measures, or a time, or a ratio; only
+            graded faults of that measure follow it. None for its own unit.
+        missing: what a reading gives that is not there: ``none``, ``nan``, or an exception that is raised
+            (``module:Name``); None if the vocabulary does not say.
+        tcp: the part of the tool centre point's offset that lies along this axis, in its unit; None if the
+            vocabulary does not say.
     """
 
     name: str
@@ -139,6 +181,10 @@ class Quantity:
     clip: tuple[float, float] | None = None
     order: str | None = None
     relative: bool = False
+    ladder: tuple[float, ...] | None = None
+    ladder_unit: str | None = None
+    missing: str | None = None
+    tcp: float | None = None
 
     def get(self, start: Any) -> Value:
         """Its value in what its path starts at: the seconds of a stamp, the numbers of an orientation.

@@ -6,7 +6,7 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
-from mutabot.model.values.quantity import Value
+from mutabot.model.values.quantity import PLAIN, Value
 from mutabot.operators.operator import Example, Subject, map_numbers
 from mutabot.operators.rule import Published
 
@@ -54,7 +54,7 @@ class Negate(ReadValueOperator):
     )
 
     def fits(self, quantity: Quantity) -> bool:
-        return quantity.is_measured
+        return quantity.is_measured and quantity.kind not in PLAIN
 
     def change(self, subject: Subject, value: Value, random: Random) -> Value | None:
         quantity = quantity_of(subject)

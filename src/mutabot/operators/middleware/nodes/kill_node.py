@@ -20,6 +20,7 @@ class KillNode(MishapOperator):
         "the node is a process of its own: never that of the tests."
     )
     rank = 410
+    is_raced = True
     mishap = Mishap.KILLED
     forms = frozenset({*WRITTEN, *COMING})
     examples: ClassVar[tuple[Example, ...]] = (

@@ -20,6 +20,7 @@ class RestartNode(MishapOperator):
         " as under a supervisor, once. Only where the node is a process of its own."
     )
     rank = 420
+    is_raced = True
     mishap = Mishap.RESTARTED
     forms = frozenset({*WRITTEN, *COMING})
     examples: ClassVar[tuple[Example, ...]] = (
