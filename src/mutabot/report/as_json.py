@@ -112,6 +112,11 @@ def mutant_data(mutant: Mutant) -> dict[str, Any]:
         "pattern": mutant.pattern,
         "quantity": mutant.quantity,
         "description": mutant.description,
+        "magnitude": mutant.magnitude,
+        "unit": mutant.unit,
+        "direction": mutant.direction or None,
+        "ladder": mutant.ladder or None,
+        "moment": mutant.moment.text if mutant.moment is not None else None,
     }
 
 

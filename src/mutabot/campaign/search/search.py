@@ -69,7 +69,7 @@ class _Search:
         }
 
     def run(self, rounds: Sequence[int]) -> None:
-        """Run until nothing more is asked in these rounds; a violation asks in all that came before as well."""
+        """Run until nothing more is asked in these rounds; a violation asks in all before as well."""
         known = range(max(rounds, default=-1) + 1)
         while trials := [trial for round in known for trial in self._due(round)]:
             new: list[Trial] = []

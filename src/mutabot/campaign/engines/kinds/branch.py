@@ -27,7 +27,7 @@ class _Controls:
 
     @classmethod
     def of(cls, campaign: Campaign, trials: Iterable[Trial]) -> _Controls:
-        """Those that are not proven yet; for ladders in each round, since a threshold rests on single kills."""
+        """Those not proven yet; for ladders in each round, since a threshold rests on single kills."""
         trials = list(trials)
         rounds = {0, *(round for mutant, round in trials if mutant.ladder)}
         found = controls_in_branches(campaign.baseline, (mutant for mutant, _ in trials), sorted(rounds))
