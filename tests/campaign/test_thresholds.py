@@ -1,0 +1,122 @@
+"""Campaigns of graded faults find the magnitudes that the tests' own tolerances tell."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mutabot.campaign.run import run_campaign
+from mutabot.journal.journal import Journal
+from mutabot.model.ladder import Bracket, bracket_of, seen
+from tests.campaign.project import Quiet, request_for, write_project
+
+ROBOT = """
+    class Refused(Exception): pass
+
+    class Cell:
+        def __init__(self): self.time = 0.0
+        def wait(self, seconds):
+            self.time += seconds
+            return self.tick()
+        def tick(self): return self.time
+
+    class Arm:
+        def __init__(self, cell): self.cell, self.x = cell, 0.0
+        def move_by(self, dx):
+            if self.x + dx > 0.34: raise Refused(dx)
+            self.x += dx
+            self.cell.time += 1.0
+            self.cell.tick()
+        def look(self): return 0.3
+"""
+VOCABULARY = """
+    refusals = ["robot:Refused"]
+    clock = { tick = "robot:Cell.tick", unit = "s" }
+    wait = { call = "robot:Cell.wait" }
+
+    [[operation]]
+    call = "robot:Arm.move_by"
+    arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
+
+    [[operation]]
+    call = "robot:Arm.look"
+    result = { kind = "position", axis = "x", unit = "m" }
+
+    [[operation]]
+    call = "robot:Cell.wait"
+    arguments.seconds = { kind = "duration", unit = "s" }
+"""
+MISSION = """
+    def run(cell, arm):
+        arm.move_by(0.25)
+        cell.wait(0.75)
+        return arm.look()
+"""
+TESTS = """
+    import mission
+    from robot import Arm, Cell
+
+    def test_run():
+        cell = Cell()
+        arm = Arm(cell)
+        seen = mission.run(cell, arm)
+        assert abs(arm.x - 0.25) < 0.015
+        assert abs(seen - 0.3) < 0.007
+        assert 1.6 < cell.time < 1.85
+"""
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Bracket]]:
+    """The brackets of two rounds, by what each ladder's id ends with."""
+    folder = write_project(
+        tmp_path_factory.mktemp("graded"), MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY
+    )
+    request = request_for(folder, families=("graded",), rounds=2)
+    with Journal.open(run_campaign(request, Quiet())) as journal:
+        mutants = {one.id: one for one in journal.mutants()}
+        rows: dict[tuple[str, int], dict[float, object]] = {}
+        for one in journal.outcomes():
+            mutant = mutants[one.mutant]
+            assert mutant.magnitude is not None
+            rows.setdefault((mutant.ladder, one.round), {})[mutant.magnitude] = seen(one)
+    brackets: dict[str, list[Bracket]] = {}
+    for (ladder, _), row in rows.items():
+        brackets.setdefault(ladder.partition("run:")[2], []).append(bracket_of(row))  # type: ignore[arg-type]
+    return brackets
+
+
+@pytest.mark.parametrize(
+    ("ladder", "bracket"),
+    [
+        ("arm.move_by#1:dx:offset=+", Bracket(10.0, 20.0)),
+        ("arm.move_by#1:dx:offset=-", Bracket(10.0, 20.0)),
+        ("arm.look#1:result:offset=+", Bracket(5.0, 10.0)),
+        ("arm.move_by#1:dx:scale=+", Bracket(5.0, 10.0)),  # 0.0125 and 0.025 m
+        ("cell.wait#1:seconds:early=-", Bracket(100.0, 200.0)),
+        ("arm.move_by#1:call:lag", Bracket(50.0, 100.0)),
+        ("arm.look#1:result:drift=+", Bracket(5.0, 10.0)),  # 0.75 s after the first tick
+        ("arm.move_by#1:dx:quantise", Bracket(20.0, 100.0)),  # 0.25 m is no multiple of these two alone
+    ],
+)
+def test_the_threshold_is_where_the_test_s_tolerance_puts_it(
+    found: dict[str, list[Bracket]], ladder: str, bracket: Bracket
+) -> None:
+    assert [(one.low, one.high) for one in found[ladder]] == [(bracket.low, bracket.high)] * 2
+
+
+def test_what_the_robot_refuses_is_no_detection(found: dict[str, list[Bracket]]) -> None:
+    # 0.25 + 0.1 m is out of reach, and 0.25 + 0.02 m is noticed before
+    assert all(one.refused is None for one in found["arm.move_by#1:dx:offset=+"])
+
+
+def test_magnitude_and_verdict_agree_in_both_engines(tmp_path: Path) -> None:
+    ends = []
+    for engine in ("branch", "replay"):
+        folder = write_project(tmp_path / engine, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
+        request = request_for(folder, families=("graded",), only=("lag", "drift"), engine=engine)
+        with Journal.open(run_campaign(request, Quiet())) as journal:
+            ends.append({(one.mutant, one.round): one.verdict for one in journal.outcomes()})
+    assert ends[0] == ends[1]
+    assert ends[0]
