@@ -40,7 +40,7 @@ class Column:
 
 def rows(results: Results) -> Iterator[tuple[Cell, ...]]:
     """The cells of all outcomes, in the order of ``COLUMNS``: by mutant, then by round."""
-    for result in results.mutants:
+    for result in results.everything:
         for outcome in result.outcomes:
             yield tuple(_cell(column, result, outcome) for column in COLUMNS)
 

@@ -1,0 +1,1 @@
+"""Graded faults: what users demand of them."""
