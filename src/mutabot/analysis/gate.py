@@ -45,8 +45,8 @@ def decide(
     greatest share of time-outs among the valid outcomes. ``max_unstable`` is the greatest share of flaky
     tests among the tests, and of unstable outcomes among all; ``max_errors`` the greatest share of errors
     among all outcomes: mutants of which nothing is known. Graded mutants have no score, but their errors and
-    unstable outcomes count; ``demands`` say which of them must be noticed. A disagreement that ``--verify`` found always
-    fails.
+    unstable outcomes count; ``demands`` say which of them must be noticed. A disagreement that ``--verify``
+    found always fails.
     """
     total = results.all.total
     unstable = (

@@ -81,6 +81,11 @@ class MutantResult:
         return max(map(worst_of, survivors), default=0.0)
 
     @property
+    def improvement(self) -> str:
+        """What a test did better with it than without, in words; empty if nothing."""
+        return next((one.improvement for one in self.outcomes if one.improvement), "")
+
+    @property
     def indistinguishable(self) -> bool:
         """Whether no survivor of it looked other than the original."""
         return is_indistinguishable(self.outcomes)

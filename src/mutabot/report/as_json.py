@@ -62,6 +62,7 @@ def results_data(results: Results) -> dict[str, Any]:
             for group in results.groups
         ],
         "mutants": [result_data(result) for result in results.mutants],
+        "graded": [result_data(result) for result in results.graded],
         "left_out": [
             {"id": item.id, "description": item.description, "reason": item.reason}
             for item in results.left_out
@@ -112,6 +113,10 @@ def mutant_data(mutant: Mutant) -> dict[str, Any]:
         "pattern": mutant.pattern,
         "quantity": mutant.quantity,
         "description": mutant.description,
+        "magnitude": mutant.magnitude,
+        "unit": mutant.unit,
+        "direction": mutant.direction,
+        "ladder": mutant.ladder or None,
     }
 
 
@@ -254,6 +259,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "engine": outcome.engine,
         "stuck": outcome.stuck,
         "repeats": outcome.repeats,
+        "figures": [{**to_data(one), "is_better": one.is_better} for one in outcome.figures],
         "looked": [to_data(one) for one in outcome.looked],
         "diverged": [{**to_data(one), "worst": one.worst} for one in outcome.diverged],
     }

@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Iterator
 
 from rich.console import Console, RenderableType
-from rich.padding import Padding
 from rich.text import Text
 
 from mutabot.analysis.thresholds.comparing import Change, Compared, Comparison
@@ -17,7 +16,7 @@ from mutabot.report.terminal.console import heading, plain, plural
 def print_compared(console: Console, comparison: Comparison) -> None:
     """Print what changed from the old campaign to the new one."""
     for part in _parts(comparison):
-        console.print(part)
+        console.print(part, soft_wrap=True)
 
 
 def _parts(comparison: Comparison) -> Iterator[RenderableType]:
@@ -25,10 +24,10 @@ def _parts(comparison: Comparison) -> Iterator[RenderableType]:
     counts = Counter(one.change for one in comparison.ladders)
     if comparison.why_no_words:
         text = f"No ladder is called improved or worse: {comparison.why_no_words}."
-        yield Text(text, overflow="fold")
+        yield Text(text)
     else:
         told = ", ".join(f"{counts[change]} {change}" for change in Change if counts[change])
-        yield Text(f"In these rounds: {told or 'nothing to compare'}.", overflow="fold")
+        yield Text(f"In these rounds: {told or 'nothing to compare'}.")
     yield from _mean(comparison)
     for one in comparison.ladders:
         if one.change not in (Change.SAME, Change.UNKNOWN):
@@ -40,7 +39,7 @@ def _parts(comparison: Comparison) -> Iterator[RenderableType]:
     for name, ids in (("the old", comparison.gone), ("the new", comparison.added)):
         if ids:
             yield heading(f"{plural(len(ids), 'ladder')} only in {name} campaign")
-            yield from (Text(plain(one), overflow="fold") for one in ids)
+            yield from (Text(plain(one)) for one in ids)
 
 
 def _mean(comparison: Comparison) -> Iterator[RenderableType]:
@@ -54,13 +53,12 @@ def _mean(comparison: Comparison) -> Iterator[RenderableType]:
     yield Text(
         f"Over all ladders and rounds, faults are noticed {abs(mean.mean):.2f} ± {half:.2f} steps {sign} "
         f"(95 %): {words[comparison.has_improved]}.",
-        overflow="fold",
     )
 
 
 def _ladder(one: Compared, *, with_word: bool) -> Iterator[RenderableType]:
     word = f": {one.change}" if with_word else ""
-    yield Text(plain(f"\n{one.new.place} {one.new.name}{word}"), overflow="fold")
+    yield Text(plain(f"\n{one.new.place} {one.new.name}{word}"))
     for name, ladder in (("before", one.old), ("now", one.new)):
         line = line_of(ladder) if ladder.counted else ladder.why_unjudged
-        yield Padding(Text(plain(f"{name:<7} {line}"), overflow="fold"), (0, 0, 0, 2))
+        yield Text(plain(f"  {name:<7} {line}"))

@@ -118,7 +118,7 @@ def _row(ladder: Ladder, scale: _Scale, y: float) -> Iterator[Rectangle | Words]
     left, right = scale.at(ladder.none_up_to), scale.at(ladder.all_from)
     if math.isfinite(ladder.all_from) and largest > right:
         yield Rectangle(right, top, largest - right, _BAR, _KINDS[ordered[0]][1])
-    before = 0
+    before = 0.0
     for kind in ordered:
         share = kinds[kind] / len(ladder.counted)
         yield Rectangle(left, top + before * _BAR, right - left, share * _BAR, _KINDS[kind][0])
@@ -136,10 +136,10 @@ def _label(ladder: Ladder) -> str:
 
 
 def _ends(ladder: Ladder) -> str:
-    low = amount(ladder.none_up_to, ladder.unit) if ladder.none_up_to else "0"
+    low = amount(ladder.none_up_to, ladder.unit) if ladder.none_up_to else ""
     if math.isinf(ladder.all_from):
-        return f"above {low}" if ladder.none_up_to else "not in all"
-    return f"{low} to {amount(ladder.all_from, ladder.unit)}"
+        return f"above {low}" if low else "not in all"
+    return f"{low} to {amount(ladder.all_from, ladder.unit)}".removeprefix(" ")
 
 
 def _legend(ladders: Sequence[Ladder]) -> Iterator[Rectangle | Words]:

@@ -24,14 +24,15 @@ _NOTICERS = ("check", "exception", "timeout")
 def print_thresholds(console: Console, thresholds: Thresholds, *, steps: bool = False) -> None:
     """Print the thresholds of a campaign; ``steps`` also prints what became of each magnitude."""
     for part in _parts(thresholds, steps=steps):
-        console.print(part)
+        # a ladder is one line also where nobody looks at it, so that other programs find it whole
+        console.print(part, soft_wrap=isinstance(part, Text))
 
 
 def _parts(thresholds: Thresholds, *, steps: bool) -> Iterator[RenderableType]:
     size = f"{plural(len(thresholds.all), 'ladder')} × {plural(thresholds.rounds, 'round')}"
     yield Text(f"{size}: {thresholds.state}", style="bold")
     for ladder in thresholds.ladders:
-        yield Text(plain(f"{ladder.place} {ladder.name}: {line_of(ladder)}"), overflow="fold")
+        yield Text(plain(f"{ladder.place} {ladder.name}: {line_of(ladder)}"))
         for line in rounds_left_out(ladder):
             yield _below(f"without {line}")
         if steps:
@@ -91,7 +92,6 @@ def _meaning(thresholds: Thresholds) -> Iterator[RenderableType]:
             if rounds < _FEW
             else f"The median threshold lies in the bracket below with {100 * median.level:.0f} % confidence"
             f"{whose}.",
-            overflow="fold",
         )
         if rounds >= _FEW:
             for one in ladders[:_MOST]:
@@ -100,9 +100,8 @@ def _meaning(thresholds: Thresholds) -> Iterator[RenderableType]:
         shares = [one.share_shown for one in ladders if one.share_shown is not None]
         if shares:
             yield Text(
-                f"Where all {rounds} rounds notice, at least {_floor(shares[0])} % of further rounds do, "
+                f"Where all {rounds} rounds notice, at least {100 * shares[0]:.0f} % of further rounds do, "
                 f"with 95 % confidence{whose}.",
-                overflow="fold",
             )
 
 
@@ -131,7 +130,6 @@ def _in_order(thresholds: Thresholds) -> Iterator[RenderableType]:
             f"None of {count} ladders is out of order: fewer than {_ceil(share)} % of such ladders are "
             "(95 %; they are counted once each, since violations come in groups).",
             style="dim",
-            overflow="fold",
         )
 
 
@@ -166,7 +164,7 @@ def _section(title: str, lines: Iterable[str]) -> Iterator[RenderableType]:
         return
     yield heading(title)
     for line in found[:_MOST]:
-        yield Text(plain(line), overflow="fold")
+        yield Text(plain(line))
     if len(found) > _MOST:
         yield Text(f"and {len(found) - _MOST} more; --json has all", style="dim")
 
@@ -187,7 +185,7 @@ def _costs(thresholds: Thresholds) -> Iterator[RenderableType]:
 
 
 def _below(text: str) -> RenderableType:
-    return Padding(Text(plain(text), overflow="fold", style="dim"), (0, 0, 0, 2))
+    return Text(f"  {plain(text)}", style="dim")
 
 
 def _floor(share: float) -> int:
