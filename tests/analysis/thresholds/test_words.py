@@ -24,7 +24,8 @@ from mutabot.analysis.thresholds.words import amount, line_of, rounds_left_out, 
         ),
         (
             ["SCCCCCC", "SSCCCCC", "SSSCCCC", "SSSSCCC", "SSSSSCC"],
-            "noticed in 1 of 5 rounds from 2 mm, in 3 of 5 from 10 mm, in all 5 from 50 mm; in none up to 1 mm",
+            "noticed in 1 of 5 rounds from 2 mm, in 3 of 5 from 10 mm, in all 5 from 50 mm; "
+            "in none up to 1 mm",
         ),
         (
             ["CCCCCCC"] * 2 + ["SSCCCCC"] * 3,
@@ -36,7 +37,8 @@ from mutabot.analysis.thresholds.words import amount, line_of, rounds_left_out, 
         ),
         (
             ["SSSSCRR"] + ["SSSSSRR"] * 4,
-            "noticed in 1 of 5 rounds from 20 mm; not noticed up to 20 mm, refused from 50 mm (4 of 5 rounds)",
+            "noticed in 1 of 5 rounds from 20 mm; "
+            "not noticed up to 20 mm, refused from 50 mm (4 of 5 rounds)",
         ),
         (["SSSSRRR"] * 2, "not noticed up to 10 mm, refused from 20 mm (all 2 rounds)"),
         (["SSSSNNN"] * 2, "not noticed up to 10 mm, without effect above (all 2 rounds)"),

@@ -83,13 +83,15 @@ def ruling(demand: Demand, ladder: Ladder) -> Ruling:
 def suggested(ladder: Ladder) -> float | None:
     """What may be demanded of a ladder: its ``all_from`` if the rounds lie close together, else a step more.
 
-    None if some round never notices it, or if there is no larger magnitude.
+    A refusal is as good as being noticed. None if some round neither notices nor refuses it, or if there is no
+    larger magnitude.
     """
-    if not ladder.counted or not math.isfinite(ladder.all_from):
+    ends = [one.bracket.high or one.bracket.refused for one in ladder.counted]
+    known = [end for end in ends if end is not None]
+    if not known or len(known) < len(ends):
         return None
-    if ladder.are_neighbours(ladder.none_up_to, ladder.all_from):
-        return ladder.all_from
-    return ladder.above(ladder.all_from)
+    largest = max(known)
+    return largest if ladder.are_neighbours(ladder.none_up_to, largest) else ladder.above(largest)
 
 
 def _kind(ladder: Ladder) -> Kind | None:

@@ -31,7 +31,7 @@ def _block(both: Sequence[Ladder], table: str) -> Iterator[str]:
     known = [size for size in sizes if size is not None]
     first = both[0]
     if len(known) < len(sizes):
-        yield "# no demand: not all rounds notice it, or only the largest magnitude"
+        yield "# no demand: some round neither notices nor refuses it, or the ladder ends too soon"
         return
     yield f"[[{table}]]"
     yield f"site = {_text(first.mutant.site.id)}"
