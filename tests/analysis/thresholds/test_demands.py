@@ -1,4 +1,4 @@
-"""Demands: all rounds must notice what is demanded, and every way not to know is a failure with its own text."""
+"""Demands: all rounds must notice what is demanded, and not to know is a failure with its own text."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ def ruling(demand: Demand, ladder: Ladder) -> Ruling:
 
 
 def suggested(ladder: Ladder) -> float | None:
-    """What may be demanded of a ladder: its ``all_from`` if the rounds lie close together, else a step more.
+    """What may be demanded of a ladder: its ``all_from`` if the rounds lie close together, or a step more.
 
     A refusal is as good as being noticed. None if some round neither notices nor refuses it, or if there is no
     larger magnitude.
