@@ -103,11 +103,20 @@ def test_the_gate_names_each_site_direction_and_round(tmp_path: Path) -> None:
     assert decide(found, demands=[Demand(20.0, "mm")]).exit_code is ExitCode.FINE
 
 
-def test_a_demand_that_fits_no_ladder_is_no_pass(tmp_path: Path) -> None:
-    found = journals.results(tmp_path, Rungs(["SSSCCCC"]))
-    decision = decide(found, demands=[Demand(10.0, "deg")])
+@pytest.mark.parametrize(
+    ("demand", "words"),
+    [
+        (Demand(10.0, "deg"), "fits none of 1 ladders, which are of translation, in mm"),
+        (Demand(10.0, "mm", kind=Kind.SPEED), "fits none of 1 ladders, which are of translation, in mm"),
+        (Demand(10.0, "mm", site="mision.py:3"), "unknown site 'mision.py:3'; did you mean 'mission.py:3'?"),
+        (Demand(10.0, "mm", quantity="xd"), "unknown quantity 'xd'"),
+        (Demand(10.0, "ms", operator="delay"), "unknown operator 'delay'"),
+    ],
+)
+def test_a_demand_that_fits_no_ladder_is_no_pass(tmp_path: Path, demand: Demand, words: str) -> None:
+    decision = decide(journals.results(tmp_path, Rungs(["SSSCCCC"])), demands=[demand])
     assert decision.exit_code is ExitCode.SCORE_TOO_LOW
-    assert "fits none of 1 ladders; ladders of offset are in mm" in decision.lines[0]
+    assert words in decision.lines[0]
 
 
 def test_a_campaign_without_graded_mutants_says_how_to_get_them(tmp_path: Path) -> None:

@@ -7,10 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
+from mutabot.errors import unknown_name_text
 from mutabot.families import GRADED
 from mutabot.model import Kind, Outcome, Verdict
 from mutabot.model.graded.demand import Demand, is_at_least, is_same
 from mutabot.model.ladder import Seen, seen
+from mutabot.model.selector import is_like
 
 from .interval import lower_limit, rounds_for, upper_limit
 from .ladders import Ladder
@@ -83,8 +85,8 @@ def ruling(demand: Demand, ladder: Ladder) -> Ruling:
 def suggested(ladder: Ladder) -> float | None:
     """What may be demanded of a ladder: its ``all_from`` if the rounds lie close together, or a step more.
 
-    A refusal is as good as being noticed. None if some round neither notices nor refuses it, or if there is no
-    larger magnitude.
+    A refusal is as good as being noticed. None if some round neither notices nor refuses it, or if there is
+    no larger magnitude.
     """
     ends = [one.bracket.high or one.bracket.refused for one in ladder.counted]
     known = [end for end in ends if end is not None]
@@ -103,10 +105,19 @@ def _why_nothing_fits(demand: Demand, ladders: Sequence[Ladder], families: Seque
         return 'the campaign has no graded mutants; add "graded" to families, or run with --family graded'
     if not ladders:
         return "the campaign has no ladders"
-    near = sorted({f"{one.mutant.site.id} {one.pair_name}" for one in ladders})
-    units = sorted({one.unit or "none" for one in ladders if one.mutant.operator == demand.operator})
-    known = f"; ladders of {demand.operator} are in {', '.join(units)}" if units else ""
-    return f"fits none of {len(ladders)} ladders{known}; the first is {near[0]}"
+    about = [one for one in ladders if one.mutant.operator == demand.operator]
+    if not about:
+        return unknown_name_text("operator", demand.operator, {one.mutant.operator for one in ladders})
+    here = [one for one in about if demand.is_at(one.mutant)]
+    if not here:
+        places = {name for one in about for name in (one.place, one.mutant.site.id, one.mutant.site.text)}
+        return unknown_name_text("site", demand.site or "", places)
+    names = {one.mutant.quantity or "" for one in here}
+    if demand.quantity is not None and not any(is_like(demand.quantity, name) for name in names):
+        return unknown_name_text("quantity", demand.quantity, names)
+    units = ", ".join(sorted({one.unit or "no unit" for one in here}))
+    kinds = ", ".join(sorted({kind.value for kind in map(_kind, here) if kind is not None}))
+    return f"fits none of {len(here)} ladders, which are of {kinds or 'unknown kinds'}, in {units}"
 
 
 def _all_rounds(ladder: Ladder, demanded: float) -> tuple[Held, str]:

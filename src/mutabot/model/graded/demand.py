@@ -49,7 +49,7 @@ class Demand:
             mutant.operator == self.operator
             and (self.quantity is None or is_like(self.quantity, mutant.quantity or ""))
             and (self.kind is None or self.kind is kind)
-            and (self.site is None or self._is_at(mutant))
+            and self.is_at(mutant)
             and self.magnitude_in(mutant.unit) is not None
         )
 
@@ -76,8 +76,11 @@ class Demand:
         """``5 mm``."""
         return f"{self.notice:g}{f' {self.unit}' if self.unit is not None else ''}"
 
-    def _is_at(self, mutant: Mutant) -> bool:
-        site = self.site or ""
+    def is_at(self, mutant: Mutant) -> bool:
+        """Whether it speaks of the site of a mutant."""
+        site = self.site
+        if site is None:
+            return True
         texts = (mutant.site.id, mutant.site.text, mutant.site.span.function)
         return fits(site, mutant) or any(is_like(site, text) for text in texts)
 
