@@ -28,7 +28,10 @@ def play(name: str, example: Example) -> Passage:
     middleware = operator(name).middleware(subject, Random(SEED))
 
     def go(values: Mapping[str, Any], replied: Mapping[str, Any]) -> Passage:
-        call = Call(subject.operation, subject.pattern, values, idle=Reply(), payload=object())
+        call = Call(
+            subject.operation, subject.pattern, values,
+            idle=Reply(), payload=object(), time=lambda: example.time,
+        )  # fmt: skip
         return rehearse(middleware, call, replied, current=example.current, payload=object(), operator=name)
 
     for earlier in example.earlier:

@@ -23,6 +23,7 @@ OTHERWISE = {
     "skip": {"cli"},
     "drop": {"proposal"},
     "delay": {"proposal"},
+    "offset": {"proposal"},
 }
 #: what an id ends with, and what a selection may be made of
 AT_THE_END = re.compile(r"^(?:.*:)?(?P<name>[\w-]+)(?:=.*)?$", re.DOTALL)

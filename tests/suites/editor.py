@@ -14,6 +14,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .graded_editor import CannotSayError
+from .graded_editor import edit as graded_edit
+
 ROOT = Path(__file__).resolve().parents[2]
 #: what the judge must know of the examples; a project of the corpus brings its own ``judge.toml``
 EXAMPLES = Path(__file__).resolve().parent / "examples"
@@ -112,7 +115,7 @@ def edits_for(facts: Facts, mutant: Mapping[str, Any]) -> list[Edit]:
     source = Source(facts.folder / mutant["file"], mutant["file"])
     if mutant["family"] in ("classical", "text"):
         return [text_edit(source, mutant)]
-    if mutant["family"] != "robot":
+    if mutant["family"] not in ("robot", "graded"):
         raise CannotWriteError(f"family {mutant['family']}")
     return [CallEditor(facts, source, mutant).edit()]
 
@@ -177,6 +180,13 @@ class CallEditor:
 
     def edit(self) -> Edit:
         """The edit."""
+        if self.mutant["moment"] is not None:
+            raise CannotWriteError("a moment")
+        if self.mutant["family"] == "graded":
+            try:
+                return graded_edit(self, self.mutant)
+            except CannotSayError as error:
+                raise CannotWriteError(str(error)) from error
         method = getattr(self, "_" + self.mutant["operator"].replace("-", "_"), None)
         if method is None:
             raise CannotWriteError(f"operator {self.mutant['operator']}")

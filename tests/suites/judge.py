@@ -27,7 +27,7 @@ from .message_editor import edits_of, is_named, noting_refusals
 
 HERE = Path(__file__).resolve().parent
 #: what stands beside a copy, with an underscore before its name
-PLANTED = (HERE / "planted.py", HERE / "planted_messages.py")
+PLANTED = (HERE / "planted.py", HERE / "planted_messages.py", HERE / "planted_graded.py")
 IGNORED = shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache", "judge.toml")
 SEEDS = """
 import json, os, pytest
@@ -244,7 +244,9 @@ class Judge:
 
 def is_drawn(mutant: Mapping[str, Any]) -> bool:
     """Whether a mutant rests on chance."""
-    return mutant["operator"] == "noise" or "%" in mutant["variant"]
+    return mutant["operator"] in ("noise", "sensor-noise") or (
+        "%" in mutant["variant"] and mutant["magnitude"] is None
+    )
 
 
 def is_raced(mutant: Mapping[str, Any]) -> bool:

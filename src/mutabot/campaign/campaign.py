@@ -26,6 +26,7 @@ class Campaign:
         executor: runs tasks.
         progress: is told what is going on.
         evidence: what is recorded; None if nothing is.
+        proven: controls that have ended as they must, so that they need not be run again.
         sources: names the sites that workers report.
     """
 
@@ -34,6 +35,7 @@ class Campaign:
     executor: Executor
     progress: Progress
     evidence: Evidence | None = None
+    proven: set[object] = field(default_factory=set)
     sources: Sources = field(init=False)
 
     def __post_init__(self) -> None:

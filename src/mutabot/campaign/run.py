@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import platform
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -19,6 +19,7 @@ from mutabot.campaign.engines.choice import first_engine, run_mutants
 from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
 from mutabot.campaign.plan.earlier import carry, note_outdated
+from mutabot.campaign.plan.ladders import apart
 from mutabot.campaign.plan.plan import Plan, make_plan
 from mutabot.campaign.plan.selection import numbered
 from mutabot.campaign.plan.told import drawing, reaching, summaries
@@ -26,6 +27,7 @@ from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.reuse.reuse import reuse
 from mutabot.campaign.reuse.snapshot import Snapshot
+from mutabot.campaign.search.search import run_ladders
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Result
@@ -35,6 +37,7 @@ from mutabot.journal.records import DRAWING, DRAWS, OPERATORS, REACHING
 from mutabot.model import LeftOut, Mutant
 
 from .beginning import at_it, begin, selected
+from .campaign import Campaign
 from .evidence import Evidence, recorded, without_recording
 from .request import Progress, Request
 from .sink import Sink
@@ -101,7 +104,7 @@ def _run(
     if edited:
         progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
         sink = Sink(journal)
-        run_mutants(campaign, plan.mutants, sink)
+        _run_all(campaign, plan, sink)
         look_again(campaign, plan.mutants, sink, request.clock() - started)
         return
     dependencies = Dependencies(request, baseline, _collected(results), before, after, watch.opened)
@@ -109,11 +112,18 @@ def _run(
     done = reuse(journal, dependencies, plan.mutants, request.rounds, progress)
     sink = Sink(journal, _key_of(journal, dependencies, plan))
     try:
-        run_mutants(campaign, plan.mutants, sink, done)
+        _run_all(campaign, plan, sink, done)
         look_again(campaign, plan.mutants, sink, request.clock() - started)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
     _tidy(request, journal, whole)
+
+
+def _run_all(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tuple[str, int]] = ()) -> None:
+    """Every mutant in all rounds, but of ladders what it takes to find their thresholds."""
+    alone, ladders = apart(plan.mutants)
+    run_mutants(campaign, alone, sink, done)
+    run_ladders(campaign, ladders, sink, done)
 
 
 def _tidy(request: Request, journal: Journal, whole: Plan) -> None:

@@ -1,8 +1,8 @@
 """What one round says about a graded fault: at which magnitudes the tests noticed it.
 
 The detection threshold of a round is the smallest magnitude from which on every magnitude that was run is
-noticed. It is known only as a bracket, between the largest magnitude that was missed and the smallest that was
-noticed.
+noticed. It is known only as a bracket, between the largest magnitude that was missed and the smallest one
+that was noticed.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ class Bracket:
     Attributes:
         low: the largest magnitude that was missed; None if none was.
         high: the smallest magnitude above it that was noticed; None if none was.
-        refused: the smallest magnitude above ``low``, and below ``high``, that the robot refused; None if none
-            was.
+        refused: the smallest magnitude above ``low``, and below ``high``, that the robot refused; None if
+            none was.
         out_of_order: pairs of a magnitude that was noticed and a larger one that was missed.
     """
 

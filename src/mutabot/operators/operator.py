@@ -91,6 +91,7 @@ class Example:
         received: values the program receives; None if it receives the robot's own.
         earlier: values of calls of the same test that went before, and of their replies, for operators that
             remember them.
+        time: simulated seconds since the test's first tick.
         lost: whether the program never receives it.
         late: seconds by which it receives it later.
         then: values of what it receives after it.
@@ -111,6 +112,7 @@ class Example:
     earlier: tuple[Mapping[str, Value], ...] = ()
     lost: bool = False
     late: float = 0.0
+    time: float = 0.0
     then: tuple[Mapping[str, Value], ...] = ()
 
 

@@ -115,8 +115,9 @@ def mutant_data(mutant: Mutant) -> dict[str, Any]:
         "description": mutant.description,
         "magnitude": mutant.magnitude,
         "unit": mutant.unit,
-        "direction": mutant.direction,
+        "direction": mutant.direction or None,
         "ladder": mutant.ladder or None,
+        "moment": mutant.moment.text if mutant.moment is not None else None,
     }
 
 

@@ -98,3 +98,13 @@ def test_a_larger_fault_that_is_missed_is_told(tmp_path: Path) -> None:
 )
 def test_magnitudes_have_the_unit_that_people_read(magnitude: float, unit: str | None, text: str) -> None:
     assert amount(magnitude, unit) == text
+
+
+def test_the_axis_of_a_turn_is_named(tmp_path: Path) -> None:
+    found = journals.ladder(tmp_path, "SSSCCCC", direction="z-", unit="deg")
+    assert found.name == "arm.move_by dx z −"
+
+
+def test_other_operators_than_an_offset_are_named(tmp_path: Path) -> None:
+    found = journals.ladder(tmp_path, "SSSCCCC", operator="lag", direction="", unit="ms")
+    assert found.name == "arm.move_by dx lag"

@@ -98,9 +98,9 @@ def floors_of(ladders: Iterable[Ladder]) -> Iterator[Floor]:
     found: dict[str, dict[str, Ladder]] = {}
     for one in ladders:
         if one.mutant.operator == OFFSET and one.mutant.direction and one.counted:
-            found.setdefault(_both(one), {})[one.mutant.direction] = one
+            found.setdefault(_both(one), {})[one.mutant.direction[-1]] = one
     for both in found.values():
-        if len(both) == 2:
+        if both.keys() == {"+", "-"}:
             up, down = both["+"], both["-"]
             pairs = tuple(_pairs(up, down))
             if pairs:
@@ -122,7 +122,9 @@ def noise_of(quantity: Quantity | None, unit: str | None) -> float | None:
 def _both(ladder: Ladder) -> str:
     mutant = ladder.mutant
     moment = mutant.moment.text if mutant.moment is not None else ""
-    return "|".join((mutant.site.id, mutant.pattern or "", mutant.quantity or "", moment, mutant.unit or ""))
+    axis = mutant.direction[:-1]
+    names = (mutant.site.id, mutant.pattern, mutant.quantity, moment, mutant.unit, axis, mutant.operation)
+    return "|".join(name or "" for name in names)
 
 
 def _pairs(up: Ladder, down: Ladder) -> Iterator[Pair]:

@@ -125,8 +125,10 @@ class Ladder:
 
     @property
     def name(self) -> str:
-        """``arm.move_by y +``; another operator than an offset is named."""
-        return " ".join(part for part in (self.pair_name, _SIGNS.get(self.mutant.direction, "")) if part)
+        """``arm.move_by y +``; another operator than an offset is named, and the axis of a turn (``z +``)."""
+        way = self.mutant.direction
+        parts = (self.pair_name, way[:-1], _SIGNS.get(way[-1:], ""))
+        return " ".join(part for part in parts if part)
 
     @property
     def pair_name(self) -> str:

@@ -57,17 +57,26 @@ def run_mutants(
     """
     rounds = range(campaign.request.rounds)
     trials = [(mutant, round) for round in rounds for mutant in mutants if (mutant.id, round) not in done]
-    report = _Report(campaign.progress, sink, {mutant.id: mutant.number for mutant in mutants})
-    left = Remainder()
+    run_trials(campaign, trials, sink)
+
+
+def run_trials(campaign: Campaign, trials: Sequence[Trial], sink: Sink) -> list[Outcome]:
+    """Run these mutants in these rounds, with their controls; every outcome is in the journal at once.
+
+    Raises ControlError for a control that ends wrongly.
+    """
+    left, trials = Remainder(), list(trials)
+    report = _Report(campaign.progress, sink, {mutant.id: mutant.number for mutant, _ in trials})
     for engine in engines_of(campaign.request):
         if not trials:
-            return
+            return report.outcomes
         left = Remainder()
         for found in engine.run(campaign, trials, left):
             report.take(found)
         trials = left.all
     for outcome in _refused(trials, left, campaign.request.engine):
         report.take(outcome)
+    return report.outcomes
 
 
 def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Remainder]:
@@ -91,12 +100,14 @@ class _Report:
 
     def __init__(self, progress: Progress, sink: Sink, numbers: dict[str, int]) -> None:
         self._progress, self._sink, self._numbers = progress, sink, numbers
+        self.outcomes: list[Outcome] = []
 
     def take(self, found: Outcome | ControlEnd) -> None:
         if isinstance(found, ControlEnd):
             self._sink.journal.add_control(found.test_file, found.control, found.ok, found.detail)
             return
         self._sink.add_outcome(found)
+        self.outcomes.append(found)
         by = f" by {found.by}" if found.by is not None else ""
         number = self._numbers[found.mutant]
         self._progress.advance(f"#{number} round {found.round + 1}: {found.verdict}{by}")

@@ -57,8 +57,9 @@ class Control:
     def mutant(self) -> Mutant:
         """The control as a mutant; what it is run for is part of its id."""
         place = self.place
+        variant = self.subject if self.round == 0 else f"{self.subject}, round {self.round + 1}"
         return Mutant(
-            0, CONTROL, self.name, place.site, place.operation, place.pattern, None, self.subject, self.name
+            0, CONTROL, self.name, place.site, place.operation, place.pattern, None, variant, self.name
         )
 
     def task(self, campaign: Campaign) -> Task:
@@ -102,14 +103,18 @@ def run_controls(
     """
     baseline, progress = campaign.baseline, campaign.progress
     mutants = list(mutants)
-    identities = _identities_by_selection(baseline, mutants)
-    progress.stage("controls", len(identities) + len(_fatals(baseline, mutants)))
+    identities = [one for one in _identities_by_selection(baseline, mutants) if one not in campaign.proven]
+    fatals = [one for one in _fatals(baseline, mutants) if one not in campaign.proven]
+    if not identities and not fatals:
+        return
+    progress.stage("controls", len(identities) + len(fatals))
     together: list[Control] = []
     for control, outcome in _replayed(campaign, identities, warm=warm):
         end = end_of(campaign, control, outcome)
         ended = "survives, as it must" if end.ok else end.detail
         progress.advance(f"{control.name}, {control.subject}: {ended}")
         if end.ok:
+            campaign.proven.add(control)
             yield end
         elif set(control.tests) == set(baseline.tests[control.round]):
             yield end
@@ -119,10 +124,8 @@ def run_controls(
             together.append(_with_whole_suite(control, baseline))
             progress.note(f"{control.subject} pass only after other tests: judged by the whole suite")
     # only now is it known which selections pass by themselves
-    fatals = [
-        replace(fatal, tests=baseline.selection(fatal.round, fatal.place))
-        for fatal in _fatals(baseline, mutants)
-    ]
+    campaign.proven.update(fatals)  # one that ends wrongly stops the campaign
+    fatals = [replace(fatal, tests=baseline.selection(fatal.round, fatal.place)) for fatal in fatals]
     for control, outcome in _replayed(campaign, [*together, *fatals], warm=warm):
         end = end_of(campaign, control, outcome)
         progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
@@ -131,19 +134,22 @@ def run_controls(
             raise control.error(end.detail)
 
 
-def controls_in_branches(baseline: Baseline, mutants: Iterable[Mutant]) -> list[Control]:
-    """The controls to run as branches: identity in every test of the first round, fatal once per file."""
+def controls_in_branches(
+    baseline: Baseline, mutants: Iterable[Mutant], rounds: Iterable[int] = (0,)
+) -> list[Control]:
+    """The controls to run as branches: identity in every test of these rounds, fatal once per file."""
     early = baseline.program.early | baseline.early
     mutants = [mutant for mutant in mutants if not baseline.is_early(mutant)]
     planned = _places(mutants)
-    uncovered = {is_text: set(baseline.tests[0]) for is_text in (False, True)}
+    uncovered = {(is_text, one): set(baseline.tests[one]) for is_text in (False, True) for one in rounds}
     found: list[Control] = []
     for (round, place), tests in baseline.reaching.items():
-        here = tuple(test for test in tests if test in uncovered[place.is_text])
+        missing = uncovered.get((place.is_text, round), set())
+        here = tuple(test for test in tests if test in missing)
         here = tuple(test for test in here if baseline.why_not_branch(round, [test]) is None)
-        if round == 0 and here and place in planned and place not in early:
-            uncovered[place.is_text] -= set(here)
-            found.append(Control(IDENTITY, place, 0, here, _subject(here)))
+        if here and place in planned and place not in early:
+            missing -= set(here)
+            found.append(Control(IDENTITY, place, round, here, _subject(here)))
     fatals = _fatals(baseline, mutants)
     return [*found, *(one for one in fatals if baseline.why_not_branch(one.round, one.tests) is None)]
 

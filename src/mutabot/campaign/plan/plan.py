@@ -62,6 +62,7 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             mutant = _mutant(len(mutants) + 1, rule, subject, place)
             mutant = _distinct(mutant, taken)
             seen, reason = _foresee(rule, subject, hits)
+            reason = reason or _why_no_time(rule, vocabulary, operation)
             if rule.needs_where(subject) and not _is_told(subject, vocabulary):
                 reason = f"{subject.current or 'no reading'} does not tell where it is"
             mutant = replace(
@@ -109,6 +110,9 @@ def _mutant(number: int, rule: Operator, subject: Subject, place: Place) -> Muta
         quantity=subject.quantity.name if subject.quantity is not None else None,
         variant=subject.variant,
         description="",
+        magnitude=subject.magnitude,
+        unit=subject.unit,
+        direction=subject.direction,
     )
 
 
@@ -159,6 +163,15 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, 
     if away and (subject.quantity is None or subject.quantity.kind is Kind.SETTING):
         return last, f"would change nothing in {_calls(len(hits))}: {away}"
     return last, _reason(subject, last.before, len(hits))
+
+
+def _why_no_time(rule: Operator, vocabulary: Vocabulary, operation: Operation) -> str | None:
+    """Why an operator cannot have the time that it asks for, or let it pass; None if it can."""
+    if rule.asks_time and vocabulary.clock is None:
+        return "the vocabulary names no clock"
+    if rule.asks_wait and vocabulary.wait is None and operation.named is None:
+        return "the vocabulary does not say what lets the program's time pass (wait = …)"
+    return None
 
 
 def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:

@@ -110,7 +110,8 @@ class Door:
         async def current(quantity: Quantity) -> float:
             return await self._where(quantity, invocation, pattern)
 
-        cannot = partial(why_not, means)
+        waits = self.time is not None and self.time.can_wait
+        cannot = partial(why_not, means, waits=waits)
         found = Call(self.operation, pattern, values, current=current, payload=invocation, cannot=cannot)
         if self.time is None:
             return found

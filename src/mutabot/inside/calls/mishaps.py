@@ -25,8 +25,13 @@ _NO_SECOND = "who waits for one message hears no second"
 _FOLDER = os.getcwd()
 
 
-def why_not(means: Means | None, mishap: Mishap) -> str:
-    """Why something cannot befall a call here; empty if it can."""
+def why_not(means: Means | None, mishap: Mishap, *, waits: bool = False) -> str:
+    """Why something cannot befall a call here; empty if it can.
+
+    ``waits``: whether the vocabulary says what lets the program's time pass.
+    """
+    if means is None and mishap is Mishap.LATE:
+        return "" if waits else "the vocabulary does not say what lets the program's time pass (wait = …)"
     if means is None:
         return "it is no call of a middleware"
     if mishap is Mishap.CANCELLED and means.cancel is None:
@@ -45,14 +50,16 @@ async def before(call: Call, at_end: Callable[[], None]) -> None:
     """What befalls a call before it is made; ``at_end`` is told before this process dies of it."""
     if not call.mishaps:
         return
+    if Mishap.LATE in call.mishaps and _is_answered(call):
+        await call.wait(call.mishaps[Mishap.LATE])
+    if call.mishaps.keys() == {Mishap.LATE}:
+        return
     means = _means(call)
     if Mishap.JUMPED in call.mishaps and means.jump is not None:
         means.jump(call.mishaps[Mishap.JUMPED])
     if Mishap.KILLED in call.mishaps or Mishap.RESTARTED in call.mishaps:
         at_end()
         _end(anew=Mishap.RESTARTED in call.mishaps)
-    if Mishap.LATE in call.mishaps and _is_answered(call):
-        await means.sleep(call.mishaps[Mishap.LATE])
 
 
 def timed(call: Call, perform: Callable[[], Any]) -> Callable[[], Any]:
@@ -86,7 +93,8 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
     """
     named = call.operation.named
     comes = named is not None and named.form in COMING
-    means = None if reply.comes_as_usual else _means(call)
+    is_only_late = call.payload.means is None and not (reply.lost or reply.more)
+    means = None if reply.comes_as_usual or is_only_late else _means(call)
     if means is not None and reply.lost and not comes and means.lost is None:
         raise LookupError(f"nobody knows how {call.operation.name} loses its answer")
     if means is not None and comes:
@@ -97,10 +105,10 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
         got = None if reply.lost else result(reply)
 
     async def handed() -> Any:
+        if reply.late and not comes:
+            await call.wait(reply.late)
         if means is None or comes:
             return got
-        if reply.late:
-            await means.sleep(reply.late)
         return await means.lost() if reply.lost and means.lost is not None else got
 
     return handed

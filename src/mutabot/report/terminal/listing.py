@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from rich.console import Console
@@ -17,10 +18,11 @@ from .console import add_row, make_mutant_table, plural, short_place
 def print_plan(
     console: Console, mutants: Sequence[Mutant], left_out: Sequence[LeftOut], *, everything: bool = False
 ) -> None:
-    """Print every planned mutant; ``everything`` adds ids and each mutant that was left out."""
+    """Print every planned mutant, a ladder in one line; ``everything`` adds ids and all that was left out."""
     narrow = console.width < WIDE
     table = make_mutant_table(("role", "place", "operator", "quantity"), "what it does", narrow=narrow)
-    for mutant in mutants:
+    shown = list(mutants) if everything else _ladders_in_one(mutants)
+    for mutant in shown:
         site = mutant.site
         quantity = "/".join(part for part in (mutant.pattern_name, mutant.quantity) if part) or "–"
         place = short_place(site.span.file, site.span.line)
@@ -28,9 +30,34 @@ def print_plan(
         facts = (site.role.value, place, mutant.operator, quantity)
         add_row(table, mutant.number, facts, text, narrow=narrow)
     console.print(table)
-    console.print(plural(len(mutants), "mutant"))
+    ladders = len({mutant.ladder for mutant in mutants} - {""})
+    of_them = f" ({plural(ladders, 'ladder')} in one line each)" if ladders and not everything else ""
+    console.print(f"{plural(len(mutants), 'mutant')}{of_them}")
     for line in left_out_lines(left_out, everything=everything):
         console.print(line)
+
+
+def _ladders_in_one(mutants: Sequence[Mutant]) -> list[Mutant]:
+    """The mutants, with the first of each ladder for all of its magnitudes."""
+    ladders: dict[str, list[Mutant]] = {}
+    for mutant in mutants:
+        if mutant.ladder:
+            ladders.setdefault(mutant.ladder, []).append(mutant)
+    found = []
+    for mutant in mutants:
+        steps = ladders.get(mutant.ladder, [])
+        if not steps:
+            found.append(mutant)
+        elif steps[0] is mutant:
+            found.append(replace(mutant, description=_ladder_text(steps)))
+    return found
+
+
+def _ladder_text(steps: Sequence[Mutant]) -> str:
+    """What a ladder does: the words of its first step, with all magnitudes."""
+    first = steps[0]
+    before, _, behind = first.description.rpartition(f"{first.magnitude:g}")
+    return f"{before}{', '.join(f'{one.magnitude:g}' for one in steps)}{behind}"
 
 
 def plan_data(mutants: Sequence[Mutant], left_out: Sequence[LeftOut]) -> dict[str, Any]:

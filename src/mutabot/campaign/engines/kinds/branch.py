@@ -26,9 +26,12 @@ class _Controls:
     by_id: Mapping[str, Control]
 
     @classmethod
-    def of(cls, campaign: Campaign, mutants: Iterable[Mutant]) -> _Controls:
-        found = controls_in_branches(campaign.baseline, mutants)
-        return cls({control.mutant.id: control for control in found})
+    def of(cls, campaign: Campaign, trials: Iterable[Trial]) -> _Controls:
+        """Those not proven yet; for ladders in each round, since a threshold rests on single kills."""
+        trials = list(trials)
+        rounds = {0, *(round for mutant, round in trials if mutant.ladder)}
+        found = controls_in_branches(campaign.baseline, (mutant for mutant, _ in trials), sorted(rounds))
+        return cls({one.mutant.id: one for one in found if one not in campaign.proven})
 
     @property
     def trials(self) -> list[Trial]:
@@ -49,7 +52,7 @@ class Branch:
 
     def run(self, campaign: Campaign, trials: list[Trial], left: Remainder) -> Iterator[Outcome | ControlEnd]:
         """One trunk per round, with controls and mutants as its branches."""
-        controls = _Controls.of(campaign, (mutant for mutant, _ in trials))
+        controls = _Controls.of(campaign, trials)
         campaign.progress.stage("mutants", len(trials))
         trunks = Trunks(campaign, left, self.name)
         for outcome in trunks.run([*controls.trials, *trials], only=controls.tests):
@@ -61,6 +64,7 @@ class Branch:
             yield end
             if not end.ok:
                 raise control.error(end.detail)
+            campaign.proven.add(control)
         _tell(campaign, left)
         clear_up(campaign, trunks.suspects, trunks.orders)
         left.trials = [trial for trial in left.trials if trial[0].id not in controls.by_id]
@@ -70,7 +74,7 @@ class Branch:
     ) -> Iterator[ControlEnd]:
         """Identity in every test of the first round, fatal once per test file."""
         mutants = list(mutants)
-        controls = _Controls.of(campaign, mutants)
+        controls = _Controls.of(campaign, [(mutant, 0) for mutant in mutants])
         baseline, progress = campaign.baseline, campaign.progress
         for mutant, round in ((one, round) for one in mutants for round in range(campaign.request.rounds)):
             forbidding = baseline.why_not_branch(round, baseline.judges(round, mutant))

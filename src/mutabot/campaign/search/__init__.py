@@ -1,0 +1,1 @@
+"""Finding detection thresholds with as few runs as they take."""

@@ -1,0 +1,46 @@
+"""drift: a reading moves away with time."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from mutabot.model import Kind, Operation, Path, Quantity
+from mutabot.operators.graded._ladders import Ladder, per_second
+from mutabot.operators.graded._shape import GradedOperator, Passed, signed
+from mutabot.operators.operator import Example, Subject
+
+_GAP = Quantity("result", Path(), Kind.DISTANCE, unit="m")
+_FEEL = Operation("sensor:gap", result=(_GAP,), command=False)
+
+
+class Drift(GradedOperator):
+    """Adds so much per second of simulated time since the test began."""
+
+    name = "drift"
+    summary = "A reading drifts: it is off by δ for every second of simulated time since the test began."
+    rank = 230
+    asks_time = True
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(
+            Subject(_FEEL, None, _GAP, "+2mm", 2.0, "mm", "+"),
+            replied={"result": 0.3},
+            performed=({},),
+            received={"result": 0.32},
+            time=10.0,
+            note="2 mm per second: after 10 s it reads 20 mm too much",
+        ),
+        Example(
+            Subject(_FEEL, None, _GAP, "-2mm", 2.0, "mm", "-"),
+            replied={"result": 0.3},
+            away="no time has passed yet",
+        ),
+    )
+
+    def ladder(self, quantity: Quantity, *, written: bool) -> Ladder | None:
+        return None if written else per_second(quantity)
+
+    def number(self, size: float, value: float, passed: Passed) -> float:
+        return value + size * passed.time()
+
+    def fault(self, subject: Subject) -> str:
+        return f"{signed(subject)} per second"
