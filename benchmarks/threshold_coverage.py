@@ -19,7 +19,7 @@ from statistics import NormalDist, median
 import numpy as np
 
 from mutabot.analysis.thresholds.interval import median_between
-from mutabot.model.ladder import Bracket, Seen, bracket_of
+from mutabot.model.graded.ladder import Bracket, Seen, bracket_of
 
 CAMPAIGNS = 2000
 ROUNDS = (3, 5, 10, 20)

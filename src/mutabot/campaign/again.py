@@ -59,7 +59,10 @@ def as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant
     """The mutant in the program as it is now: edits elsewhere move it."""
     if Place.of(mutant) in baseline.hits:
         return mutant
-    planned = {one.id: one for one in make_plan(baseline, request.vocabulary, request.families).mutants}
+    planned = {
+        one.id: one
+        for one in make_plan(baseline, request.vocabulary, request.families, request.moments).mutants
+    }
     gone = next((one.id for one in mutant.singles if one.id not in planned), None)
     if gone is not None:
         problem = f"the program has changed: no test reaches {gone} any more"

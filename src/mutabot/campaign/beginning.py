@@ -12,7 +12,7 @@ from mutabot.campaign.baseline.ranges import note_ranges
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import refuse_unfit
 from mutabot.campaign.engines.choice import first_engine, repetitions_for
-from mutabot.campaign.plan.plan import Plan
+from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.plan.sampling import draw
 from mutabot.campaign.plan.second_order import pairs
 from mutabot.campaign.plan.selection import select

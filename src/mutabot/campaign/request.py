@@ -12,7 +12,7 @@ from mutabot.border.job import Job
 from mutabot.campaign.workers.pause import Pause
 from mutabot.families import USUAL
 from mutabot.journal.files import HOME, JOURNAL
-from mutabot.model import Vocabulary
+from mutabot.model import Moment, Vocabulary
 from mutabot.settings.configuration import Configuration
 from mutabot.settings.sample import Sample
 
@@ -42,6 +42,7 @@ class Request:
         order: how many mutants are one: 1 or 2.
         pairs: how many mutants of the second order to plant.
         journal: name of the journal's file in mutabot's folder.
+        moments: at which of their calls mutants act, a mutant each; None for every call.
         evidence: whether to record what the world does while tests run.
         pause: by what the campaign can be paused; None if it cannot.
     """
@@ -69,6 +70,7 @@ class Request:
     order: int = 1
     pairs: int = 200
     journal: str = JOURNAL
+    moments: tuple[Moment | None, ...] = (None,)
     evidence: bool = False
     pause: Pause | None = None
 

@@ -20,7 +20,8 @@ from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
 from mutabot.campaign.plan.earlier import carry, note_outdated
 from mutabot.campaign.plan.ladders import apart
-from mutabot.campaign.plan.plan import Plan, make_plan
+from mutabot.campaign.plan.plan import make_plan
+from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.plan.selection import numbered
 from mutabot.campaign.plan.told import drawing, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies
@@ -87,7 +88,7 @@ def _run(
     with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress, evidence)
     baseline = campaign.baseline
-    whole = make_plan(baseline, request.vocabulary, request.families)
+    whole = make_plan(baseline, request.vocabulary, request.families, request.moments)
     plan = selected(campaign, whole)
     _write_beginning(journal, request, results, plan, whole)
     if evidence is not None:
@@ -186,7 +187,9 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
     """Baseline and plan, without running a mutant."""
     with at_it(request, progress) as opened:
         campaign, _ = begin(request, opened, progress)
-    plan = selected(campaign, make_plan(campaign.baseline, request.vocabulary, request.families))
+    plan = selected(
+        campaign, make_plan(campaign.baseline, request.vocabulary, request.families, request.moments)
+    )
     return plan.mutants, plan.left_out
 
 

@@ -46,6 +46,7 @@ def list_(
     only: options.Only = None,
     skip: options.Skip = None,
     family: options.Families = None,
+    when: options.When = None,
     order: options.Order = None,
     pairs: options.Pairs = None,
     selection: options.Selection = None,
@@ -63,8 +64,8 @@ def list_(
     from mutabot.report.terminal.listing import plan_data, print_plan
 
     request = request_of(
-        context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
-        sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
+        context.obj, only=only, skip=skip, family=family, when=when, order=order, pairs=pairs,
+        selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
     )  # fmt: skip
     with progress_shown() as progress:
         mutants, left_out = plan_only(request, progress)
@@ -79,6 +80,7 @@ def run(
     only: options.Only = None,
     skip: options.Skip = None,
     family: options.Families = None,
+    when: options.When = None,
     order: options.Order = None,
     pairs: options.Pairs = None,
     selection: options.Selection = None,
@@ -103,9 +105,10 @@ def run(
     if port is not None and not serve:
         raise UsageError("--port goes with --serve")
     request = request_of(
-        context.obj, only=only, skip=skip, family=family, order=order, pairs=pairs, selection=selection,
-        sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs, engine=engine,
-        fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline, evidence=True,
+        context.obj, only=only, skip=skip, family=family, when=when, order=order, pairs=pairs,
+        selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
+        engine=engine, fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
+        evidence=True,
     )  # fmt: skip
     with ExitStack() as stack:
         campaign = stack.enter_context(_served(request, port)).run if serve else partial(_run, request)

@@ -45,6 +45,14 @@ Families = Annotated[
         autocompletion=lambda: list(FAMILIES),
     ),
 ]
+When = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--when",
+        metavar="MOMENT",
+        help='At which calls of its site a mutant acts: every, 3, "from 10", once, "2-2.5 s". Repeatable.',
+    ),
+]
 Order = Annotated[
     int | None,
     typer.Option("--order", metavar="1|2", min=1, max=2, help="Mutants at once: 2 plants pairs of them."),

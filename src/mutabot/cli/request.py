@@ -16,6 +16,7 @@ from .options import ENGINES
 
 if TYPE_CHECKING:
     from mutabot.campaign.request import Request
+    from mutabot.model import Moment
 
 
 def request_of(
@@ -66,6 +67,7 @@ def request_of(
         pairs=given.get("pairs") or configuration.pairs,
         every_test=bool(given.get("every_test")),
         no_oracle=bool(given.get("no_oracle")),
+        moments=_moments(given.get("when") or configuration.when),
         evidence=bool(given.get("evidence")) and configuration.evidence > 0,
     )
 
@@ -76,6 +78,20 @@ def _families(given: Sequence[str] | None) -> tuple[str, ...]:
 
     named = (name.strip() for text in given or () for name in text.split(","))
     return asked_for(name for name in named if name)
+
+
+def _moments(texts: Sequence[str]) -> tuple[Moment | None, ...]:
+    """At which calls mutants act. Raises UsageError."""
+    from mutabot.model import Moment
+
+    found: dict[str, Moment | None] = {}
+    try:
+        for text in texts:
+            moment = Moment.parse_any(text)
+            found.setdefault(moment.text if moment is not None else "", moment)
+    except ValueError as error:
+        raise UsageError(f"--when: {error}") from error
+    return tuple(found.values())
 
 
 def _found(selection: Path, root: Path) -> Path:

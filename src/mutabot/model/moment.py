@@ -26,6 +26,8 @@ class When(StrEnum):
     BETWEEN = "between"
 
 
+#: the word for no moment
+EVERY = "every"
 _NUMBER = r"\d+(?:\.\d*)?"
 _FORMS: Mapping[When, re.Pattern[str]] = {
     When.NTH: re.compile(r"(?P<first>[1-9]\d*)"),
@@ -68,9 +70,14 @@ class Moment:
                 raise ValueError(f"{text!r} ends before it begins")
             return moment
         raise ValueError(
-            f'{text!r} is no moment; write the number of a call (3), "from 3", "once", or a window of '
-            'simulated time ("2-2.5 s")'
+            f'{text!r} is no moment; write "every", the number of a call ("3"), "from 3", "once", or a '
+            'window of simulated time ("2-2.5 s")'
         )
+
+    @classmethod
+    def parse_any(cls, text: str) -> Moment | None:
+        """The same, with None for every call."""
+        return None if text.strip() == EVERY else cls.parse(text)
 
     @property
     def text(self) -> str:

@@ -12,7 +12,9 @@ from pydantic_core import PydanticCustomError
 
 from mutabot.errors import ConfigurationError, nearest_name
 from mutabot.families import FAMILIES, USUAL
+from mutabot.model import Moment
 from mutabot.model.graded.demand import Demand
+from mutabot.model.moment import EVERY
 
 from .demands import check_demands
 from .document import Document
@@ -67,6 +69,14 @@ def _known_family(name: str) -> str:
     return name
 
 
+def _moment(text: str) -> str:
+    try:
+        Moment.parse_any(text)
+    except ValueError as error:
+        raise _fault(str(error)) from error
+    return text
+
+
 def _node_name(name: str) -> str:
     if not name.startswith(("/", "*")):
         raise _fault(f"{name!r} is not resolved: the name of a node begins with /, such as '/{name}'")
@@ -78,6 +88,8 @@ _Texts = Annotated[tuple[str, ...], Field(strict=False)]
 _SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
 _Family = Annotated[str, AfterValidator(_known_family), WithJsonSchema({"enum": list(FAMILIES)})]
 _Families = Annotated[tuple[_Family, ...], Field(strict=False, min_length=1)]
+_Moment = Annotated[str, AfterValidator(_moment)]
+_Moments = Annotated[tuple[_Moment, ...], Field(strict=False, min_length=1)]
 _Share = Annotated[float, Field(ge=0, le=1)]
 
 
@@ -204,6 +216,14 @@ class Settings(BaseModel):
     """Further arguments for pytest.
 
         pytest_args = ["-m", "not slow"]
+    """
+    when: _Moments = (EVERY,)
+    """At which of the calls of its site a mutant acts, a mutant each: `"every"` call; the third (`"3"`); all
+    `"from 10"` on; `"once"`, at a call drawn anew for each round and test; or while the simulated time of the
+    test is within a window (`"2-2.5 s"`). In a control loop a fault at every step is noticed by any test.
+    `--when` goes before it.
+
+        when = ["every", "once", "from 10"]
     """
     families: _Families = USUAL
     """Families of mutants to plant: `robot` in calls, `classical` and

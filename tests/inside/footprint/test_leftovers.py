@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import collections
+import copy
 import functools
 import io
 import itertools
@@ -175,3 +176,10 @@ def test_the_environment_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     state = leftovers()
     monkeypatch.setenv("ROBOT", "1")
     assert state.since()[0] == ["os.environ"]
+
+
+def test_a_copied_object_leaves_nothing_on_its_class(module: Any) -> None:
+    module.Slotted = Slotted
+    looks = leftovers()
+    copy.copy(Slotted())
+    assert looks.since()[0] == []

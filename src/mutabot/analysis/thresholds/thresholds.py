@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from mutabot.analysis.results import Results
-from mutabot.model.ladder import seen
+from mutabot.model.graded.ladder import seen
 
 from .floor import Floor, floors_of
 from .ladders import Ladder, ladders_of, looseness

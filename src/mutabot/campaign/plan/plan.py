@@ -14,33 +14,45 @@ from mutabot.campaign.baseline.baseline import Baseline, Hit
 from mutabot.campaign.baseline.places import Place
 from mutabot.errors import OperatorError
 from mutabot.families import USUAL
-from mutabot.journal.records import Drawing
-from mutabot.model import Call, Kind, LeftOut, Middleware, Mutant, Operation, Reply, Role, Site, Vocabulary
+from mutabot.model import (
+    Call,
+    Kind,
+    LeftOut,
+    Middleware,
+    Moment,
+    Mutant,
+    Operation,
+    Reply,
+    Role,
+    Site,
+    Vocabulary,
+)
 from mutabot.model.values.quantity import is_reading_of
 from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.operator import with_operation
 from mutabot.operators.passage import Passage, rehearse
 
+from .moments import at_moments
+from .planned import Plan
+
 #: recorded calls per place that are tried out; calls of one place are much alike
 TRIED = 200
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """Mutants to run, and what is left out.
+def make_plan(
+    baseline: Baseline,
+    vocabulary: Vocabulary,
+    families: Collection[str] = USUAL,
+    wanted: Sequence[Moment | None] = (None,),
+) -> Plan:
+    """All mutants of these families: those of calls first, so that they keep their numbers.
 
-    Attributes:
-        drawing: how the mutants were drawn from the selected ones; None if all of these are there.
+    ``wanted``: at which of their calls mutants of calls act, a mutant each; None for every call.
     """
-
-    mutants: list[Mutant]
-    left_out: list[LeftOut]
-    drawing: Drawing | None = None
-
-
-def make_plan(baseline: Baseline, vocabulary: Vocabulary, families: Collection[str] = USUAL) -> Plan:
-    """All mutants of these families: those of calls first, so that they keep their numbers."""
-    plan = _plan_of_calls(baseline, vocabulary, [rule for rule in load_all() if rule.family in families])
+    operators = [rule for rule in load_all() if rule.family in families]
+    plan = _plan_of_calls(baseline, vocabulary, operators)
+    if tuple(wanted) != (None,):
+        plan = at_moments(plan, baseline, vocabulary, wanted)
     first = len(plan.mutants)
     planted = baseline.program.planted.values()
     of_text = [replace(one.mutant, number=first + one.mutant.number) for one in planted]

@@ -103,9 +103,9 @@ class Activation:
         assert self._middleware is not None
         self.evidence.hits += 1
         passage = Passage(kept_call(call) if self.rule.remembers else call)
-        performer = _Performer(self, door, passage, is_async)
-        self._commands, self._told, self._is_passed = 0, 0, False
         is_due = self._moment is None or self._moment.holds(number, self.time())
+        performer = _Performer(self, door, passage, is_async, does_nothing=is_due and self.rule.does_nothing)
+        self._commands, self._told, self._is_passed = 0, 0, False
         try:
             if self._idle is not None:
                 passage.call = replace(passage.call, idle=self._answer(self._idle, door, call))
@@ -217,10 +217,11 @@ class _Performer:
     door: Door
     passage: Passage
     is_async: bool
+    does_nothing: bool
     raised: BaseException | None = None
 
     async def proceed(self, call: Call) -> Reply:
-        if self.activation.rule.does_nothing:
+        if self.does_nothing:
             name = self.activation.mutant.operator
             text = f"operator {name} is to do nothing, but would have made the call"
             self.activation.evidence.failure = text

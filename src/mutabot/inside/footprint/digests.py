@@ -48,6 +48,7 @@ _OF_CLASS = {
     "__dict__", "__weakref__", "__doc__", "__module__", "__abstractmethods__", "_abc_impl",
     "tearDown_exceptions", "_class_cleanups", "_classSetupFailed", "__annotations__", "__dataclass_fields__",
     "__dataclass_params__", "_member_map_", "_value2member_map_", "_member_names_",
+    "__slotnames__",  # which copying any of its objects leaves on a class
 }  # fmt: skip
 
 

@@ -1,1 +1,1 @@
-"""Graded faults: what users demand of them."""
+"""Graded faults: what a round says of them, and what users demand."""
