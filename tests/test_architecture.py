@@ -34,7 +34,7 @@ ALLOWED = {
     },
     "proposal": {"errors", "model", "border", "settings", "vocabulary", "campaign"},
     "suggestion": {"errors", "model", "border", "journal", "campaign", "analysis"},
-    "analysis": {"exit_codes", "errors", "model", "border", "vocabulary", "journal", "evidence"},
+    "analysis": {"exit_codes", "errors", "families", "model", "border", "vocabulary", "journal", "evidence"},
     "report": {"errors", "model", "border", "vocabulary", "journal", "analysis", "evidence"},
     "serving": {"errors", "campaign", "analysis", "report"},
     "cells": {"evidence"},

@@ -78,6 +78,8 @@ def values_of(schema: Mapping[str, Any], whole: Mapping[str, Any]) -> str:
     match schema.get("type"):
         case "array":
             items = schema.get("items", {})
+            if items.get("type") == "object":
+                return "tables, with double brackets"
             return f"list of {values_of(items, whole)}" if "enum" in items else "list of texts"
         case "string":
             return "text"

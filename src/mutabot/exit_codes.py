@@ -17,7 +17,11 @@ class ExitCode(IntEnum):
         return member
 
     FINE = 0, "fine"
-    SCORE_TOO_LOW = 1, "a score is under `--min-score` (or `min_score` in the configuration), in percent"
+    SCORE_TOO_LOW = (
+        1,
+        "a score is under `--min-score` (or `min_score` in the configuration), in percent, or a site "
+        "tolerates more than a `demand` allows",
+    )
     USAGE = 2, "the command line or a file is wrong"
     NOTHING_KNOWN = 3, "the tests fail on the original, there are no mutants, or none of them was valid"
     UNRELIABLE = (

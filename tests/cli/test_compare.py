@@ -58,7 +58,7 @@ def test_all_families_run_against_every_test_into_a_journal_of_their_own(
 ) -> None:
     assert main(["compare"]) == 0
     (request,) = fake.requests
-    assert request.families == ("robot", "middleware", "classical", "text")
+    assert request.families == ("robot", "catalogue", "middleware", "classical", "text")
     assert (request.every_test, request.no_oracle) == (True, False)
     assert request.journal_path == project / ".mutabot" / "compare.sqlite"
     out = capsys.readouterr().out

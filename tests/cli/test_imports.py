@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from analysis import samples
+from analysis.thresholds import journals
 from mutabot.cli.report import FORMATS
 
 #: what runs a campaign, and what that needs
@@ -52,3 +53,11 @@ def test_a_report_loads_nothing_that_runs_a_campaign_and_no_other_format(tmp_pat
 def assert_light(loaded: str) -> None:
     assert "mutabot.analysis.results" in loaded.split()
     assert [name for name in loaded.split() if name.startswith(NOT_FOR_LOOKING)] == []
+
+
+def test_thresholds_load_nothing_that_runs_a_campaign(tmp_path: Path) -> None:
+    journals.write(tmp_path / ".mutabot" / "journal.sqlite", journals.Rungs(["SSSCCCC"]))
+    words = [sys.executable, "-c", CODE, "-C", str(tmp_path), "thresholds"]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert "arm.move_by" in done.stdout
+    assert_light(done.stderr)

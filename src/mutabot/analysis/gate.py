@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from mutabot.exit_codes import ExitCode
-from mutabot.model import Verdict
+from mutabot.families import GRADED
+from mutabot.model import Outcome, Verdict
+from mutabot.model.graded.demand import Demand
 
 from .results import Results
+from .thresholds.demands import Held, rulings
+from .thresholds.ladders import ladders_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +36,7 @@ def decide(
     max_timeouts: float | None = None,
     max_unstable: float | None = None,
     max_errors: float | None = None,
+    demands: Sequence[Demand] = (),
 ) -> Decision:
     """Hold the results against the limits.
 
@@ -37,8 +44,9 @@ def decide(
     a good score of the oracle never hides a poor one of the program. ``max_timeouts`` (0 … 1) is the
     greatest share of time-outs among the valid outcomes. ``max_unstable`` is the greatest share of flaky
     tests among the tests, and of unstable outcomes among all; ``max_errors`` the greatest share of errors
-    among all outcomes: mutants of which nothing is known. A disagreement that ``--verify`` found always
-    fails.
+    among all outcomes: mutants of which nothing is known. Graded mutants have no score, but their errors and
+    unstable outcomes count; ``demands`` say which of them must be noticed. A disagreement that ``--verify``
+    found always fails.
     """
     total = results.all.total
     unstable = (
@@ -48,13 +56,14 @@ def decide(
     )
     if unstable:
         return Decision(ExitCode.UNRELIABLE, unstable)
-    if not total.valid:
+    if not total.valid and not _knows_thresholds(results):
         return Decision(ExitCode.NOTHING_KNOWN, (_nothing_valid(results),))
-    share = total.timeouts / total.valid
+    share = total.timeouts / total.valid if total.valid else 0.0
     if max_timeouts is not None and share > max_timeouts:
         text = f"{total.timeouts} of {total.valid} valid outcomes are time-outs ({share:.0%})"
         return Decision(ExitCode.TOO_MANY_TIMEOUTS, (f"{text}; the limit is {max_timeouts:.0%}",))
     low = tuple(_too_low(results, min_score)) if min_score is not None else ()
+    low += tuple(_too_loose(results, demands))
     return Decision(ExitCode.SCORE_TOO_LOW, low) if low else Decision(ExitCode.FINE)
 
 
@@ -80,26 +89,49 @@ def _too_many(
     results: Results, verdict: Verdict, words: str, limit: float | None, key: str
 ) -> tuple[str, ...]:
     """A line if more outcomes than the limit allows ended so."""
-    counts = results.all.total.counts
-    count, run = counts.get(verdict, 0), sum(counts.values())
+    outcomes = _outcomes(results)
+    count, run = sum(one.verdict is verdict for one in outcomes), len(outcomes)
     if limit is None or not run or count / run <= limit:
         return ()
-    numbers = [str(result.mutant.number) for result, _ in results.with_verdict(verdict)]
+    numbers = [
+        str(result.mutant.number)
+        for result in results.everything
+        if any(one.verdict is verdict for one in result.outcomes)
+    ]
     shown = ", ".join(numbers[:20]) + (" …" if len(numbers) > 20 else "")
     text = f"{count} of {run} outcomes are {words} ({count / run:.0%})"
     return (f"{text}; the limit is {limit:.0%} ({key}): mutants {shown}",)
 
 
 def _nothing_valid(results: Results) -> str:
-    if not results.mutants:
+    if not results.everything:
         return "no mutant was planned, so nothing is known about the tests"
-    counts = results.all.total.counts
+    counts = Counter(one.verdict for one in _outcomes(results))
     if not counts:
         return "no mutant was run, so nothing is known about the tests"
     if set(counts) == {Verdict.REFUSED}:
         return "the robot refused every mutant, so nothing is known about the tests"
     ends = ", ".join(f"{count} {verdict}" for verdict, count in counts.items())
     return f"no mutant was valid ({ends}), so nothing is known about the tests"
+
+
+def _knows_thresholds(results: Results) -> bool:
+    """Whether something is known of a ladder: scores have no part in that."""
+    return bool(results.graded) and any(not one.why_unjudged for one in ladders_of(results))
+
+
+def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
+    """Each site that tolerates more than is demanded, with direction and rounds."""
+    if not demands:
+        return
+    families = [*(results.meta.get("families") or ()), *([GRADED] if results.graded else [])]
+    for one in rulings(demands, ladders_of(results), families):
+        if one.held is not Held.PASSED:
+            yield one.text
+
+
+def _outcomes(results: Results) -> list[Outcome]:
+    return [outcome for result in results.everything for outcome in result.outcomes]
 
 
 def _too_low(results: Results, min_score: float) -> list[str]:

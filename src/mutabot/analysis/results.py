@@ -8,6 +8,7 @@ from typing import Any
 
 from mutabot.border.codec import from_data
 from mutabot.errors import SelectionError, unknown_name_text
+from mutabot.families import GRADED
 from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
@@ -80,6 +81,11 @@ class MutantResult:
         return max(map(worst_of, survivors), default=0.0)
 
     @property
+    def improvement(self) -> str:
+        """What a test did better with it than without, in words; empty if nothing."""
+        return next((one.improvement for one in self.outcomes if one.improvement), "")
+
+    @property
     def indistinguishable(self) -> bool:
         """Whether no survivor of it looked other than the original."""
         return is_indistinguishable(self.outcomes)
@@ -98,7 +104,7 @@ class Results:
         meta: what the campaign said about itself.
         state: ``complete``, ``interrupted``, ``running``, ``killed`` or why it stopped.
         rounds: number of rounds.
-        mutants: every planned mutant by number.
+        mutants: every planned mutant by number, but for graded ones.
         groups: scores per family and role.
         all: scores of all mutants together, as published studies give them. Only to be shown beside
             ``groups``, because it mixes roles.
@@ -112,6 +118,8 @@ class Results:
         drawing: how the mutants were drawn from those selected; None if they are all.
         drawn: scores of those drawn, per family and role.
         attempt: why a later campaign ended before it ran anything; None if there was none.
+        graded: the mutants of family ``graded``, by number. The magnitudes of a ladder are no population of
+            faults, and most of them need not be run: no score and no list of survivors knows of them.
     """
 
     meta: Mapping[str, Any]
@@ -130,6 +138,19 @@ class Results:
     drawing: Drawing | None = None
     drawn: tuple[Group, ...] = ()
     attempt: str | None = None
+    graded: tuple[MutantResult, ...] = ()
+
+    @property
+    def everything(self) -> tuple[MutantResult, ...]:
+        """All mutants, graded ones included, by number."""
+        if not self.graded:
+            return self.mutants
+        return tuple(sorted((*self.mutants, *self.graded), key=lambda one: one.mutant.number))
+
+    @property
+    def ladders(self) -> int:
+        """Number of ladders of graded mutants; ``analysis.thresholds`` says what became of them."""
+        return len({one.mutant.ladder for one in self.graded if one.mutant.magnitude})
 
     @property
     def earlier(self) -> list[MutantResult]:
@@ -153,7 +174,7 @@ class Results:
 
     @property
     def planned(self) -> int:
-        """Number of (mutant, round) pairs the campaign was to run."""
+        """Number of (mutant, round) pairs the campaign was to run, without graded mutants."""
         return len(self.mutants) * self.rounds
 
     @property
@@ -167,20 +188,21 @@ def find_mutant(results: Results, name: str) -> MutantResult:
 
     A part of an id will do. Raises SelectionError, naming the nearest id, or the mutants that it fits.
     """
-    for result in results.mutants:
+    everything = results.everything
+    for result in everything:
         if name in (result.mutant.id, str(result.mutant.number)):
             return result
-    if not results.mutants:
+    if not everything:
         raise SelectionError("the journal holds no mutants", unknown=[name])
     if name.isdigit():
-        problem = f"there is no mutant {name}; they are numbered 1 to {results.mutants[-1].mutant.number}"
+        problem = f"there is no mutant {name}; they are numbered 1 to {everything[-1].mutant.number}"
         raise SelectionError(problem, unknown=[name])
-    found = [one for one in results.mutants if name in one.mutant.id or fits(name, one.mutant)]
+    found = [one for one in everything if name in one.mutant.id or fits(name, one.mutant)]
     if len(found) == 1:
         return found[0]
     if found:
         raise SelectionError(_several(name, found), unknown=[name])
-    problem = unknown_name_text("mutant", name, (result.mutant.id for result in results.mutants))
+    problem = unknown_name_text("mutant", name, (result.mutant.id for result in everything))
     raise SelectionError(problem, unknown=[name])
 
 
@@ -206,6 +228,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         mutants = sorted([*mutants, *old.mutants], key=lambda mutant: mutant.number)
         outcomes = [*outcomes, *old.outcomes]
         groups = groups_of(mutants, outcomes, rounds, None)
+    graded = {mutant.id for mutant in mutants if mutant.family == GRADED}
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
     def result(mutant: Mutant) -> MutantResult:
@@ -218,9 +241,10 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         meta=meta,
         state=_state(journal),
         rounds=rounds,
-        mutants=tuple(result(mutant) for mutant in mutants),
+        mutants=tuple(result(mutant) for mutant in mutants if mutant.id not in graded),
+        graded=tuple(result(mutant) for mutant in mutants if mutant.id in graded),
         groups=groups,
-        all=RoundScores.of(outcomes, rounds),
+        all=RoundScores.of([one for one in outcomes if one.mutant not in graded], rounds),
         left_out=tuple(journal.left_out()),
         controls=tuple(journal.controls()),
         tests=tuple(journal.tests()),

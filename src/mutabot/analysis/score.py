@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from statistics import fmean
 
+from mutabot.families import GRADED
 from mutabot.journal.records import Drawing
 from mutabot.model import By, Mutant, Outcome, Verdict
 
@@ -175,13 +176,17 @@ def groups_of(
 ) -> tuple[Group, ...]:
     """One group per family and role, in the order in which they first occur in the plan.
 
+    Graded mutants have none: the magnitudes of a ladder are no population of faults.
     ``drawing`` says how the mutants were drawn, if they were.
     """
-    key_of = {mutant.id: (mutant.family, mutant.site.role.value) for mutant in mutants}
+    key_of = {
+        mutant.id: (mutant.family, mutant.site.role.value) for mutant in mutants if mutant.family != GRADED
+    }
     sizes = Counter(key_of.values())
     found: dict[tuple[str, str], list[Outcome]] = {key: [] for key in key_of.values()}
     for outcome in outcomes:
-        found[key_of[outcome.mutant]].append(outcome)
+        if outcome.mutant in key_of:
+            found[key_of[outcome.mutant]].append(outcome)
     return tuple(
         _group(family, role, sizes[family, role], those, rounds, drawing)
         for (family, role), those in found.items()

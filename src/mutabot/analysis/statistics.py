@@ -3,7 +3,8 @@
 ``wilson`` is for one mutant: its rounds are independent draws. ``crossed`` is for a score: every cell of the
 table mutants × rounds shares its mutant with a row and its round with a column, so cells are not independent
 and a plain binomial interval would be far too narrow (rounds of one mutant mostly agree). ``sampled`` is for
-the score of a finite list of mutants of which only a random sample was run, in these very rounds.
+the score of a finite list of mutants of which only a random sample was run, in these very rounds. ``mean_of``
+is ``crossed`` for numbers that are no shares.
 
 All are tested by simulation, see ``benchmarks/interval_coverage.py`` and docs/statistics.md.
 """
@@ -125,6 +126,47 @@ def sampled(table: Sequence[Sequence[float | None]], population: int) -> Interva
     independent = cells.smoothed * (1 - cells.smoothed) / variance
     independent *= (_NORMAL / student(cells.mutants - 1)) ** 2
     return _wilson(cells.score, min(independent, cells.mutants / left))
+
+
+@dataclass(frozen=True, slots=True)
+class Mean:
+    """A mean of numbers with its interval.
+
+    Attributes:
+        mean: the mean over rounds.
+        low, high: ends of its interval.
+        level: how often such an interval holds the true mean.
+    """
+
+    mean: float
+    low: float
+    high: float
+    level: float = LEVEL
+
+
+def mean_of(table: Sequence[Sequence[float | None]]) -> Mean | None:
+    """The mean of a table of any numbers over rounds and places, both taken as random samples.
+
+    The variance and the degrees of freedom are those of ``crossed``, without the imagined mutants, which only
+    shares have; the interval is symmetric.
+
+    Args:
+        table: one row per place with one cell per round; None where nothing is known.
+
+    Returns:
+        The mean, or None with fewer than two rounds or two places.
+    """
+    cells = _Cells.of(table)
+    if cells is None:
+        return None
+    rows = cells.mutants
+    of_rows = rows / (rows - 1) * math.fsum(cells.influence(row) ** 2 for row in cells.rows)
+    of_rounds = cells.mean_square_of_rounds()
+    excess = max(0.0, of_rounds - cells.variance_of_cells())
+    variance = of_rows + excess
+    spread = of_rows**2 / (rows - 1) + (of_rounds**2 / (len(cells.rounds) - 1) if excess else 0.0)
+    half = student(max(1.0, variance**2 / spread)) * math.sqrt(variance) if spread else 0.0
+    return Mean(cells.score, cells.score - half, cells.score + half)
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,8 @@ import typer
 from mutabot.errors import MutabotError
 from mutabot.exit_codes import ExitCode
 
-from . import campaign, compare, init, replay, report, results, suggest
+from . import campaign, init, replay, report, results, suggest, thresholds
+from .comparing import compare
 from .options import Version
 
 _SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
@@ -51,6 +52,7 @@ app.command(rich_help_panel=_RUN)(replay.replay)
 app.command(rich_help_panel=_RUN)(suggest.suggest)
 app.command(rich_help_panel=_LOOK)(results.results)
 app.command(rich_help_panel=_LOOK)(results.show)
+app.command(rich_help_panel=_LOOK)(thresholds.thresholds)
 app.command(rich_help_panel=_LOOK)(report.report)
 
 

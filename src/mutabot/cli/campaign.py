@@ -143,4 +143,5 @@ def _decision(request: Request, results: Results, min_score: float | None) -> De
         max_timeouts=request.configuration.timeout_limit,
         max_unstable=request.configuration.unstable_limit,
         max_errors=request.configuration.error_limit,
+        demands=request.configuration.demands,
     )

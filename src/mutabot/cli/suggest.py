@@ -78,6 +78,8 @@ def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) ->
     """The survivors that were asked for. Raises NothingToDoError if there is none, saying why."""
     from mutabot.campaign.plan.selection import select
 
+    if results.graded and not results.mutants:
+        raise NothingToDoError("graded mutants have no survivors but thresholds: `mutabot thresholds`")
     if not results.mutants:
         raise NothingToDoError(f"the journal holds no mutants ({results.state}): run `mutabot run` first")
     if not results.done:

@@ -9,6 +9,7 @@ from typing import Any
 
 from .seen.check import Looked
 from .seen.diverged import Diverged
+from .seen.figure import Figure, improvement
 from .verdict import By, Verdict
 
 
@@ -107,6 +108,7 @@ class Outcome:
         looked: of a survivor, the tests that ran it and what they checked.
         diverged: how the recordings of its tests differ from the original's, the worst first; empty if they
             do not, or if there are none.
+        figures: of a survivor, figures of merit that differ from the original's by more than their tolerance.
     """
 
     mutant: str
@@ -140,6 +142,12 @@ class Outcome:
     repeats: int = 0
     looked: tuple[Looked, ...] = ()
     diverged: tuple[Diverged, ...] = ()
+    figures: tuple[Figure, ...] = ()
+
+    @property
+    def improvement(self) -> str:
+        """What the tests did better with the mutant than without, in words; empty if nothing."""
+        return improvement(self.figures)
 
 
 def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:

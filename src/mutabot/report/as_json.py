@@ -62,6 +62,7 @@ def results_data(results: Results) -> dict[str, Any]:
             for group in results.groups
         ],
         "mutants": [result_data(result) for result in results.mutants],
+        "graded": [result_data(result) for result in results.graded],
         "left_out": [
             {"id": item.id, "description": item.description, "reason": item.reason}
             for item in results.left_out
@@ -259,6 +260,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "engine": outcome.engine,
         "stuck": outcome.stuck,
         "repeats": outcome.repeats,
+        "figures": [{**to_data(one), "is_better": one.is_better} for one in outcome.figures],
         "looked": [to_data(one) for one in outcome.looked],
         "diverged": [{**to_data(one), "worst": one.worst} for one in outcome.diverged],
     }

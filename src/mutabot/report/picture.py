@@ -108,12 +108,12 @@ def picture_of(bars: Sequence[FamilyBar], title: str) -> Picture:
     return Picture(_WIDTH, height, boxes, [shape for shape in shapes if isinstance(shape, Words)])
 
 
-def svg(picture: Picture) -> str:
-    """The picture as a file of its own."""
+def svg(picture: Picture, by: str = "mutabot compare") -> str:
+    """The picture as a file of its own, which says which command wrote it."""
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{picture.width}" height="{picture.height}" '
         f'viewBox="0 0 {picture.width} {picture.height}" font-family="Helvetica, Arial, sans-serif">',
-        "<!-- written by mutabot compare -->",
+        f"<!-- written by {by} -->",
         *map(_svg_of_box, picture.boxes),
         *map(_svg_of_words, picture.words),
         "</svg>",
@@ -149,10 +149,10 @@ def _bar(bar: FamilyBar, y: float) -> Iterator[Rectangle | Words]:
             yield Rectangle(left, y, right - left, _BAR, _COLOURS[end])
         if right - left >= _ROOM:
             text = f"{100 * count / total:.0f} %"
-            yield Words((left + right) / 2, y + _BAR / 2 + 4, text, 12, "middle", _legible(_COLOURS[end]))
+            yield Words((left + right) / 2, y + _BAR / 2 + 4, text, 12, "middle", legible(_COLOURS[end]))
 
 
-def _legible(colour: str) -> str:
+def legible(colour: str) -> str:
     """Black or white, whichever is easier to read on this colour."""
     red, green, blue = (int(colour[start : start + 2], 16) for start in (1, 3, 5))
     return _INK if 0.299 * red + 0.587 * green + 0.114 * blue > 150 else _PAPER

@@ -7,7 +7,7 @@ from pathlib import Path
 from mutabot.analysis.families import FamilyComparison
 from mutabot.errors import UsageError
 
-from .picture import bars_of, picture_of, svg
+from .picture import Picture, bars_of, picture_of, svg
 
 _TITLE = "What became of the mutants"
 
@@ -25,9 +25,13 @@ def check_picture(path: Path) -> None:
 
 def write_picture(comparison: FamilyComparison, path: Path) -> None:
     """Draw the ends of all families. Raises UsageError if the file cannot be written."""
-    picture = picture_of(bars_of(comparison.families), _TITLE)
+    write_drawing(picture_of(bars_of(comparison.families), _TITLE), path, by="mutabot compare")
+
+
+def write_drawing(picture: Picture, path: Path, *, by: str) -> None:
+    """Write a drawing, which says by which command. Raises UsageError if the file cannot be written."""
     try:
-        path.write_text(svg(picture), encoding="utf-8")
+        path.write_text(svg(picture, by), encoding="utf-8")
     except OSError as error:
         raise UsageError(f"the picture {path} cannot be written: {error.strerror}") from error
 

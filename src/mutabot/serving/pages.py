@@ -120,7 +120,7 @@ class Pages:
             stored = open_campaign(self._journal)
         except JournalError:  # there is none yet
             return None, Cleaner(None)
-        if stored.results.attempt is not None or not stored.mutants:
+        if stored.results.attempt is not None or not stored.results.everything:
             return None, Cleaner(None)  # it is still that of the campaign before
         return portable(stored), Cleaner(stored.meta.get("root"))
 

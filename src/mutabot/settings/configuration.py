@@ -13,8 +13,10 @@ from pydantic_core import PydanticCustomError
 from mutabot.errors import ConfigurationError, nearest_name
 from mutabot.families import FAMILIES, USUAL
 from mutabot.model import Moment
+from mutabot.model.graded.demand import Demand
 from mutabot.model.moment import EVERY
 
+from .demands import check_demands
 from .document import Document
 from .families import why_unknown
 from .mistakes import Check, raise_errors
@@ -246,6 +248,15 @@ class Settings(BaseModel):
 
         baseline_repetitions = 10
     """
+    demand: Annotated[tuple[dict[str, Any], ...], Field(strict=False)] = ()
+    """How small a fault may be that the tests do not notice: a table each, with double brackets; see
+    [thresholds](thresholds.md#demands). `run` ends with 1 if a site tolerates more.
+
+        [[tool.mutabot.demand]]
+        site = "mission.py:38"
+        quantity = "y"
+        notice = "5 mm"
+    """
 
 
 class Configuration(Settings):
@@ -254,10 +265,12 @@ class Configuration(Settings):
     Attributes:
         root: absolute path of the project.
         file: the file it was read from, relative to ``root``.
+        demands: what ``demand`` says, checked.
     """
 
     root: Path
     file: str
+    demands: tuple[Demand, ...] = ()
 
 
 def load_configuration(folder: Path) -> Configuration:
@@ -281,8 +294,10 @@ def load_configuration(folder: Path) -> Configuration:
     paths.refuse_overlap(program, oracle)
     paths.check_tests(settings.tests, "tests" in raw)
     paths.check_rest(settings)
+    demands = check_demands(settings.demand, check, (*place, "demand"))
     raise_errors(check.errors)
     changed = {"program": program, "oracle": oracle, "root": folder.resolve(), "file": document.file}
+    changed["demands"] = demands
     return Configuration(**{**dict(settings), **changed})
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from mutabot.analysis.results import MutantResult, Results, find_mutant, read_results
 from mutabot.analysis.score import Group
+from mutabot.analysis.thresholds.thresholds import Thresholds, thresholds_of
 from mutabot.border.codec import from_data
 from mutabot.journal.files import find_journal
 from mutabot.journal.reader import JournalReader
@@ -62,13 +63,13 @@ class StoredCampaign:
 
     @property
     def mutants(self) -> tuple[MutantResult, ...]:
-        """Every planned mutant with what became of it, by number."""
+        """Every planned mutant with what became of it, by number; graded ones have ``thresholds``."""
         return self.results.mutants
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
         """Every outcome there is: by mutant, then by round."""
-        return tuple(outcome for result in self.mutants for outcome in result.outcomes)
+        return tuple(outcome for result in self.results.everything for outcome in result.outcomes)
 
     @property
     def survivors(self) -> tuple[MutantResult, ...]:
@@ -79,6 +80,11 @@ class StoredCampaign:
     def scores(self) -> tuple[Group, ...]:
         """Scores per family and role. They are never added up."""
         return self.results.groups
+
+    @property
+    def thresholds(self) -> Thresholds:
+        """The ladders of graded mutants, the loosest first."""
+        return thresholds_of(self.results)
 
     def mutant(self, name: str) -> MutantResult:
         """The mutant with this number or id, or the only one that a part of an id fits.
@@ -117,7 +123,7 @@ def open(path: str | Path = ".") -> StoredCampaign:
     """
     with JournalReader.open(journal_at(Path(path))) as journal:
         results = read_results(journal)
-        files = {single.site.span.file for one in results.mutants for single in one.mutant.singles}
+        files = {single.site.span.file for one in results.everything for single in one.mutant.singles}
         found = {file: journal.source(file) for file in sorted(files)}
     meta = results.meta
     return StoredCampaign(

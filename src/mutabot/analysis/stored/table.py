@@ -40,7 +40,7 @@ class Column:
 
 def rows(results: Results) -> Iterator[tuple[Cell, ...]]:
     """The cells of all outcomes, in the order of ``COLUMNS``: by mutant, then by round."""
-    for result in results.mutants:
+    for result in results.everything:
         for outcome in result.outcomes:
             yield tuple(_cell(column, result, outcome) for column in COLUMNS)
 
@@ -136,4 +136,9 @@ COLUMNS: tuple[Column, ...] = (
     Column("commands", int, "commands before the deciding test ended", lambda m, o: o.commands),
     Column("engine", str, "engine that ran it", lambda m, o: o.engine),
     Column("repeats", int, "how often it was run once more, and ended the same", lambda m, o: o.repeats),
+    Column("magnitude", float, "of a graded mutant: how big its fault is", lambda m, o: m.mutant.magnitude),
+    Column("magnitude_unit", str, "unit of `magnitude`", lambda m, o: m.mutant.unit),
+    Column(
+        "direction", str, "of a graded mutant: `+`, `-` or nothing", lambda m, o: m.mutant.direction or None
+    ),
 )

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.model import Compared, Operation, Probe
+from mutabot.model.seen.figure import Figure
 from mutabot.model.values.quantity import is_number, told_apart, value_text
 
 from .orientations import Angles, Command, Turned, turned_parts, values_apart
@@ -76,6 +77,7 @@ class Difference:
         way: greatest difference of a probe along the way, in multiples of its tolerance; None if none was
             compared.
         compared: how much was.
+        figures: figures of merit that differ.
     """
 
     indistinguishable: bool
@@ -84,6 +86,7 @@ class Difference:
     gaps: tuple[str, ...] = ()
     way: float | None = None
     compared: Compared = field(default=Compared(), compare=False)
+    figures: tuple[Figure, ...] = field(default=(), compare=False)
 
 
 def compare(
@@ -128,7 +131,8 @@ def compare(
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
     compared = _compared(original, mutant, way.count)
-    return Difference(not lines, distance, tuple(lines), gaps, way.distance, compared)
+    figures = tuple(_figures(original, mutant, probes))
+    return Difference(not lines, distance, tuple(lines), gaps, way.distance, compared, figures)
 
 
 def as_steady(
@@ -193,6 +197,18 @@ def _probe_differences(
         distance = _distance(before, after) / _tolerance(key, probes)
         found.append((min(distance, OTHER_WORLD), f"{_short(key)}: {_change(before, after)}"))
     return sorted(found, key=lambda item: -item[0])
+
+
+def _figures(original: Observation, mutant: Observation, probes: Sequence[Probe]) -> Iterator[Figure]:
+    for probe in probes:
+        # a class of which the program uses several objects has a figure for each
+        keys = (key for key in original.probes if key == probe.target or key.startswith(f"{probe.target}#"))
+        for key in keys if probe.better is not None else ():
+            before, after = original.probes[key], mutant.probes.get(key)
+            if not (is_number(before) and is_number(after)):
+                continue
+            if math.inf > _distance(before, after) > probe.tolerance:
+                yield Figure(key, float(before), float(after or 0.0), probe.better or "")
 
 
 def _readable(original: Observation, mutant: Observation, target: str) -> str:

@@ -11,6 +11,7 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.observation import Observation, compare, farthest
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.outcome import added
+from mutabot.model.seen.figure import Figure
 
 #: tests of a survivor whose checks are kept
 _MOST_LOOKED = 20
@@ -212,6 +213,7 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
     """The outcome of a survivor with how far its world is from the original's."""
     baseline, vocabulary = campaign.baseline, campaign.request.vocabulary
     comparisons = []
+    figures: list[Figure] = []
     for test, found in run.observations.items():
         key = (run.round, test)
         if key in baseline.restless:
@@ -219,6 +221,7 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
         if key in baseline.observations:
             known = (vocabulary.probes, vocabulary.operations)
             comparisons.append(compare(baseline.observations[key], found, *known))
+            figures += (replace(one, test=test) for one in comparisons[-1].figures)
     worst = farthest(comparisons)
     # Without a probe, equal traces say only that the program did the same, not that the world ended so.
     is_claimed = worst.divergence or (worst.distance is not None and not worst.gaps)
@@ -230,4 +233,5 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
         gaps=worst.gaps,
         way=worst.way,
         compared=worst.compared if comparisons else None,
+        figures=tuple(figures),
     )

@@ -17,7 +17,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from random import Random
 
-from mutabot.model.ladder import Seen, bracket_of
+from mutabot.model.graded.ladder import Seen, bracket_of
 
 #: indices of a ladder's magnitudes, from the smallest
 Step = int

@@ -14,7 +14,7 @@ from mutabot.campaign.engines.engine import Trial
 from mutabot.campaign.plan.ladders import Ladder
 from mutabot.campaign.sink import Sink
 from mutabot.model import Outcome
-from mutabot.model.ladder import seen
+from mutabot.model.graded.ladder import seen
 
 from .ladder import LadderSearch, Step, steps_run
 

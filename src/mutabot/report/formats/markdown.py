@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group
 from mutabot.analysis.statistics import Interval
+from mutabot.analysis.thresholds.words import line_of
 from mutabot.model import Verdict
 from mutabot.report.changes.markdown import change_lines
 from mutabot.report.format import Format, Material
@@ -16,6 +17,8 @@ from mutabot.report.shaping.status import rounds_text, short_reason, status_of, 
 
 #: rows of a table of mutants; GitHub takes no summary of more than a megabyte
 _ROWS = 100
+#: rows of the table of ladders
+_LADDERS = 50
 #: states of mutants that no test has judged, in the order of their interest
 _UNJUDGED = (
     Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT,
@@ -29,13 +32,18 @@ def make(material: Material) -> str:
 
 def _lines(material: Material) -> Iterator[str]:
     results = material.campaign.results
-    yield f"## Mutation testing: {len(results.mutants)} mutants × {results.rounds} rounds"
+    graded = f"{' and' if results.mutants else ''} {results.ladders} ladders" if results.ladders else ""
+    mutants = f" {len(results.mutants)} mutants" if results.mutants or not graded else ""
+    yield f"## Mutation testing:{mutants}{graded} × {results.rounds} rounds"
     yield ""
     if not material.campaign.is_complete or results.done < results.planned:
         known = f"{results.done} of {results.planned} outcomes are known"
         yield f"> **This campaign is not complete** ({escaped(results.state)}): {known}."
         yield ""
-    if not results.groups:
+    if not results.groups and results.ladders:
+        yield "Graded mutants alone, which have no score."
+        yield ""
+    elif not results.groups:
         is_early = not material.campaign.is_complete
         yield "No mutants are planned yet." if is_early else "No mutants were planned."
     else:
@@ -43,6 +51,7 @@ def _lines(material: Material) -> Iterator[str]:
     if material.changes is not None:
         yield from change_lines(material.changes, material.path)
     yield from _survivors(material)
+    yield from _thresholds(material)
     yield from _unjudged(material)
     yield from _left_out(material)
     yield from _flaky(results.flaky.tests)
@@ -97,6 +106,21 @@ def _survivor_cells(result: MutantResult, material: Material) -> tuple[str, ...]
         f"{rate.valid - rate.killed} of {rate.valid}",
         why_alone(result),
     )
+
+
+def _thresholds(material: Material) -> Iterator[str]:
+    """The loosest ladders of graded mutants."""
+    ladders = material.campaign.thresholds.ladders
+    if not ladders:
+        return
+    yield f"### How big a fault must be before the tests notice: {len(ladders)} ladders, the loosest first"
+    yield ""
+    head = ("place", "what", "noticed")
+    rows = ((material.path(one.place), one.name, line_of(one)) for one in ladders[:_LADDERS])
+    yield from table(head, rows)
+    if len(ladders) > _LADDERS:
+        yield f"and {len(ladders) - _LADDERS} more, which `mutabot thresholds` lists."
+        yield ""
 
 
 def _place(result: MutantResult, material: Material) -> str:

@@ -9,6 +9,7 @@ from mutabot.analysis.chance import false_kills, false_survivors
 from mutabot.analysis.score import Group, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.analysis.stored.campaign import StoredCampaign
+from mutabot.analysis.thresholds.words import line_of
 from mutabot.analysis.unlooked import unlooked
 from mutabot.border.codec import to_data
 from mutabot.journal.records import Verification
@@ -17,6 +18,8 @@ from .rows import Rows
 
 #: items of a list of what was left out, per reason
 _ITEMS = 50
+#: lines of ladders; `mutabot thresholds` has all
+_LADDERS = 200
 _META = ("mutabot", "python", "versions", "seed", "engine", "families", "started", "seconds")
 
 
@@ -45,6 +48,9 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
         "mutants": rows.rows,
         "unlooked": [
             [*one.places[:3], one.operation, one.quantity, one.text] for one in unlooked(results.mutants)
+        ],
+        "ladders": [
+            [f"{one.place} {one.name}", line_of(one)] for one in campaign.thresholds.ladders[:_LADDERS]
         ],
         "leftOut": _left_out(campaign),
         "flaky": results.flaky.tests,

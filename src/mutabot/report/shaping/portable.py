@@ -40,6 +40,7 @@ def portable(campaign: StoredCampaign) -> StoredCampaign:
             meta=mapped({key: results.meta[key] for key in _META if key in results.meta}, clean),
             state=clean(results.state),
             mutants=tuple(_mutant(one, clean) for one in results.mutants),
+            graded=tuple(_mutant(one, clean) for one in results.graded),
             left_out=mapped(results.left_out, legible),
             controls=mapped(results.controls, clean),
             flaky=mapped(results.flaky, clean),

@@ -72,6 +72,8 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
         yield from sample_lines(results)
     yield from survivor_lines(results, width)
     yield from unlooked_lines(results)
+    yield from better_lines(results)
+    yield from ladder_lines(results)
     yield from _outside(results, width)
     yield from left_out_lines(results.left_out, everything=everything)
     yield from trust_lines(results)
@@ -80,7 +82,9 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
 
 def title(results: Results) -> str:
     """How many mutants and rounds, and how the campaign ended."""
-    size = f"{plural(len(results.mutants), 'mutant')} × {plural(results.rounds, 'round')}"
+    kinds = [plural(len(results.mutants), "mutant")] if results.mutants or not results.ladders else []
+    kinds += [plural(results.ladders, "ladder")] if results.ladders else []
+    size = f"{' and '.join(kinds)} × {plural(results.rounds, 'round')}"
     if results.done == results.planned:
         return f"{size}: {results.state}"
     return f"{size}: {results.state}, {results.done} of {results.planned} outcomes are known"
@@ -273,6 +277,26 @@ def survivor_lines(results: Results, width: int, *, at_most: int | None = None) 
     yield table
     if at_most is not None and len(survivors) > at_most:
         yield Text(f"and {len(survivors) - at_most} more", style="dim")
+
+
+def better_lines(results: Results) -> Iterator[RenderableType]:
+    """Survivors with which a test did better than without, by a figure of merit of the vocabulary."""
+    found = [result for result in results.mutants if result.improvement]
+    if found:
+        yield heading(f"{plural(len(found), 'mutant')} better than the original")
+        for result in found:
+            text = (
+                f"{result.mutant.number:>4}  {_place(result)} {result.mutant.operator}: {result.improvement}"
+            )
+            yield Text(plain(text), overflow="fold")
+
+
+def ladder_lines(results: Results) -> Iterator[RenderableType]:
+    """That there are ladders, which are in no score, and where to look."""
+    if results.ladders:
+        runs = sum(len(result.outcomes) for result in results.graded)
+        text = f"{plural(results.ladders, 'ladder')} of graded mutants, {plural(runs, 'run')}, in no score"
+        yield heading(f"{text}: `mutabot thresholds` shows them")
 
 
 def _outside(results: Results, width: int) -> Iterator[RenderableType]:

@@ -21,14 +21,15 @@ _NUMBERS, _MESSAGES = 10, 8
 def error_lines(results: Results) -> Iterator[RenderableType]:
     """How many outcomes are errors, and one line per message with the mutants it is about."""
     found: dict[str, list[int]] = {}
-    for result in results.mutants:
+    for result in results.everything:
         for outcome in result.outcomes:
             if outcome.verdict is Verdict.ERROR:
                 found.setdefault(first_line(outcome.message), []).append(result.mutant.number)
     count = sum(map(len, found.values()))
     if not count:
         return
-    text = f"\n{count} of {plural(results.done, 'outcome')} ended in error, so nothing is known of them"
+    run = sum(len(result.outcomes) for result in results.everything)
+    text = f"\n{count} of {plural(run, 'outcome')} ended in error, so nothing is known of them"
     yield Text(text, style="bold red")
     ranked = sorted(found.items(), key=lambda item: -len(item[1]))
     for message, numbers in ranked[:_MESSAGES]:

@@ -11,7 +11,16 @@ from rich.text import Text
 from mutabot.analysis.results import Results
 from mutabot.model import Verdict
 
-from .campaign import RATES, group_name, sample_lines, survivor_lines, title, trust_lines
+from .campaign import (
+    RATES,
+    better_lines,
+    group_name,
+    ladder_lines,
+    sample_lines,
+    survivor_lines,
+    title,
+    trust_lines,
+)
 from .console import between, heading, make_table, percent
 from .errors import error_lines
 from .mutant.looked import unlooked_lines
@@ -36,7 +45,9 @@ def _parts(results: Results, width: int) -> Iterator[RenderableType]:
         yield from sample_lines(results)
     yield from survivor_lines(results, width, at_most=_SURVIVORS)
     yield from unlooked_lines(results)
+    yield from better_lines(results)
     yield from _outside(results)
+    yield from ladder_lines(results)
     yield from trust_lines(results)
     yield Text("\n`mutabot results` shows every mutant, `mutabot show N` all about one.", style="dim")
 

@@ -7,12 +7,17 @@
   mutabot.views.set("", (body) => {
     const campaign = mutabot.campaign;
     const survivors = worstFirst(campaign.mutants);
+    const graded = (campaign.ladders || []).length;
+    const things = [(campaign.mutants.length || !graded) && count(campaign.mutants.length, "mutant"), graded && count(graded, "ladder")];
+    const judging = campaign.mutants.length || !graded
+      ? [toActOn(survivors, campaign), h("div", { class: "columns" }, unseen(campaign), outside(campaign))] : [];
     body.append(
-      h("h1", { tabindex: "-1" }, `${count(campaign.mutants.length, "mutant")} × ${count(campaign.rounds, "round")}`),
+      h("h1", { tabindex: "-1" }, `${things.filter(Boolean).join(" and ")} × ${count(campaign.rounds, "round")}`),
       state(campaign),
       scores(campaign),
-      toActOn(survivors, campaign),
-      h("div", { class: "columns" }, unseen(campaign), outside(campaign)),
+      ...judging.slice(0, 1),
+      ...(graded ? [ladders(campaign)] : []),
+      ...judging.slice(1),
       trust(campaign),
     );
   });
@@ -40,6 +45,9 @@
   }
 
   function scores(campaign) {
+    if (!campaign.groups.length && campaign.ladders && campaign.ladders.length) {
+      return empty("Graded mutants alone, which have no score.", "How big a fault must be before the tests notice is told below.");
+    }
     if (!campaign.groups.length) {
       return empty("No mutants were planned.", "No operator of the chosen families fits a call that the tests reach. ",
         h("code", null, "mutabot check"), " says which operations are reached, and ", h("code", null, "mutabot list"), " what could be planned.");
@@ -109,6 +117,11 @@
     return h("section", { "aria-labelledby": "survivors" }, heading,
       h("ol", { class: "findings" }, survivors.slice(0, SHOWN).map((one) => finding(one))),
       survivors.length > SHOWN ? h("p", null, h("a", { class: "more", href: address(["mutants"], { status: "survived,not covered", sort: "worst" }) }, `All ${survivors.length} survivors`)) : null);
+  }
+
+  function ladders(campaign) {
+    return h("section", { "aria-labelledby": "thresholds" }, h("h2", { id: "thresholds" }, "How big a fault must be before the tests notice, the loosest first"),
+      h("ul", { class: "plain" }, campaign.ladders.map(([name, line]) => h("li", null, h("code", null, name), ` ${line}`))));
   }
 
   function finding(one) {

@@ -106,9 +106,10 @@ def _facts(result: MutantResult) -> Table:
         "quantity": _quantity_text(mutant.quantity, result.quantity),
         "killed": f"in {rate.killed} of the {rate.valid} rounds in which it was valid{_interval_text(rate)}",
         "result": result.why,
+        "better": result.improvement,
     }
     for name, text in facts.items():
-        if mutant.operation or name not in _OF_CALLS:
+        if text and (mutant.operation or name not in _OF_CALLS):
             table.add_row(name, plain(text))
     return table
 

@@ -16,7 +16,7 @@ from mutabot.report.terminal.console import heading, plain
 
 def suggested_parts(result: MutantResult, found: Suggestions | None) -> Iterator[RenderableType]:
     """The section of a survivor; nothing for other mutants."""
-    if not result.is_survivor:
+    if not result.is_survivor or result.mutant.ladder:
         return
     yield heading("A check that would catch it")
     for line in _lines(result, found):

@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from .outcome import Outcome
-from .verdict import Verdict
+from mutabot.model.outcome import Outcome
+from mutabot.model.verdict import Verdict
 
 
 class Seen(StrEnum):

@@ -5,17 +5,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
-from mutabot.families import FAMILIES
+from mutabot.cli import options
+from mutabot.cli.output import exit_as, print_json, progress_shown
+from mutabot.cli.request import request_of
+from mutabot.errors import UsageError
+from mutabot.families import FAMILIES, GRADED
 from mutabot.journal.files import COMPARISON, find_journal
-
-from . import options
-from .output import exit_as, print_json, progress_shown
-from .request import request_of
 
 if TYPE_CHECKING:
     from mutabot.analysis.families import FamilyComparison
@@ -54,7 +55,7 @@ def compare(
         found = comparison.read(find_journal(context.obj, COMPARISON).parent)
     else:
         request = request_of(
-            context.obj, only=only, skip=skip, family=family or FAMILIES, order=1,
+            context.obj, only=only, skip=skip, family=_families(family), order=1,
             selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed,
             jobs=jobs, engine=engine, fresh=fresh, configured_selection=False,
         )  # fmt: skip
@@ -62,6 +63,18 @@ def compare(
             found = comparison.run(request, progress, no_oracle=no_oracle)
     _show(found, picture, json=json)
     exit_as(decide(found.results))
+
+
+def _families(given: Sequence[str] | None) -> Sequence[str]:
+    """Those to compare. Raises UsageError for graded mutants, which have no score to be compared."""
+    if given is None:
+        return [name for name in FAMILIES if name != GRADED]
+    if GRADED in {name.strip() for text in given for name in text.split(",")}:
+        raise UsageError(
+            "graded mutants have thresholds and no score: `mutabot run --family graded`, then "
+            "`mutabot thresholds --compare OLD`"
+        )
+    return given
 
 
 def _show(comparison: FamilyComparison, picture: Path | None, *, json: bool) -> None:

@@ -1,0 +1,1 @@
+"""Thresholds: how big a graded fault must be before the tests notice, and what that says."""

@@ -1,0 +1,116 @@
+"""Thresholds in words: what the rounds showed, as brackets and never as a number between them."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
+from .ladders import Ladder
+from .rounds import Above, LadderRound
+
+
+def amount(magnitude: float, unit: str | None) -> str:
+    """``20 mm``; a fraction in percent, a plain number without a unit."""
+    if unit in ("fraction", "percent"):
+        return f"{magnitude * (100 if unit == 'fraction' else 1):.6g} %"
+    return f"{magnitude:.6g}{f' {unit}' if unit is not None else ''}"
+
+
+def line_of(ladder: Ladder) -> str:
+    """The line of a ladder that can be judged: a fact about these rounds."""
+    brackets = {(one.bracket.low, one.bracket.high, one.above) for one in ladder.counted}
+    if not any(one.is_reached for one in ladder.counted):
+        return f"no test reaches it{_all(ladder)}"
+    return _alike(ladder) if len(brackets) == 1 else _apart(ladder)
+
+
+def rounds_left_out(ladder: Ladder) -> Iterator[str]:
+    """Rounds that do not count although others do, each with the reason."""
+    for one in ladder.rounds:
+        if one.why_out:
+            yield f"round {one.number + 1} {one.why_out}"
+
+
+def _alike(ladder: Ladder) -> str:
+    one = ladder.counted[0]
+    low, high = one.bracket.low, one.bracket.high
+    if high is None:
+        return f"{_never(ladder, one)}{_all(ladder)}"
+    if low is None:
+        return f"noticed from {_smallest(ladder, high)}{_all(ladder)}"
+    return f"noticed from {_text(ladder, high)}, not at {_text(ladder, low)}{_all(ladder)}"
+
+
+def _apart(ladder: Ladder) -> str:
+    total = len(ladder.counted)
+    parts = [
+        f"in {f'all {total}' if count == total else f'{count} of {total}'} rounds from {where}"
+        for count, where in _noticed(ladder)
+    ]
+    text = ", ".join(part.replace(" rounds", "", 1) if number else part for number, part in enumerate(parts))
+    ends = [f"noticed {text}"] if text else []
+    if math.isfinite(ladder.all_from):
+        ends += [f"in none up to {_text(ladder, ladder.none_up_to)}"] if ladder.none_up_to else []
+    else:
+        ends += _never_noticed(ladder)
+    return "; ".join(ends)
+
+
+def _noticed(ladder: Ladder) -> Iterator[tuple[int, str]]:
+    """In how many rounds it is noticed from where: the first of them, half of them, all."""
+    highs = [high for high in ladder.highs if math.isfinite(high)]
+    wanted = {highs[0], highs[-1], ladder.half_from} if highs else set()
+    for high in sorted(one for one in wanted if math.isfinite(one)):
+        count = sum(one <= high for one in highs)
+        yield count, _smallest(ladder, high) if high == ladder.sizes[0] else _text(ladder, high)
+
+
+def _never_noticed(ladder: Ladder) -> Iterator[str]:
+    """The rounds that never notice it, alike ones together."""
+    rounds = [one for one in ladder.counted if one.bracket.high is None]
+    total = len(ladder.counted)
+    for text, count in Counter(_never(ladder, one) for one in rounds).items():
+        yield f"{text} ({count} of {total} rounds)"
+
+
+def _never(ladder: Ladder, one: LadderRound) -> str:
+    low = one.bracket.low
+    if not one.is_reached:
+        return "no test reaches it"
+    missed = f"not noticed up to {_text(ladder, low)}" if low is not None else ""
+    above = ""
+    if one.above is Above.REFUSED and one.bracket.refused is not None:
+        above = f"refused from {_text(ladder, one.bracket.refused)}"
+    elif one.above is Above.NO_EFFECT:
+        above = "without effect above"
+    return ", ".join(part for part in (missed, above) if part)
+
+
+def _smallest(ladder: Ladder, high: float) -> str:
+    return f"the smallest tried, {_text(ladder, high)}"
+
+
+def _all(ladder: Ladder) -> str:
+    """Of how many rounds something holds that holds of all."""
+    total = len(ladder.counted)
+    return f" (all {total} rounds)" if total > 1 else " (1 round)"
+
+
+def _text(ladder: Ladder, magnitude: float) -> str:
+    return amount(magnitude, ladder.unit)
+
+
+def violations_in_words(ladder: Ladder) -> Iterator[str]:
+    """``noticed at 5 mm, survives 20 mm, round 3``, one per violation; rounds alike together."""
+    rounds: dict[tuple[float, float], list[int]] = {}
+    for one in ladder.violations:
+        rounds.setdefault((one.noticed, one.missed), []).append(one.round + 1)
+    for (noticed, missed), numbers in rounds.items():
+        yield (f"noticed at {_text(ladder, noticed)}, survives {_text(ladder, missed)}, {in_rounds(numbers)}")
+
+
+def in_rounds(numbers: Iterable[int]) -> str:
+    """``round 3`` or ``rounds 1, 2 and 5``; the numbers count from 1."""
+    *rest, last = [str(number) for number in sorted(set(numbers))]
+    return f"rounds {', '.join(rest)} and {last}" if rest else f"round {last}"

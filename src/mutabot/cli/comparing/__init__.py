@@ -1,0 +1,1 @@
+"""``mutabot compare``: families of operators side by side."""

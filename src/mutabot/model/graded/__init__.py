@@ -1,0 +1,1 @@
+"""Graded faults: what a round says of them, and what users demand."""

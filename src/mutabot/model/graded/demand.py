@@ -1,0 +1,125 @@
+"""Demands: from which magnitude on the tests must notice a graded fault."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from mutabot.model.mutant import Mutant
+from mutabot.model.selector import fits, is_like
+from mutabot.model.values.quantity import Kind
+from mutabot.model.values.units import UNITS, convert_difference, dimension_of
+
+#: the operator that is meant if a demand names none: a value is off by the magnitude
+OFFSET = "offset"
+#: digits that a magnitude keeps when its unit is converted: 5 mm are 0.005 m, and not 0.005000000000000001
+_DIGITS = 12
+_AMOUNT = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*)?")
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """What a user demands: every such fault that is at least so big must be noticed in every round.
+
+    Attributes:
+        notice: the magnitude, in ``unit``.
+        unit: a key of ``units.UNITS``; None for quantities without one.
+        site: which sites, as ``--only`` takes them; a callee as written will do. None for all.
+        quantity: the name of the quantity; None for any.
+        kind: its kind; None for any.
+        operator: the graded operator.
+        share: the share of rounds that must notice it, to be shown; None for all rounds that are run.
+        source: ``file:line`` where it stands.
+    """
+
+    notice: float
+    unit: str | None = None
+    site: str | None = None
+    quantity: str | None = None
+    kind: Kind | None = None
+    operator: str = OFFSET
+    share: float | None = None
+    source: str = ""
+
+    def is_about(self, mutant: Mutant, kind: Kind | None) -> bool:
+        """Whether it speaks of a graded mutant, whose quantity is of this kind as far as that is known."""
+        return (
+            mutant.operator == self.operator
+            and (self.quantity is None or is_like(self.quantity, mutant.quantity or ""))
+            and (self.kind is None or self.kind is kind)
+            and self.is_at(mutant)
+            and self.magnitude_in(mutant.unit) is not None
+        )
+
+    def magnitude_in(self, unit: str | None) -> float | None:
+        """The demanded magnitude in another unit; None if that measures something else."""
+        if unit is None or self.unit is None:
+            return self.notice if unit == self.unit else None
+        if dimension_of(unit) is not dimension_of(self.unit):
+            return None
+        return _rounded(convert_difference(self.notice, self.unit, unit))
+
+    @property
+    def text(self) -> str:
+        """``notice = "5 mm" at mission.py:38, quantity y``."""
+        about = [f"quantity {self.quantity}" if self.quantity is not None else ""]
+        about += [f"kind {self.kind}" if self.kind is not None else ""]
+        about += [f"operator {self.operator}" if self.operator != OFFSET else ""]
+        where = f" at {self.site}" if self.site is not None else ""
+        rest = ", ".join(part for part in about if part)
+        return f'notice = "{self.amount}"{where}{f", {rest}" if rest else ""}'
+
+    @property
+    def amount(self) -> str:
+        """``5 mm``."""
+        return f"{self.notice:g}{f' {self.unit}' if self.unit is not None else ''}"
+
+    def is_at(self, mutant: Mutant) -> bool:
+        """Whether it speaks of the site of a mutant."""
+        site = self.site
+        if site is None:
+            return True
+        texts = (mutant.site.id, mutant.site.text, mutant.site.span.function)
+        return fits(site, mutant) or any(is_like(site, text) for text in texts)
+
+
+def wanted_magnitudes(demands: Iterable[Demand], mutant: Mutant, kind: Kind | None) -> tuple[float, ...]:
+    """The magnitudes that a ladder must have so that demands can be judged, rising, in the ladder's unit.
+
+    ``mutant`` is any of the ladder's: only its site, quantity, operator, unit and id are looked at. ``kind``
+    is that of its quantity.
+    """
+    found = (one.magnitude_in(mutant.unit) for one in demands if one.is_about(mutant, kind))
+    return tuple(sorted({magnitude for magnitude in found if magnitude is not None}))
+
+
+def is_at_least(magnitude: float, demanded: float) -> bool:
+    """Whether a magnitude of a ladder is the demanded one or more; units may have been converted."""
+    return magnitude > demanded or is_same(magnitude, demanded)
+
+
+def is_same(one: float, other: float) -> bool:
+    """Whether two magnitudes are one and the same."""
+    return math.isclose(one, other, rel_tol=1e-9)
+
+
+def parse_amount(text: str) -> tuple[float, str | None]:
+    """The number and the unit in ``5 mm``, ``2.5 deg``, ``5 %`` or ``3``.
+
+    Raises ValueError with a sentence about what is wrong; KeyError for a unit that does not exist.
+    """
+    found = _AMOUNT.fullmatch(text.strip())
+    if found is None:
+        raise ValueError(f"{text!r} is no magnitude; write a number and a unit, like '5 mm'")
+    value, unit = float(found[1]), "percent" if found[2] == "%" else found[2]
+    if not (value > 0 and math.isfinite(value)):
+        raise ValueError(f"{text!r}: a magnitude is more than 0; both directions are meant")
+    if unit is not None and unit not in UNITS:
+        raise KeyError(unit)
+    return value, unit
+
+
+def _rounded(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")

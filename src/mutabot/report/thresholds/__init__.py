@@ -1,0 +1,1 @@
+"""Thresholds on the terminal, as JSON and as a picture."""

@@ -1,0 +1,168 @@
+"""``mutabot thresholds`` as a user calls it, and the end of a campaign with ladders."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from analysis.thresholds import journals
+from analysis.thresholds.journals import Rungs
+from mutabot.analysis.gate import decide
+from mutabot.cli.app import main
+from mutabot.exit_codes import ExitCode
+from mutabot.model.seen.figure import Figure
+from mutabot.report.terminal.console import make_console
+from mutabot.report.terminal.summary import print_summary
+
+LADDERS = (Rungs(["SSSSCCC"] * 5), Rungs(["SSSCCCC"] * 5, direction="-"))
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    journals.write(tmp_path / ".mutabot" / "journal.sqlite", *LADDERS)
+    return tmp_path
+
+
+def call(project: Path, *words: str) -> int:
+    return main(["-C", str(project), *words])
+
+
+def test_it_prints_one_line_per_ladder(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(project, "thresholds") == 0
+    out = capsys.readouterr().out
+    assert "mission.py:3 arm.move_by dx +: noticed from 20 mm, not at 10 mm (all 5 rounds)\n" in out
+    assert out.index("dx +") < out.index("dx −")
+
+
+def test_it_prints_json_and_draws(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    picture = project / "thresholds.svg"
+    assert call(project, "thresholds", "--json", "--picture", str(picture)) == 0
+    assert len(json.loads(capsys.readouterr().out)["ladders"]) == 2
+    assert "written by mutabot thresholds" in picture.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(("own", "table"), [(True, "[[demand]]"), (False, "[[tool.mutabot.demand]]")])
+def test_it_suggests_demands_for_the_file_that_the_project_has(
+    project: Path, own: bool, table: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if own:
+        (project / "mutabot.toml").write_text("")
+    assert call(project, "thresholds", "--suggest-demands") == 0
+    out = capsys.readouterr().out
+    assert table in out
+    assert tomllib.loads(out)
+
+
+def test_it_compares_with_another_campaign(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    journals.write(project / "old" / ".mutabot" / "journal.sqlite", Rungs(["SSSSSCC"] * 5))
+    assert call(project, "thresholds", "--compare", str(project / "old")) == 0
+    assert "1 improved" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--sort", "plase"], "unknown order 'plase'; did you mean 'place'?"),
+        (["--picture", "x.png"], "pictures are SVG; write x.svg"),
+        (["--picture", "nowhere/x.svg"], "there is no folder nowhere"),
+        (["--suggest-demands", "--json"], "prints TOML alone"),
+        (["--compare", ".", "--steps"], "--compare goes with --json alone"),
+        (["--compare", "nowhere"], "nowhere"),
+    ],
+)
+def test_what_cannot_be_is_told(
+    project: Path, words: list[str], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(project, "thresholds", *words) == ExitCode.USAGE
+    assert told in capsys.readouterr().err
+
+
+def test_the_campaign_itself_is_nothing_to_compare_with(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(project, "thresholds", "--compare", str(project)) == ExitCode.USAGE
+    assert "is the campaign itself" in capsys.readouterr().err
+
+
+def test_without_ladders_it_says_what_plants_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(tmp_path, "thresholds") == ExitCode.USAGE
+    assert "there is no journal yet" in capsys.readouterr().err
+    journals.write(tmp_path / ".mutabot" / "journal.sqlite", with_others=True)
+    assert call(tmp_path, "thresholds") == ExitCode.USAGE
+    assert "`mutabot run --family graded`" in capsys.readouterr().err
+
+
+# The end of a campaign
+
+
+def test_ladders_are_in_no_score_and_their_magnitudes_need_not_be_run(tmp_path: Path) -> None:
+    alone = journals.results(tmp_path / "alone", with_others=True, rounds=2)
+    both = journals.results(tmp_path / "both", Rungs(["SSS.C..", "..SSCC."]), with_others=True, rounds=2)
+    assert both.groups == alone.groups
+    assert both.all == alone.all
+    assert (both.planned, both.done) == (alone.planned, alone.done)
+    assert [one.mutant.id for one in both.survivors] == [one.mutant.id for one in alone.survivors]
+    assert (both.ladders, len(both.graded), len(both.everything)) == (1, 7, 12)
+
+
+def test_a_campaign_of_ladders_alone_is_held_to_no_score(tmp_path: Path) -> None:
+    found = journals.results(tmp_path, Rungs(["SSSSSSS"] * 2))
+    assert decide(found, min_score=1.0, max_timeouts=0.0).exit_code is ExitCode.FINE
+
+
+@pytest.mark.parametrize(
+    ("letters", "words"), [("RRRRRRR", "the robot refused every mutant"), (".......", "no mutant was run")]
+)
+def test_a_campaign_of_which_nothing_is_known_is_still_a_failure(
+    tmp_path: Path, letters: str, words: str
+) -> None:
+    decision = decide(journals.results(tmp_path, Rungs([letters])))
+    assert decision.exit_code is ExitCode.NOTHING_KNOWN
+    assert words in decision.lines[0]
+
+
+def test_errors_of_graded_mutants_count(tmp_path: Path) -> None:
+    decision = decide(journals.results(tmp_path, Rungs(["SSECCCC"])), max_errors=0.0)
+    assert decision.exit_code is ExitCode.UNRELIABLE
+    assert "1 of 7 outcomes are errors" in decision.lines[0]
+    assert "mutants 3" in decision.lines[0]
+
+
+def test_results_name_the_ladders_and_where_to_look(
+    project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(project, "results") == 0
+    out = " ".join(capsys.readouterr().out.split())
+    assert "2 ladders × 5 rounds: complete" in out
+    assert "2 ladders of graded mutants, 70 runs, in no score: `mutabot thresholds` shows them" in out
+    assert "no mutant" not in out.lower()
+
+
+def test_the_end_of_a_run_names_them_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    print_summary(make_console(), journals.results(tmp_path, *LADDERS, with_others=True))
+    out = " ".join(capsys.readouterr().out.split())
+    assert "5 mutants and 2 ladders × 5 rounds" in out
+    assert "`mutabot thresholds` shows them" in out
+
+
+def test_one_magnitude_is_shown_like_any_mutant(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    figure = Figure("cell:Cell.cycle_time", 12.5, 11.25, "less")
+    ladder = Rungs(["SSSCCCC"], figures={(0, 2.0): figure})
+    journals.write(tmp_path / ".mutabot" / "journal.sqlite", ladder)
+    assert call(tmp_path, "show", "2") == 0
+    out = capsys.readouterr().out
+    assert "Cell.cycle_time 11.25 instead of 12.5" in out
+    assert "mutabot suggest" not in out
+
+
+@pytest.mark.parametrize("name", ["markdown", "junit", "sarif", "github", "csv", "badge", "mutation-testing"])
+def test_every_format_takes_a_campaign_of_ladders_alone(
+    project: Path, name: str, capfdbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    assert call(project, "report", "--format", name) == 0
+    out = capfdbinary.readouterr().out
+    if name == "markdown":
+        assert b"noticed from 20 mm, not at 10 mm" in out

@@ -1,0 +1,197 @@
+"""Thresholds as text, JSON, picture and TOML: one line per ladder, and nothing that is not known."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from analysis import samples
+from analysis.thresholds import journals
+from analysis.thresholds.journals import Rungs
+from mutabot.analysis.thresholds.comparing import compare
+from mutabot.analysis.thresholds.thresholds import SORTS, Thresholds, thresholds_of
+from mutabot.cli.thresholds import _SORTS
+from mutabot.model import Operation, Role, Vocabulary
+from mutabot.model.seen.figure import Figure
+from mutabot.report.as_json import dumps
+from mutabot.report.picture import svg
+from mutabot.report.terminal.console import make_console
+from mutabot.report.thresholds.compared import print_compared
+from mutabot.report.thresholds.data import compared_data, thresholds_data
+from mutabot.report.thresholds.demands import suggested_toml
+from mutabot.report.thresholds.picture import picture_of
+from mutabot.report.thresholds.text import print_thresholds
+
+FIVE = 5
+NOISY = Vocabulary(
+    operations=(
+        *samples.VOCABULARY.operations[:1],
+        Operation("tracker:box_position", result=(replace(samples.X, noise=0.002),), command=False),
+    )
+)
+READING = {"site": samples.READ, "quantity": ".x", "operation": "tracker:box_position"}
+LADDERS = (
+    Rungs(["SSSSCCC"] * 3 + ["SSSCCXX"] * 2, zero="S" * FIVE),
+    Rungs(["SSSSSRR"] * FIVE, direction="-"),
+    Rungs(["SSCSCCC"] * FIVE, site=samples.BACK, unit="deg"),
+    Rungs(["RRRRRRR"] * FIVE, site=samples.BACK, unit="deg", direction="-"),
+    Rungs(["CCCCCCC"] * FIVE, **READING),  # type: ignore[arg-type]  # each of its own type
+    Rungs(["CCCCCCC"] * FIVE, direction="-", **READING),  # type: ignore[arg-type]
+)
+
+
+@pytest.fixture
+def thresholds(tmp_path: Path) -> Thresholds:
+    return thresholds_of(journals.results(tmp_path, *LADDERS, vocabulary=NOISY))
+
+
+def text_of(thresholds: Thresholds, *, width: int = 80, steps: bool = False) -> str:
+    out = io.StringIO()
+    print_thresholds(make_console(out, width=width), thresholds, steps=steps)
+    return out.getvalue()
+
+
+def test_a_ladder_is_one_line_however_narrow_the_terminal_is(thresholds: Thresholds) -> None:
+    lines = text_of(thresholds, width=40).splitlines()
+    assert (
+        "mission.py:3 arm.move_by dx +: noticed in 2 of 5 rounds from 10 mm, in all 5 from 20 mm; "
+        "in none up to 5 mm"
+    ) in lines
+
+
+def test_the_loosest_comes_first(thresholds: Thresholds) -> None:
+    assert [(one.name, one.unit) for one in thresholds.ladders] == [
+        ("arm.move_by dx −", "mm"),
+        ("arm.move_by dx +", "deg"),
+        ("arm.move_by dx +", "mm"),
+        ("tracker.box_position .x +", "mm"),
+        ("tracker.box_position .x −", "mm"),
+    ]
+
+
+def test_what_the_lines_say_of_further_rounds_has_its_level(thresholds: Thresholds) -> None:
+    text = text_of(thresholds)
+    assert "with 94 % confidence" in text
+    assert "at least 55 % of further rounds do" in text
+
+
+def test_all_that_is_to_be_said_is_said(thresholds: Thresholds) -> None:
+    text = text_of(thresholds)
+    assert "noticed at 5 mm" not in text
+    assert "noticed at 5 deg, survives 10 deg, rounds 1, 2, 3, 4 and 5" in text
+    assert "notices 1 mm, sensor noise 2 mm; passes only by its seed" in text
+    assert "the robot refuses every magnitude that was tried" in text
+    assert "210 runs of 210 that whole ladders would take (100%), and 5 of magnitude 0" in text
+
+
+def test_steps_have_exact_intervals_and_who_notices(thresholds: Thresholds) -> None:
+    text = text_of(thresholds, steps=True)
+    assert re.search(r"10 mm\s+2 of 5\s+5–86 %\s+check 2", text)
+    assert re.search(r"50 mm\s+5 of 5\s+47–100 %\s+check 3, exception 2", text)
+    assert re.search(r"50 mm\s+–\s+–\s+refused 5", text)
+
+
+def test_ladders_without_violations_have_a_careful_bound(tmp_path: Path) -> None:
+    sites = [
+        samples.site("mission.py", line, "arm.move_by", Role.PROGRAM, occurrence=line) for line in range(1, 9)
+    ]
+    found = thresholds_of(journals.results(tmp_path, *(Rungs(["SSSCCCC"], site=site) for site in sites)))
+    assert found.most_violated == pytest.approx(3 / 8)
+    assert "None of 8 ladders is out of order: fewer than 38 %" in text_of(found)
+
+
+def test_what_did_better_than_the_original_is_told(tmp_path: Path) -> None:
+    figure = Figure("cell:Cell.cycle_time", 12.5, 11.25, "less", samples.TEST)
+    found = thresholds_of(journals.results(tmp_path, Rungs(["SSSCCCC"], figures={(0, 2.0): figure})))
+    assert "Cell.cycle_time 11.25 instead of 12.5 (2 mm, round 1)" in text_of(found)
+
+
+@pytest.mark.parametrize("sort", SORTS)
+def test_each_order_has_all_ladders(tmp_path: Path, sort: str) -> None:
+    found = thresholds_of(journals.results(tmp_path, *LADDERS, vocabulary=NOISY), sort)
+    assert len(found.ladders) == len(LADDERS) - 1
+    assert sort in _SORTS
+
+
+def test_json_holds_every_ladder_and_round(thresholds: Thresholds) -> None:
+    data = json.loads(dumps(thresholds_data(thresholds)))
+    by_name = {(one["name"], one["unit"]): one for one in data["ladders"]}
+    first = by_name["arm.move_by dx +", "mm"]
+    assert (first["none_up_to"], first["half_from"], first["all_from"]) == (5.0, 20.0, 20.0)
+    assert first["median"] == {"above": 5.0, "at_most": 20.0, "level": 0.9375}
+    assert [one["noticed"] for one in first["rounds"]] == [20.0, 20.0, 20.0, 10.0, 10.0]
+    refused = by_name["arm.move_by dx −", "mm"]
+    assert (refused["all_from"], refused["refused_from"]) == (None, 50.0)
+    assert by_name["arm.move_by dx −", "deg"]["judged"] is False
+    assert data["floors"][-1]["below_noise"] is True
+
+
+def test_the_document_tells_of_every_key(thresholds: Thresholds, tmp_path: Path) -> None:
+    document = (Path(__file__).parents[3] / "docs" / "thresholds.md").read_text(encoding="utf-8")
+    results = journals.results(tmp_path / "again", *LADDERS, vocabulary=NOISY)
+    for data in (thresholds_data(thresholds), compared_data(compare(results, results))):
+        missing = [key for key in keys_of(json.loads(dumps(data))) if f"`{key}`" not in document]
+        assert missing == []
+
+
+def keys_of(data: object) -> set[str]:
+    if isinstance(data, dict):
+        return {*data, *(key for value in data.values() for key in keys_of(value))}
+    return {key for value in data for key in keys_of(value)} if isinstance(data, list) else set()
+
+
+def test_a_bar_reaches_from_where_none_to_where_all_notice(thresholds: Thresholds) -> None:
+    picture = picture_of(thresholds)
+    assert picture.width == 1200
+    ElementTree.fromstring(svg(picture, "mutabot thresholds"))
+    words = [one.text for one in picture.words]
+    assert "5 mm to 20 mm" in words
+    assert "noticed by a check" in words
+    assert "the robot refuses" in words
+    assert all(0 <= one.x <= picture.width and 0 <= one.y <= picture.height for one in picture.words)
+    assert all(one.width >= 0 and one.x + one.width <= picture.width for one in picture.boxes)
+
+
+def test_names_of_any_length_and_many_ladders_stay_in_the_picture(tmp_path: Path) -> None:
+    file = f"{'folder/' * 12}<mission & more>.py"
+    sites = [samples.site(file, line, "arm.move_by", Role.PROGRAM, occurrence=line) for line in range(1, 31)]
+    both = [Rungs(["SSSCCCC"], site=site, direction=sign) for site in sites for sign in "+-"]
+    picture = picture_of(thresholds_of(journals.results(tmp_path, *both)))
+    ElementTree.fromstring(svg(picture))
+    assert sum("arm.move_by" in one.text for one in picture.words) == 60
+    assert max(len(one.text) for one in picture.words if "arm.move_by" in one.text) <= 60
+
+
+def test_suggested_demands_are_toml_that_the_campaign_meets(thresholds: Thresholds) -> None:
+    text = suggested_toml(thresholds.ladders, table="tool.mutabot.demand")
+    found = tomllib.loads(text)["tool"]["mutabot"]["demand"]
+    assert [(one["site"], one["quantity"], one["notice"]) for one in found] == [
+        (samples.MOVE.id, "dx", "50 mm"),
+        (samples.BACK.id, "dx", "20 deg"),
+        (samples.READ.id, ".x", "1 mm"),
+    ]
+
+
+def test_where_no_demand_is_met_a_comment_says_so(tmp_path: Path) -> None:
+    found = thresholds_of(journals.results(tmp_path, Rungs(["SSSSSSS"])))
+    text = suggested_toml(found.ladders, table="demand")
+    assert "# no demand" in text
+    assert tomllib.loads(text) == {}
+
+
+def test_a_comparison_tells_before_and_now(tmp_path: Path) -> None:
+    old = journals.results(tmp_path / "old", Rungs(["SSSSCCC"] * 2), Rungs(["SSSSCCC"] * 2, direction="-"))
+    new = journals.results(tmp_path / "new", Rungs(["SSSCCCC"] * 2), Rungs(["SSSSCCC"] * 2, direction="-"))
+    out = io.StringIO()
+    print_compared(make_console(out, width=80), compare(old, new))
+    assert "1 improved, 1 unchanged" in out.getvalue()
+    assert "before  noticed from 20 mm" in out.getvalue()
+    assert "now     noticed from 10 mm" in out.getvalue()
+    assert "0.50 ± " in out.getvalue()
