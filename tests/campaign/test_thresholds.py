@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from mutabot.model.ladder import Bracket, bracket_of, seen
 
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
-from mutabot.model.ladder import Bracket, bracket_of, seen
 from tests.campaign.project import Quiet, request_for, write_project
 
 ROBOT = """
@@ -120,3 +120,25 @@ def test_magnitude_and_verdict_agree_in_both_engines(tmp_path: Path) -> None:
             ends.append({(one.mutant, one.round): one.verdict for one in journal.outcomes()})
     assert ends[0] == ends[1]
     assert ends[0]
+
+
+def test_a_demanded_magnitude_joins_its_ladders_and_is_run_in_every_round(tmp_path: Path) -> None:
+    configuration = """
+    program = ["mission.py"]
+    vocabulary = ["robot.toml"]
+    pytest_args = ["-o", "pythonpath=."]
+    [[demand]]
+    quantity = "dx"
+    notice = "12 mm"
+    """
+    folder = write_project(
+        tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY, configuration=configuration
+    )
+    with Journal.open(run_campaign(request_for(folder, rounds=2), Quiet())) as journal:
+        graded = [one for one in journal.mutants() if one.ladder]
+        assert {one.ladder.rpartition(":")[2] for one in graded} == {"offset=+", "offset=-"}
+        demanded = {one.id for one in graded if one.magnitude == 12.0}
+        ends = {(one.mutant, one.round): seen(one) for one in journal.outcomes() if one.mutant in demanded}
+    assert {name.rpartition("=")[2] for name in demanded} == {"+12mm", "-12mm"}
+    assert set(ends) == {(name, round) for name in demanded for round in range(2)}
+    assert {str(one) for one in ends.values()} == {"missed"}  # the test takes 15 mm

@@ -19,11 +19,11 @@ NAMES = {*operators.names(), *classical.names(), *CONTROLS}
 #: words that name something else as well, where they do: keys of vocabularies, an option of the command line
 OTHERWISE = {
     "opposite": {"proposal", "vocabulary"},
-    "noise": {"vocabulary"},
+    "noise": {"vocabulary", "report/thresholds"},
     "skip": {"cli"},
     "drop": {"proposal"},
     "delay": {"proposal"},
-    "offset": {"proposal"},
+    "offset": {"proposal", "model"},  # what a demand means that names none
 }
 #: what an id ends with, and what a selection may be made of
 AT_THE_END = re.compile(r"^(?:.*:)?(?P<name>[\w-]+)(?:=.*)?$", re.DOTALL)

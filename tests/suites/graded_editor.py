@@ -44,6 +44,8 @@ def edit(editor: CallEditor, mutant: Mapping[str, Any]) -> Edit:
 
 def _size(mutant: Mapping[str, Any], quantity: Mapping[str, Any]) -> float:
     unit = mutant["unit"]
+    if mutant["operator"] == "drift":
+        unit = unit.removesuffix("/s") or None
     if unit is None:
         return float(mutant["magnitude"])
     if unit not in SIZES:

@@ -10,14 +10,13 @@ from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.second_look import Looker
-from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.plan.second_order import pair
 from mutabot.errors import SelectionError
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import Replayed
 from mutabot.model import Mutant
 
-from .beginning import open_executor
+from .beginning import open_executor, plan_of
 from .campaign import Campaign
 from .request import Progress, Request
 
@@ -59,10 +58,7 @@ def as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant
     """The mutant in the program as it is now: edits elsewhere move it."""
     if Place.of(mutant) in baseline.hits:
         return mutant
-    planned = {
-        one.id: one
-        for one in make_plan(baseline, request.vocabulary, request.families, request.moments).mutants
-    }
+    planned = {one.id: one for one in plan_of(request, baseline).mutants}
     gone = next((one.id for one in mutant.singles if one.id not in planned), None)
     if gone is not None:
         problem = f"the program has changed: no test reaches {gone} any more"

@@ -12,6 +12,7 @@ from mutabot.campaign.baseline.ranges import note_ranges
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import refuse_unfit
 from mutabot.campaign.engines.choice import first_engine, repetitions_for
+from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.plan.sampling import draw
 from mutabot.campaign.plan.second_order import pairs
@@ -63,6 +64,17 @@ def begin(
     refuse_unfit(baseline, request.vocabulary)
     note_ranges(baseline, request.vocabulary, progress)
     return Campaign(request, baseline, executor, progress, evidence), results
+
+
+def plan_of(request: Request, baseline: Baseline) -> Plan:
+    """All mutants that a request may be about."""
+    return make_plan(
+        baseline,
+        request.vocabulary,
+        request.families,
+        request.moments,
+        request.configuration.demands if request.order == 1 else (),
+    )
 
 
 def selected(campaign: Campaign, plan: Plan) -> Plan:

@@ -8,13 +8,12 @@ from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.engines.choice import try_controls
 from mutabot.campaign.engines.engine import Remainder
-from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.plan.planned import Plan
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.named import MAIN
 from mutabot.vocabulary.load import shipped
 
-from .beginning import at_it, begin, selected
+from .beginning import at_it, begin, plan_of, selected
 from .campaign import Campaign
 from .request import CheckReport, Progress, Request
 
@@ -23,7 +22,7 @@ def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running mutants."""
     with at_it(request, progress) as opened:
         campaign, _ = begin(request, opened, progress)
-        plan = make_plan(campaign.baseline, request.vocabulary, request.families, request.moments)
+        plan = plan_of(request, campaign.baseline)
         mutants = selected(campaign, plan).mutants
         controls, remainder = try_controls(campaign, mutants)
     return _report(campaign, plan, mutants, controls, remainder)

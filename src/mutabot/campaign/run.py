@@ -18,9 +18,9 @@ from mutabot.campaign.baseline.program_text import family_of
 from mutabot.campaign.engines.choice import first_engine, run_mutants
 from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
+from mutabot.campaign.plan.demanded import demanded_of
 from mutabot.campaign.plan.earlier import carry, note_outdated
 from mutabot.campaign.plan.ladders import apart
-from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.plan.selection import numbered
 from mutabot.campaign.plan.told import drawing, reaching, summaries
@@ -37,7 +37,7 @@ from mutabot.journal.journal import Journal
 from mutabot.journal.records import DRAWING, DRAWS, OPERATORS, REACHING
 from mutabot.model import LeftOut, Mutant
 
-from .beginning import at_it, begin, selected
+from .beginning import at_it, begin, plan_of, selected
 from .campaign import Campaign
 from .evidence import Evidence, recorded, without_recording
 from .request import Progress, Request
@@ -88,7 +88,7 @@ def _run(
     with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress, evidence)
     baseline = campaign.baseline
-    whole = make_plan(baseline, request.vocabulary, request.families, request.moments)
+    whole = plan_of(request, baseline)
     plan = selected(campaign, whole)
     _write_beginning(journal, request, results, plan, whole)
     if evidence is not None:
@@ -124,7 +124,9 @@ def _run_all(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tuple[
     """Every mutant in all rounds, but of ladders what it takes to find their thresholds."""
     alone, ladders = apart(plan.mutants)
     run_mutants(campaign, alone, sink, done)
-    run_ladders(campaign, ladders, sink, done)
+    request = campaign.request
+    always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
+    run_ladders(campaign, ladders, sink, done, always)
 
 
 def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
@@ -187,9 +189,7 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
     """Baseline and plan, without running a mutant."""
     with at_it(request, progress) as opened:
         campaign, _ = begin(request, opened, progress)
-    plan = selected(
-        campaign, make_plan(campaign.baseline, request.vocabulary, request.families, request.moments)
-    )
+    plan = selected(campaign, plan_of(request, campaign.baseline))
     return plan.mutants, plan.left_out
 
 

@@ -183,15 +183,15 @@ def _replayed(
 
 
 def _identities_by_selection(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
-    """One identity control per selection of tests that mutants are judged by."""
-    chosen: dict[tuple[bool, tuple[str, ...]], Control] = {}
+    """One identity control per selection of tests that mutants are judged by, for ladders in each round."""
+    chosen: dict[tuple[bool, tuple[str, ...], int], Control] = {}
     for round in range(len(baseline.tests)):
         for mutant in mutants:
             place = Place.of(mutant.singles[0])
             tests = baseline.judges(round, mutant)
             if tests:
                 control = Control(IDENTITY, place, round, tests, _subject(tests))
-                chosen.setdefault((place.is_text, tests), control)
+                chosen.setdefault((place.is_text, tests, round if mutant.ladder else 0), control)
     return list(chosen.values())
 
 

@@ -13,7 +13,7 @@ from mutabot.campaign.baseline.answers import NoAnswerError, idle_of
 from mutabot.campaign.baseline.baseline import Baseline, Hit
 from mutabot.campaign.baseline.places import Place
 from mutabot.errors import OperatorError
-from mutabot.families import USUAL
+from mutabot.families import GRADED, USUAL
 from mutabot.model import (
     Call,
     Kind,
@@ -27,11 +27,13 @@ from mutabot.model import (
     Site,
     Vocabulary,
 )
+from mutabot.model.graded.demand import Demand
 from mutabot.model.values.quantity import is_reading_of
 from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.operator import with_operation
 from mutabot.operators.passage import Passage, rehearse
 
+from .demanded import with_demanded
 from .moments import at_moments
 from .planned import Plan
 
@@ -44,15 +46,19 @@ def make_plan(
     vocabulary: Vocabulary,
     families: Collection[str] = USUAL,
     wanted: Sequence[Moment | None] = (None,),
+    demands: Sequence[Demand] = (),
 ) -> Plan:
     """All mutants of these families: those of calls first, so that they keep their numbers.
 
-    ``wanted``: at which of their calls mutants of calls act, a mutant each; None for every call.
+    ``wanted``: at which of their calls mutants of calls act, a mutant each; None for every call. ``demands``
+    bring the ladders of which they speak, whatever the families.
     """
-    operators = [rule for rule in load_all() if rule.family in families]
+    asked = {*families, GRADED} if demands else families
+    operators = [rule for rule in load_all() if rule.family in asked]
     plan = _plan_of_calls(baseline, vocabulary, operators)
     if tuple(wanted) != (None,):
         plan = at_moments(plan, baseline, vocabulary, wanted)
+    plan = with_demanded(plan, demands, vocabulary, tuple(families))
     first = len(plan.mutants)
     planted = baseline.program.planted.values()
     of_text = [replace(one.mutant, number=first + one.mutant.number) for one in planted]

@@ -14,6 +14,7 @@ from functools import partial
 from typing import Any
 
 from mutabot.errors import PathError
+from mutabot.inside.readings.program_time import ProgramTime
 from mutabot.inside.targets.means import Means
 from mutabot.inside.targets.names import resolve
 from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply
@@ -24,7 +25,6 @@ from mutabot.model.values.quantity import Value, is_reading_of, same
 from .answers import snapshot
 from .arguments import Arguments, signature_for
 from .mishaps import why_not
-from .passing_time import ProgramTime
 from .writer import Message, Writer
 
 

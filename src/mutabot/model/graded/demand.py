@@ -57,7 +57,9 @@ class Demand:
         """The demanded magnitude in another unit; None if that measures something else."""
         if unit is None or self.unit is None:
             return self.notice if unit == self.unit else None
-        if dimension_of(unit) is not dimension_of(self.unit):
+        if unit == self.unit:
+            return self.notice
+        if not {unit, self.unit} <= UNITS.keys() or dimension_of(unit) is not dimension_of(self.unit):
             return None
         return _rounded(convert_difference(self.notice, self.unit, unit))
 

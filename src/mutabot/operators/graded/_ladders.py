@@ -99,7 +99,7 @@ def per_second(quantity: Quantity) -> Ladder | None:
     own = own_ladder(quantity)
     if own is None:
         return None
-    return Ladder(own.unit, tuple(float(f"{step * _PER_SECOND:.6g}") for step in own.steps))
+    return Ladder(f"{own.unit or ''}/s", tuple(float(f"{step * _PER_SECOND:.6g}") for step in own.steps))
 
 
 def _told(quantity: Quantity) -> Ladder | None:

@@ -63,9 +63,14 @@ class GradedOperator(Operator):
     def size_of(self, subject: Subject) -> float:
         """The magnitude in the quantity's unit, with its sign."""
         quantity, size = quantity_of(subject), subject.magnitude or 0.0
-        if subject.unit is not None and subject.unit != quantity.unit:
-            size = convert_difference(size, subject.unit, quantity.unit or "rad")
+        unit = self.unit_of(subject)
+        if unit is not None and unit != quantity.unit:
+            size = convert_difference(size, unit, quantity.unit or "rad")
         return -size if subject.direction.endswith("-") else size
+
+    def unit_of(self, subject: Subject) -> str | None:
+        """The unit of what is added to the value."""
+        return subject.unit
 
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
         whole = Subject(operation, pattern)

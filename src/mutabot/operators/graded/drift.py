@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.operators.graded._ladders import Ladder, per_second
-from mutabot.operators.graded._shape import GradedOperator, Passed, signed
+from mutabot.operators.graded._shape import GradedOperator, Passed
 from mutabot.operators.operator import Example, Subject
 
 _GAP = Quantity("result", Path(), Kind.DISTANCE, unit="m")
@@ -22,7 +22,7 @@ class Drift(GradedOperator):
     asks_time = True
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
-            Subject(_FEEL, None, _GAP, "+2mm", 2.0, "mm", "+"),
+            Subject(_FEEL, None, _GAP, "+2mm/s", 2.0, "mm/s", "+"),
             replied={"result": 0.3},
             performed=({},),
             received={"result": 0.32},
@@ -30,7 +30,7 @@ class Drift(GradedOperator):
             note="2 mm per second: after 10 s it reads 20 mm too much",
         ),
         Example(
-            Subject(_FEEL, None, _GAP, "-2mm", 2.0, "mm", "-"),
+            Subject(_FEEL, None, _GAP, "-2mm/s", 2.0, "mm/s", "-"),
             replied={"result": 0.3},
             away="no time has passed yet",
         ),
@@ -42,5 +42,5 @@ class Drift(GradedOperator):
     def number(self, size: float, value: float, passed: Passed) -> float:
         return value + size * passed.time()
 
-    def fault(self, subject: Subject) -> str:
-        return f"{signed(subject)} per second"
+    def unit_of(self, subject: Subject) -> str | None:
+        return (subject.unit or "").removesuffix("/s") or None
