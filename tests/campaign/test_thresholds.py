@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from mutabot.model.ladder import Bracket, bracket_of, seen
+from mutabot.model.graded.ladder import Bracket, bracket_of, seen
 
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal

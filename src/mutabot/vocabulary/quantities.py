@@ -193,6 +193,7 @@ def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | No
         clip=(table.clip[0], table.clip[1]) if table.clip is not None else None,
         ladder=tuple(steps) if steps is not None else None,
         ladder_unit=unit,
+        repeatability=table.repeatability,
         missing=table.missing,
         tcp=table.tcp,
     )

@@ -221,12 +221,14 @@ def _clip(table: QuantityTable, written: bool) -> Iterator[Fault]:
 
 
 def _noise(table: QuantityTable) -> Iterator[Fault]:
-    if table.noise is None:
-        return
-    if table.kind not in MEASURED & READ:
-        yield Fault("noise", f"{_a(table.kind)} has no noise; only a measured reading has")
-    elif table.noise <= 0:
-        yield Fault("noise", f"must be more than 0 (a standard deviation), got {table.noise}")
+    for key in ("noise", "repeatability"):
+        deviation = getattr(table, key)
+        if deviation is None:
+            continue
+        if table.kind not in MEASURED & READ:
+            yield Fault(key, f"{_a(table.kind)} has no {key}; only a measured reading has")
+        elif deviation <= 0:
+            yield Fault(key, f"must be more than 0 (a standard deviation), got {deviation}")
 
 
 def _whole(table: QuantityTable) -> Iterator[Fault]:

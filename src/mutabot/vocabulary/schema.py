@@ -40,6 +40,7 @@ class QuantityTable(Table):
     order: str | None = None
     relative: bool = False
     ladder: Annotated[list[float], Field(min_length=2)] | LadderTable | None = None
+    repeatability: float | None = None
     missing: str | None = None
     tcp: float | None = None
 
@@ -63,6 +64,7 @@ class PatternTable(Table):
     noise: Any = None
     relative: Any = None
     ladder: Any = None
+    repeatability: Any = None
     missing: Any = None
     tcp: Any = None
 

@@ -14,7 +14,9 @@ from mutabot.model import Operation, Vocabulary
 
 #: a reading whose sensor has a noise of 2 mm
 NOISY = Vocabulary(
-    operations=(Operation("tracker:box_position", result=(replace(samples.X, noise=0.002),), command=False),)
+    operations=(
+        Operation("tracker:box_position", result=(replace(samples.X, repeatability=0.002),), command=False),
+    )
 )
 
 

@@ -109,12 +109,12 @@ def floors_of(ladders: Iterable[Ladder]) -> Iterator[Floor]:
 
 def noise_of(quantity: Quantity | None, unit: str | None) -> float | None:
     """The standard deviation of a reading, in this unit; None if nothing says."""
-    if quantity is None or quantity.noise is None or quantity.path.root is not None:
+    if quantity is None or quantity.repeatability is None or quantity.path.root is not None:
         return None
     if unit == quantity.unit or unit not in UNITS or quantity.unit not in UNITS:
-        return quantity.noise if unit == quantity.unit else None
+        return quantity.repeatability if unit == quantity.unit else None
     try:
-        return float(f"{convert_difference(quantity.noise, quantity.unit, unit):.12g}")
+        return float(f"{convert_difference(quantity.repeatability, quantity.unit, unit):.12g}")
     except ValueError:  # a magnitude of another kind, such as a delay
         return None
 
