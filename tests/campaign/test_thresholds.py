@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from mutabot.model.graded.ladder import Bracket, bracket_of, seen
 
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
+from mutabot.model.graded.ladder import Bracket, bracket_of, seen
 from tests.campaign.project import Quiet, request_for, write_project
 
 ROBOT = """
