@@ -97,6 +97,11 @@ class Example:
         raises: what the program gets instead of an answer; None if it gets one.
         away: why the operator changes nothing here; empty if it does act.
         note: one line for the documentation.
+        previous: values of the program's call of this operation before this one, wherever it stands.
+        waited: seconds of the program's time that pass meanwhile.
+        afterwards: values of each call that is made right after the program's next command.
+        fails: the exception (``module:Name``) that the program gets in the stead of the robot's answer.
+        refused: whether the robot refuses the call.
     """
 
     subject: Subject
@@ -112,6 +117,11 @@ class Example:
     lost: bool = False
     late: float = 0.0
     then: tuple[Mapping[str, Value], ...] = ()
+    previous: Mapping[str, Value] | None = None
+    waited: float = 0.0
+    afterwards: tuple[Mapping[str, Any], ...] = ()
+    fails: str = ""
+    refused: bool = False
 
 
 class Operator(Rule):
@@ -129,6 +139,8 @@ class Operator(Rule):
         draws: whether it adds a number that is drawn anew for each round, which reports then show.
         remembers: whether what it does to a call depends on earlier ones of the same test. It is then given
             copies, which the program cannot change afterwards, and one middleware for all calls of a test.
+        copies: whether it is to be given copies if it remembers; one that remembers nothing but values of its
+            own making says that it is not.
         asks_time: whether it asks what time it is in the simulation (``call.time``); it is then used only
             where the vocabulary names a clock.
         asks_wait: whether it lets the program's time pass (``call.wait``); it is then used only where the
@@ -145,6 +157,7 @@ class Operator(Rule):
     asks_neighbours: ClassVar[bool] = False
     does_nothing: ClassVar[bool] = False
     remembers: ClassVar[bool] = False
+    copies: ClassVar[bool] = True
     draws: ClassVar[bool] = False
     asks_time: ClassVar[bool] = False
     asks_wait: ClassVar[bool] = False

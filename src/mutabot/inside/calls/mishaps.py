@@ -1,4 +1,4 @@
-"""What befalls a call beside other values: it is late, cancelled, or its process dies of it."""
+"""What befalls a call beside other values: it is late, cancelled, fails, or its process dies of it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from importlib import import_module
 from typing import Any, NoReturn
 
 from mutabot.inside.targets.delivery import Delivery
 from mutabot.inside.targets.means import Means
+from mutabot.inside.targets.names import resolve
 from mutabot.model import Call, Mishap, Reply
 from mutabot.model.named import ANSWERED, COMING
 
@@ -23,6 +25,7 @@ from .keeping import copied
 RESTARTED = "MUTABOT_RESTARTED"
 _NO_SECOND = "who waits for one message hears no second"
 _FOLDER = os.getcwd()
+_SAYS = "no reading (planted by mutabot)"
 
 
 def why_not(means: Means | None, mishap: Mishap) -> str:
@@ -104,6 +107,27 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
         return await means.lost() if reply.lost and means.lost is not None else got
 
     return handed
+
+
+def missing(name: str) -> BaseException:
+    """What the program gets in the stead of a reading: an exception of this class (``module:Name``).
+
+    Raises LookupError if there is none, or if it is no exception.
+    """
+    module, _, qualname = name.partition(":")
+    try:
+        kind: Any = resolve(import_module(module), qualname)[2]
+    except (ImportError, LookupError) as error:
+        raise LookupError(f"missing = {name!r} names nothing: {error}") from error
+    if not (isinstance(kind, type) and issubclass(kind, BaseException)):
+        raise LookupError(f"missing = {name!r} is no exception")
+    for given in ((_SAYS,), ()):
+        try:
+            return kind(*given)
+        except TypeError:  # it wants other arguments
+            continue
+    bare: BaseException = kind.__new__(kind)
+    return bare
 
 
 def _means(call: Call) -> Means:
