@@ -27,9 +27,9 @@ from suites.agreement import ENGINES, Found, compare, corpus  # noqa: E402
 CLASSICAL = 4
 #: example to the number of mutants of each family; what is not named runs whole
 EXAMPLES = {
-    "paper": {"classical": 40},
-    "scales": {"classical": 15, "text": 45},
-    "pick_and_place": {"robot": 40, "classical": 40},
+    "paper": {"classical": 40, "catalogue": 20},
+    "scales": {"classical": 15, "text": 45, "catalogue": 20},
+    "pick_and_place": {"robot": 40, "classical": 40, "catalogue": 60},
     "ros1": {"robot": 25, "middleware": 35, "classical": 10},
     "ros2": {"robot": 25, "middleware": 35, "classical": 10},
 }

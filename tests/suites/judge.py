@@ -27,7 +27,7 @@ from .message_editor import edits_of, is_named, noting_refusals
 
 HERE = Path(__file__).resolve().parent
 #: what stands beside a copy, with an underscore before its name
-PLANTED = (HERE / "planted.py", HERE / "planted_messages.py")
+PLANTED = (HERE / "planted.py", HERE / "planted_messages.py", HERE / "planted_catalogue.py")
 IGNORED = shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache", "judge.toml")
 SEEDS = """
 import json, os, pytest
@@ -181,7 +181,7 @@ class Judge:
         for file in PLANTED:
             shutil.copy(file, place / "planted" / f"_{file.name}")
         (place / "planted" / "_judge_seeds.py").write_text(SEEDS)
-        for edit in sorted(edits, key=lambda edit: edit.start, reverse=True):
+        for edit in sorted(edits, key=lambda edit: (edit.file, edit.start), reverse=True):
             file = copy / edit.file
             file.write_bytes(edit.applied(file.read_bytes()))
         return copy

@@ -145,6 +145,7 @@ class Operator(Rule):
             where the vocabulary names a clock.
         asks_wait: whether it lets the program's time pass (``call.wait``); it is then used only where the
             vocabulary says how (``wait``), or a middleware does.
+        needs_error: whether it acts only on calls that raise: it is left out where none did in the baseline.
         is_raced: whether it leaves to chance what the program's processes still get done, so that equal runs
             may end differently: survivors are run again as well as kills.
         is_for_oracle: whether readings that the tests' own checks take are a place for it, too.
@@ -161,6 +162,7 @@ class Operator(Rule):
     draws: ClassVar[bool] = False
     asks_time: ClassVar[bool] = False
     asks_wait: ClassVar[bool] = False
+    needs_error: ClassVar[bool] = False
     is_raced: ClassVar[bool] = False
     is_for_oracle: ClassVar[bool] = True
 

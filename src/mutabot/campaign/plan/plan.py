@@ -67,6 +67,8 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             mutant = replace(
                 mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
             )
+            if rule.needs_error and not baseline.answers[place].has_raised:
+                reason = "no call raises in the baseline"
             if rule.asks_idle and reason is None:
                 try:
                     mutant = replace(

@@ -25,9 +25,11 @@ class UnreportedRefusal(CommandFault):
     )
     rank = 338
     asks_idle = True
+    needs_error = True
     stands_for = f"Errors that are swallowed on their way: {COMMANDS}."
     where = (
-        "commands whose answer to doing nothing is known; it acts where the robot raises one of the refusals"
+        "commands whose answer to doing nothing is known, where the tests make the robot raise one of"
+        " its refusals"
     )
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(_MOVE), {"dx": 9.0}, refused=True, performed=({"dx": 9.0},), received={}),
