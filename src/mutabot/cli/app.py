@@ -17,6 +17,7 @@ from mutabot.errors import MutabotError
 from mutabot.exit_codes import ExitCode
 
 from . import campaign, compare, init, replay, report, results, suggest
+from .lists import operators
 from .options import Version
 
 _SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
@@ -45,6 +46,7 @@ def options(
 app.command(rich_help_panel=_SETUP)(init.init)
 app.command(rich_help_panel=_SETUP)(campaign.check)
 app.command("list", rich_help_panel=_SETUP)(campaign.list_)
+app.command(rich_help_panel=_SETUP)(operators.operators)
 app.command(rich_help_panel=_RUN)(campaign.run)
 app.command(rich_help_panel=_RUN)(compare.compare)
 app.command(rich_help_panel=_RUN)(replay.replay)

@@ -20,7 +20,7 @@ class ForceOverride(Override):
     name = "force-override"
     summary = "A force or torque is 50 % or 200 % of what is commanded, within its range."
     rank = 351
-    stands_for = f"Wrong parameters: {PARAMETERS}."
+    stands_for = f"A wrong parameter: {PARAMETERS}."
     where = "written quantities of kind force or torque"
     kinds = frozenset({Kind.FORCE, Kind.TORQUE})
     examples: ClassVar[tuple[Example, ...]] = (

@@ -22,7 +22,7 @@ class SilentLimit(ValueFault):
     name = "silent-limit"
     summary = "A commanded value is limited to the middle 80 % of its range, without notice."
     rank = 355
-    stands_for = f"Wrong parameters: {PARAMETERS}."
+    stands_for = f"A wrong parameter: {PARAMETERS}."
     where = "written numbers with a range or clip"
     of_read = False
     examples: ClassVar[tuple[Example, ...]] = (

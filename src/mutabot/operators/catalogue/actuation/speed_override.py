@@ -20,7 +20,7 @@ class SpeedOverride(Override):
     name = "speed-override"
     summary = "A speed or acceleration is 50 % or 200 % of what is commanded, within its range."
     rank = 350
-    stands_for = f"Wrong parameters: {PARAMETERS}."
+    stands_for = f"A wrong parameter: {PARAMETERS}."
     where = "written quantities of kind speed, acceleration or jerk"
     kinds = frozenset({Kind.SPEED, Kind.ACCELERATION, Kind.JERK})
     examples: ClassVar[tuple[Example, ...]] = (

@@ -21,7 +21,7 @@ class WeakGrip(Override):
     name = "weak-grip"
     summary = "A gripper has 30 % of the force that it is told to have, or the least of its range."
     rank = 352
-    stands_for = f"Wrong parameters: {PARAMETERS}."
+    stands_for = f"A wrong parameter: {PARAMETERS}."
     where = "written quantities of kind force, in calls that command no motion"
     variants = ("x0.3",)
     kinds = frozenset({Kind.FORCE})

@@ -21,7 +21,7 @@ class WrongPayload(ValueFault):
     name = "wrong-payload"
     summary = "The payload that is set is none, or twice as heavy as it is."
     rank = 353
-    stands_for = f"Wrong parameters: {PARAMETERS}."
+    stands_for = f"A wrong parameter: {PARAMETERS}."
     where = "written quantities of kind mass"
     of_read = False
     variants = tuple(_FACTORS)

@@ -22,7 +22,7 @@ class AxisSwap(Exchange):
     name = "axis-swap"
     summary = "Two components of a motion are exchanged: what is meant along x goes along y."
     rank = 310
-    stands_for = f"Wrong frames and axes: {FRAMES}."
+    stands_for = f"A wrong axis: {FRAMES}."
     where = "commands that write two of the axes x, y, z of one translation or rotation"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

@@ -27,7 +27,7 @@ class DoubleCommand(CommandFault):
     rank = 335
     remembers = True
     copies = False
-    stands_for = f"Missing or duplicated commands: {COMMANDS}."
+    stands_for = f"A command that is lost, or comes twice: {COMMANDS}."
     where = "any command"
     variants = tuple(_SHARES)
     examples: ClassVar[tuple[Example, ...]] = (

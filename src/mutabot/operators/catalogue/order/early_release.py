@@ -24,7 +24,7 @@ class EarlyRelease(CommandFault):
         " go too early. If no command follows, nothing happens."
     )
     rank = 337
-    stands_for = f"Timing and order: {TIMING}."
+    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     where = WHERE
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(GRIP), {"position": 1}, performed=({"position": 1},), afterwards=({"position": 0},)),

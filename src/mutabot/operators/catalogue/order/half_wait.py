@@ -20,7 +20,7 @@ class HalfWait(ValueFault):
     name = "half-wait"
     summary = "A wait is half as long: the next command comes before what was waited for is over."
     rank = 332
-    stands_for = f"Timing and order: {TIMING}."
+    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     where = "written quantities of kind duration"
     of_read = False
     examples: ClassVar[tuple[Example, ...]] = (

@@ -24,7 +24,7 @@ class LateGrip(CommandFault):
     summary = "A gripper command is carried out 0.5 s late, and the program waits for it."
     rank = 336
     asks_wait = True
-    stands_for = f"Timing and order: {TIMING}."
+    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     where = f"{WHERE}; the vocabulary says how time passes: wait"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(GRIP), {"position": 1}, waited=_LATE, performed=({"position": 1},)),

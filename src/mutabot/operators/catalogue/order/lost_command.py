@@ -28,7 +28,7 @@ class LostCommand(CommandFault):
     asks_idle = True
     remembers = True
     copies = False
-    stands_for = f"Missing or duplicated commands: {COMMANDS}."
+    stands_for = f"A command that is lost, or comes twice: {COMMANDS}."
     where = "any command whose answer to doing nothing is known"
     variants = tuple(_SHARES)
     examples: ClassVar[tuple[Example, ...]] = (

@@ -20,7 +20,7 @@ class NoWait(ValueFault):
     name = "no-wait"
     summary = "A wait is left out: the next command comes at once."
     rank = 333
-    stands_for = f"Timing and order: {TIMING}."
+    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     where = "written quantities of kind duration"
     of_read = False
     examples: ClassVar[tuple[Example, ...]] = (

@@ -25,7 +25,7 @@ class PreviousTarget(CommandFault):
         "A motion goes to the target of the one before it again, or as far: a waypoint that is out of date."
     )
     rank = 331
-    stands_for = f"Timing and order: {TIMING}."
+    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     where = "commands that write a translation or rotation, from the second call of their operation on"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

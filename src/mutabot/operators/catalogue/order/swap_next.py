@@ -25,7 +25,7 @@ class SwapNext(CommandFault):
     )
     rank = 330
     asks_idle = True
-    stands_for = f"Timing and order: {TIMING}."
+    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     where = "any command whose answer to doing nothing is known"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(_MOVE), {"dx": 0.1}, performed=(), afterwards=({"dx": 0.1},)),

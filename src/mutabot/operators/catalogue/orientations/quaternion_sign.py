@@ -23,7 +23,7 @@ class QuaternionSign(OtherReading):
         "One part of a quaternion's vector has the wrong sign; the inverse rotation is another operator's."
     )
     rank = 322
-    stands_for = f"Wrong signs: {SIGNS}."
+    stands_for = f"A wrong sign: {SIGNS}."
     where = "written and read quantities of kind quaternion"
     kind = Kind.QUATERNION
     variants = ("x", "y", "z")

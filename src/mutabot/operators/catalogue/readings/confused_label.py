@@ -26,7 +26,7 @@ class ConfusedLabel(ValueFault):
     rank = 347
     remembers = True
     copies = False
-    stands_for = f"Sensors that drop out or are misread: {SENSORS}."
+    stands_for = f"A sensor that drops out or is misread: {SENSORS}."
     where = "read quantities of kind label or flag with two values or more"
     of_written = False
     variants = tuple(_SHARES)

@@ -35,7 +35,7 @@ class Dropout(Operator):
         " does it."
     )
     rank = 340
-    stands_for = f"Sensors that drop out or are misread: {SENSORS}."
+    stands_for = f"A sensor that drops out or is misread: {SENSORS}."
     where = "read quantities whose vocabulary says what a reading gives that is not there: missing"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

@@ -27,7 +27,7 @@ class LateReading(Operator):
     summary = "The program gets a reading 0.5 s after it was taken; the world goes on meanwhile."
     rank = 348
     asks_wait = True
-    stands_for = f"Timing and order: {TIMING}."
+    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     where = "calls that read and command nothing; the vocabulary says how time passes: wait"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

@@ -26,7 +26,7 @@ class OldReading(ValueFault):
     rank = 341
     remembers = True
     copies = False
-    stands_for = f"Sensors that drop out or are misread: {SENSORS}."
+    stands_for = f"A sensor that drops out or is misread: {SENSORS}."
     where = "read quantities, at places that a test calls more than once"
     of_written = False
     variants = tuple(_AGES)

@@ -30,7 +30,7 @@ class SaturatedReading(ValueFault):
     rank = 344
     remembers = True
     copies = False
-    stands_for = f"Sensors that drop out or are misread: {SENSORS}."
+    stands_for = f"A sensor that drops out or is misread: {SENSORS}."
     where = "read numbers on a scale, but for orientations as a whole"
     of_written = False
     examples: ClassVar[tuple[Example, ...]] = (

@@ -24,7 +24,7 @@ class SwappedChannels(Exchange):
     name = "swapped-channels"
     summary = "Two channels of a sensor are exchanged: neighbouring values of one kind that a call reads."
     rank = 345
-    stands_for = f"Sensors that drop out or are misread: {SENSORS}."
+    stands_for = f"A sensor that drops out or is misread: {SENSORS}."
     where = "calls that read two quantities of one kind and unit"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

@@ -22,7 +22,7 @@ class WrongObject(ValueFault):
     name = "wrong-object"
     summary = "A reading is that of another object, camera or channel than the one that is asked for."
     rank = 346
-    stands_for = f"Sensors that drop out or are misread: {SENSORS}."
+    stands_for = f"A sensor that drops out or is misread: {SENSORS}."
     where = "outputs with values that say what a call reads: written beside a result"
     of_read = False
     examples: ClassVar[tuple[Example, ...]] = (

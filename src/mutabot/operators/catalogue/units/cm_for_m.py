@@ -25,7 +25,7 @@ class CentimetreForMetre(OtherUnit):
         " the other way round."
     )
     rank = 300
-    stands_for = f"Units: {UNITS}."
+    stands_for = f"A number in another unit: {UNITS}."
     where = "written and read quantities in m, cm, m/s or cm/s"
     units = both_ways({"m": "cm", "m/s": "cm/s"})
     examples: ClassVar[tuple[Example, ...]] = (

@@ -25,7 +25,7 @@ class DegreeForRadian(OtherUnit):
         " other way round."
     )
     rank = 303
-    stands_for = f"Units: {UNITS}."
+    stands_for = f"A number in another unit: {UNITS}."
     where = (
         "written and read quantities in rad or deg, rotation vectors and Euler angles included, and"
         " their speeds and accelerations"

@@ -22,7 +22,7 @@ class InchForMillimetre(OtherUnit):
     name = "inch-for-mm"
     summary = "A length in millimetres is taken for inches, or is given in inches; and the other way round."
     rank = 302
-    stands_for = f"Units: {UNITS}."
+    stands_for = f"A number in another unit: {UNITS}."
     where = "written and read quantities in mm or inch"
     units = both_ways({"mm": "inch"})
     examples: ClassVar[tuple[Example, ...]] = (

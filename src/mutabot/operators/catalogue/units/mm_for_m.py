@@ -25,7 +25,7 @@ class MillimetreForMetre(OtherUnit):
         " the other way round."
     )
     rank = 301
-    stands_for = f"Units: {UNITS}."
+    stands_for = f"A number in another unit: {UNITS}."
     where = "written and read quantities in m or mm, and their speeds and accelerations"
     units = both_ways({"m": "mm", "m/s": "mm/s", "m/s^2": "mm/s^2"})
     examples: ClassVar[tuple[Example, ...]] = (

@@ -23,7 +23,7 @@ class MillisecondForSecond(OtherUnit):
         " test only times out."
     )
     rank = 304
-    stands_for = f"Units: {UNITS}."
+    stands_for = f"A number in another unit: {UNITS}."
     where = "durations in s"
     units: ClassVar[dict[str, str]] = {"s": "ms"}
     variants = (TAKEN,)
