@@ -118,7 +118,6 @@ class Activation:
             reply = passage.received = mishaps.heard_of(passage.call, reply)
             self.note(passage)
             self._next += [Deferred(door, held(one), passage, is_async) for one in passage.deferred]
-            error = mishaps.missing(reply.error) if reply.error else None
             last = passage.answered[-1] if passage.answered else None
             handed = mishaps.hand_over(passage.call, reply, partial(door.result, passage.call, original=last))
         except BaseException as error:
@@ -130,8 +129,6 @@ class Activation:
                 # neither the robot nor the program: the operator or the vocabulary is at fault
                 self.evidence.failure = f"operator {self.mutant.operator}: {type(error).__name__}: {error}"
             raise
-        if error is not None:
-            raise error
         return await handed(), last
 
     async def catch_up(self, is_async: bool) -> None:

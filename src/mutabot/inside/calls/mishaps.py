@@ -85,8 +85,10 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
     """How the program gets a reply; ``result`` makes its object of one.
 
     Raises LookupError where nobody knows how. What is returned raises what the middleware raises for an
-    answer that never comes.
+    answer that never comes, and what the program gets in the stead of a reading.
     """
+    if reply.error:
+        return partial(_raised, missing(reply.error))
     named = call.operation.named
     comes = named is not None and named.form in COMING
     means = None if reply.comes_as_usual else _means(call)
@@ -128,6 +130,10 @@ def missing(name: str) -> BaseException:
             continue
     bare: BaseException = kind.__new__(kind)
     return bare
+
+
+async def _raised(error: BaseException) -> NoReturn:
+    raise error
 
 
 def _means(call: Call) -> Means:
