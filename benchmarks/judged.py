@@ -25,6 +25,8 @@ from suites.agreement import ENGINES, Found, compare, corpus  # noqa: E402
 
 #: mutants of the program text of each project of the corpus
 CLASSICAL = 4
+#: projects of which all mutants of the catalogue are judged as well
+CATALOGUE = {"fault_catalogue"}
 #: example to the number of mutants of each family; what is not named runs whole
 EXAMPLES = {
     "paper": {"classical": 40, "catalogue": 20},
@@ -66,6 +68,7 @@ def main() -> int:
         if name in projects:
             families = ("robot", "classical") if given.classical else ("robot",)
             only = {"classical": given.classical} if given.classical else None
+            families += ("catalogue",) if name in CATALOGUE else ()
             folder, limit = projects[name], 30.0
         else:
             families, only, limit = ("robot", *sorted({*EXAMPLES[name]} - {"robot"})), EXAMPLES[name], 180.0

@@ -38,12 +38,12 @@ CATALOGUE_HEAD = """\
 
 `--family catalogue` plants what robot programs get wrong beside the published faults: units and frames, order
 and time, readings, actuation. Each operator names the class of bugs that it stands for.
-`mutabot check --family catalogue` names those that your vocabulary and program give nothing to act on, with the
-reason.
+`mutabot check --family catalogue` names those that your vocabulary and program give nothing to act on, with
+the reason.
 
 A waypoint that is skipped is [skip](#skip), a wrong sign of one number is [reverse](#reverse) or
-[negate](#negate), and a header's wrong stamp is [shift-stamp](middleware.md#shift-stamp). A blend radius that is
-lost has no operator: no kind of quantity says that a number is one.
+[negate](#negate), and a header's wrong stamp is [shift-stamp](middleware.md#shift-stamp). A blend radius that
+is lost has no operator: no kind of quantity says that a number is one.
 """
 #: what the groups of the catalogue are called; by the folder of their operators
 GROUPS = {

@@ -59,9 +59,12 @@ class Dropout(Operator):
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
         whole = Subject(operation, pattern)
         comes = operation.named is not None and operation.named.form in COMING
+        raised: set[str] = set()
         for quantity in whole.read:
-            is_told = quantity.missing in (_NONE, _NAN) if comes else quantity.missing is not None
-            if is_told:  # what comes by itself raises nothing
+            if quantity.missing in (_NONE, _NAN):
+                yield replace(whole, quantity=quantity)
+            elif quantity.missing is not None and not comes and quantity.missing not in raised:
+                raised.add(quantity.missing)  # the whole call raises; what comes by itself raises nothing
                 yield replace(whole, quantity=quantity)
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
