@@ -87,6 +87,11 @@ class CatalogueEditor(CallEditor):
         turn = 360.0 if self._quantity()["unit"] == "deg" else 2 * math.pi
         return self._value(f"{CATALOGUE}.added, {turn if self.variant == '+' else -turn!r}")
 
+    def _euler_order(self) -> Edit:
+        if (self._quantity()["order"], self._quantity()["unit"]) != ("xyz", "deg"):
+            raise CannotWriteError("Euler angles in another order or unit")
+        return self._value(f"{CATALOGUE}.turned_along")
+
     def _quaternion_order(self) -> Edit:
         return self._value(f"{CATALOGUE}.moved_scalar, {self._quantity()['order'] == 'wxyz'}")
 

@@ -67,6 +67,21 @@ def moved_scalar(is_scalar_first: bool, numbers: Any) -> Any:
     return _filled(numbers, parts)
 
 
+def turned_along(numbers: Any) -> Any:
+    """Degrees about the axes x, y and z, one after the other, as if the axes turned along."""
+    a, b, c = (math.radians(number) for number in numbers)
+    # of the product of the turns about x, y and z, in this order, what tells its angles about fixed axes
+    first = (math.cos(b) * math.cos(c), -math.cos(b) * math.sin(c), math.sin(b))
+    second = math.sin(a) * math.sin(b) * math.cos(c) + math.cos(a) * math.sin(c)
+    third = (
+        -math.cos(a) * math.sin(b) * math.cos(c) + math.sin(a) * math.sin(c),
+        math.cos(a) * math.sin(b) * math.sin(c) + math.sin(a) * math.cos(c),
+        math.cos(a) * math.cos(b),
+    )
+    angles = (math.atan2(third[1], third[2]), math.asin(-third[0]), math.atan2(second, first[0]))
+    return _filled(numbers, [math.degrees(angle) for angle in angles])
+
+
 def with_signs(signs: Sequence[int], numbers: Any) -> Any:
     """Numbers of which some have the other sign."""
     return _filled(numbers, [sign * number for sign, number in zip(signs, numbers, strict=True)])

@@ -157,6 +157,8 @@ def test_a_reading_that_drops_out_raises_what_the_vocabulary_says(make_stage: Ma
     log, evidence = done(make_stage, lines, "dropout", "result")
     assert log == ["NoImage"]
     assert evidence.acted == 1
+    assert evidence.example is not None
+    assert evidence.example[1].startswith("raises ")
     assert evidence.failure is None
 
 

@@ -231,7 +231,10 @@ class Activation:
         if passage.changed_command:
             after = passage.performed[0].values.get(name) if passage.performed else None
             return (passage.call.values.get(name), after)
-        received = passage.received.values.get(name) if passage.received is not None else None
+        reply = passage.received
+        received = reply.values.get(name) if reply is not None else None
+        if reply is not None and reply.error:
+            received = f"raises {reply.error}"
         return (passage.answered[-1].values.get(name), received)
 
 

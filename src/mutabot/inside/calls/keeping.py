@@ -28,8 +28,8 @@ def held(call: Call) -> Call:
     """
     invocation = call.payload
     bound: Arguments | None = invocation.arguments
-    if bound is None:
-        return call
+    if bound is None or call.operation.named is not None:  # a message is data
+        return kept_call(call)
     roots = {name for name in call.operation.described if name in bound.values}
     args, kwargs = bound.replaced({name: copied(bound.values[name]) for name in roots})
     arguments = Arguments.of(bound.signature, args, kwargs)
