@@ -126,7 +126,10 @@ class Judge:
         place = f"{mutant['file']}|{span['line']}|{span['end_line']}" if mutant["operation"] else "||"
         if not self._refusals_are_ours():
             return replace(found, refused=self._names_a_refusal(found.text, mutant))
-        return replace(found, refused=self._notes(edits, place) > self._notes([], place))
+        before, after = self._notes([], place), self._notes(edits, place)
+        if before and before == after:  # whether it is the mutated call that is refused cannot be counted
+            return Judgement("unwritable", text="the robot refuses the original there as well")
+        return replace(found, refused=after > before)
 
     def _refusals_are_ours(self) -> bool:
         """Whether the project itself defines all exceptions by which its robot refuses."""
