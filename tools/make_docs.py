@@ -178,7 +178,11 @@ def _before(example: Example) -> str:
     if subject.read:
         text = f"{text} reads {_reading(subject, example.replied)}"
     if example.current:
-        text = f"{text}, from {_values(subject.written, example.current)}"
+        others = example.current.keys() - {one.name for one in subject.written}
+        told = [f"{name} = {value:g}" for name, value in example.current.items() if name in others]
+        text = (
+            f"{text}, from {', '.join([*filter(None, [_values(subject.written, example.current)]), *told])}"
+        )
     if example.previous is not None:
         text = f"{text}, after `{_values(subject.written, example.previous)}`"
     if example.refused:

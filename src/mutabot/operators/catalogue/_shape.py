@@ -16,8 +16,6 @@ from mutabot.operators.operator import Operator, Subject
 from mutabot.operators.robot._values import NOT_GIVEN, label, quantity_of, why_away
 
 SAME = "the value would stay the same"
-#: the numbers of the bug studies by which operators say what they stand for
-STUDIES = "of the bugs that studies of ROS and of PX4 and ArduPilot software counted on commands and readings"
 
 
 class Away(Exception):  # noqa: N818  # no error: a reason

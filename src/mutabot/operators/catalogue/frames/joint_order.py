@@ -25,10 +25,7 @@ class JointOrder(Exchange):
     name = "joint-order"
     summary = "The angles of the first and the third joint are exchanged, as where joints are sorted by name."
     rank = 311
-    stands_for = (
-        "Joints in another order than the reader takes them in, as joint states sorted by name (elbow"
-        f" first) are: {FRAMES}."
-    )
+    stands_for = f"Joints in another order, as in joint states that are sorted by name: {FRAMES}."
     where = "written and read angles of the joints j1 and j3"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

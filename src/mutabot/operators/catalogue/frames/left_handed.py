@@ -28,7 +28,7 @@ class LeftHanded(ValuesFault):
     name = "left-handed"
     summary = "A pose is taken as given in a left-handed frame: y and the turns about x and z are negated."
     rank = 312
-    stands_for = f"Frames of the other handedness, as of cameras, game engines and NED against ENU: {FRAMES}."
+    stands_for = f"Frames of the other handedness, as of game engines: {FRAMES}."
     where = "written and read poses with y and an orientation beside it; for y alone it is a wrong sign"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(_MOVE, quantity=_Y), {"y": 0.2, "yaw": 30.0}, performed=({"y": -0.2, "yaw": -30.0},)),
