@@ -25,11 +25,13 @@ from suites.agreement import ENGINES, Found, compare, corpus  # noqa: E402
 
 #: mutants of the program text of each project of the corpus
 CLASSICAL = 4
+#: projects of which all mutants of the catalogue are judged as well
+CATALOGUE = {"fault_catalogue"}
 #: example to the number of mutants of each family; what is not named runs whole
 EXAMPLES = {
-    "paper": {"classical": 40, "graded": 80},
-    "scales": {"classical": 15, "text": 45, "graded": 60},
-    "pick_and_place": {"robot": 40, "graded": 120, "classical": 40},
+    "paper": {"classical": 40, "graded": 80, "catalogue": 20},
+    "scales": {"classical": 15, "text": 45, "graded": 60, "catalogue": 20},
+    "pick_and_place": {"robot": 40, "graded": 120, "classical": 40, "catalogue": 60},
     "ros1": {"robot": 25, "middleware": 35, "classical": 10},
     "ros2": {"robot": 25, "middleware": 35, "classical": 10},
 }
@@ -66,6 +68,7 @@ def main() -> int:
         if name in projects:
             families = ("robot", "classical") if given.classical else ("robot",)
             only = {"classical": given.classical} if given.classical else None
+            families += ("catalogue",) if name in CATALOGUE else ()
             folder, limit = projects[name], 30.0
         else:
             families, only, limit = ("robot", *sorted({*EXAMPLES[name]} - {"robot"})), EXAMPLES[name], 180.0

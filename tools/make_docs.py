@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import configuration_page
-from mutabot.families import MIDDLEWARE
+from mutabot.families import CATALOGUE, MIDDLEWARE
 from mutabot.model import Mishap, Quantity
 from mutabot.model.values.notation import Notation
 from mutabot.operators import Example, Operator, Subject, operator
@@ -30,8 +30,30 @@ An *operator* is a rule that plants one small fault in what the program tells th
 It sees what the [vocabulary](vocabulary.md) describes: operations and quantities, never program text.
 A changed value stays one that the robot takes: where it would leave the range or the values that the
 vocabulary gives, the operator stays away. What befalls messages on their way has a page of its own:
-[middleware](middleware.md).
+[middleware](middleware.md). `mutabot operators` lists all of them.
 """
+
+CATALOGUE_HEAD = """\
+## The catalogue
+
+`--family catalogue` plants what robot programs get wrong beside the published faults: units and frames, order
+and time, readings, actuation. Each operator names the class of bugs that it stands for.
+`mutabot check --family catalogue` names those that your vocabulary and program give nothing to act on, with
+the reason.
+
+A waypoint that is skipped is [skip](#skip), a wrong sign of one number is [reverse](#reverse) or
+[negate](#negate), and a header's wrong stamp is [shift-stamp](middleware.md#shift-stamp). A blend radius that
+is lost has no operator: no kind of quantity says that a number is one.
+"""
+#: what the groups of the catalogue are called; by the folder of their operators
+GROUPS = {
+    "units": "Units",
+    "frames": "Frames, axes, joints and tools",
+    "orientations": "Orientations as a whole",
+    "order": "Order and time",
+    "readings": "Readings",
+    "actuation": "Actuation",
+}
 
 TAIL = """\
 ## Your own operators
@@ -48,6 +70,10 @@ and nothing else has to be edited. What it needs it declares on the class:
 | `asks_idle = True` | `call.idle` is what to answer while the robot does nothing; used only where known |
 | `does_nothing = True` | no call reaches the robot: one that would is an error, never a verdict |
 | `remembers = True` | one middleware for all calls of a test, and copies of what they write and read |
+| `copies = False` | beside `remembers`: no copies, since it copies itself what it remembers |
+| `asks_time = True` | `call.time()` tells the time; used only where the vocabulary has a clock |
+| `asks_wait = True` | `await call.wait(seconds)` lets time pass; used only where the vocabulary says how |
+| `needs_error = True` | it acts on calls that raise: left out where none did in the baseline |
 | `magnitudes(quantity)` | how big the fault is to be: a mutant each, with `subject.magnitude` |
 | `family = "…"` | a family of its own: its mutants are planted where `--family` or `families` names it |
 
@@ -66,8 +92,18 @@ The whole package stands in `tests/plugins/package`.
 def page() -> str:
     """The text of the page."""
     operators = _operators(of_middleware=False)
-    lines = [HEAD, *_overview(operators), *_published(operators)]
-    for each in operators:
+    first = [each for each in operators if each.family != CATALOGUE]
+    groups = {
+        title: [each for each in operators if each.family == CATALOGUE and _group(each) == group]
+        for group, title in GROUPS.items()
+    }
+    lines = [HEAD, *_overview(first), *_published(operators)]
+    for each in first:
+        lines += _section(each)
+    lines.append(CATALOGUE_HEAD)
+    for title, members in groups.items():
+        lines += [f"**{title}**\n", *_overview(members)]
+    for each in (each for members in groups.values() for each in members):
         lines += _section(each)
     return "\n".join([*lines, TAIL])
 
@@ -85,6 +121,11 @@ def page_of_middleware() -> str:
 def _operators(*, of_middleware: bool) -> list[Operator]:
     found = (operator(name) for name in built_in())
     return [one for one in found if (one.family == MIDDLEWARE) is of_middleware]
+
+
+def _group(each: Operator) -> str:
+    """The folder of an operator."""
+    return type(each).__module__.split(".")[-2]
 
 
 def _overview(operators: list[Operator]) -> Iterator[str]:
@@ -105,6 +146,9 @@ def _published(operators: list[Operator]) -> Iterator[str]:
 def _section(each: Operator) -> Iterator[str]:
     yield f"## {each.name}\n"
     yield f"{each.summary}\n"
+    if each.stands_for:
+        yield f"It stands for: {each.stands_for}\n"
+        yield f"Where: {each.where}.\n"
     acting = [example for example in each.examples if not example.away]
     noted = any(example.note for example in acting)
     yield from _table("original", "mutant", *(["note"] if noted else []))
@@ -134,7 +178,15 @@ def _before(example: Example) -> str:
     if subject.read:
         text = f"{text} reads {_reading(subject, example.replied)}"
     if example.current:
-        text = f"{text}, from {_values(subject.written, example.current)}"
+        others = example.current.keys() - {one.name for one in subject.written}
+        told = [f"{name} = {value:g}" for name, value in example.current.items() if name in others]
+        text = (
+            f"{text}, from {', '.join([*filter(None, [_values(subject.written, example.current)]), *told])}"
+        )
+    if example.previous is not None:
+        text = f"{text}, after `{_values(subject.written, example.previous)}`"
+    if example.refused:
+        text = f"{text}, which the robot refuses"
     if example.earlier:
         before = (_values((*subject.written, *subject.read), values) for values in example.earlier)
         text = f"{text}, after {', '.join(f'`{one}`' for one in before)}"
@@ -144,6 +196,19 @@ def _before(example: Example) -> str:
 def _after(example: Example) -> str:
     subject = example.subject
     late = f", {example.late:g} s later" if example.late else ""
+    if example.fails:
+        return f"raises `{example.fails}`"
+    if example.refused:
+        return "an answer, as if nothing were wrong"
+    if example.waited:
+        reads = (
+            f"reads {_reading(subject, example.replied)}" if subject.read else _call(subject, example.values)
+        )
+        return f"{reads}, {example.waited:g} s later"
+    if example.afterwards:
+        now = ", then ".join(_call(subject, values) for values in example.performed) or "nothing"
+        then = ", then ".join(_call(subject, values) for values in example.afterwards)
+        return f"{now}, and {then} after the next command"
     if example.lost and not example.then:
         return "no answer" if not subject.read else "nothing comes"
     if example.received is not None or example.then or late:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from random import Random
 from typing import Any
 
 import pytest
 
+from mutabot.families import CATALOGUE
 from mutabot.model import Call, Reply
 from mutabot.model.values.quantity import same_values
 from mutabot.operators import Example, names, operator
@@ -16,6 +18,10 @@ from mutabot.operators.passage import Passage, rehearse
 
 CASES = [(name, index) for name in [*names(), *CONTROLS] for index in range(len(operator(name).examples))]
 SEED = 1
+
+
+class Refused(Exception):  # noqa: N818  # what the robot says
+    """The robot refuses a command."""
 
 
 def example_of(name: str, index: int) -> Example:
@@ -27,12 +33,19 @@ def play(name: str, example: Example) -> Passage:
     subject = example.subject
     middleware = operator(name).middleware(subject, Random(SEED))
 
+    async def waited(seconds: float) -> None:
+        """There is no time to pass here."""
+
     def go(values: Mapping[str, Any], replied: Mapping[str, Any]) -> Passage:
         call = Call(
-            subject.operation, subject.pattern, values,
-            idle=Reply(), payload=object(), time=lambda: example.time,
+            subject.operation, subject.pattern, values, idle=Reply(), payload=object(), wait=waited,
+            time=lambda: example.time,
+            previous=lambda: example.previous, is_refusal=lambda error: isinstance(error, Refused),
         )  # fmt: skip
-        return rehearse(middleware, call, replied, current=example.current, payload=object(), operator=name)
+        return rehearse(
+            middleware, call, replied, current=example.current, payload=object(), operator=name,
+            refusal=Refused() if example.refused else None,
+        )  # fmt: skip
 
     for earlier in example.earlier:
         sides = ({one.name for one in side} for side in (subject.written, subject.read))
@@ -60,14 +73,17 @@ def test_the_example_does_what_it_says(name: str, index: int) -> None:
         assert passage.away or example.subject.quantity is None
         return
     assert passage.acted
-    for got, expected in zip(map(shown, passage.performed), example.performed, strict=True):
-        assert got.keys() == expected.keys()
-        assert all(got[key] == pytest.approx(expected[key]) for key in got)
+    for calls, told in ((passage.performed, example.performed), (passage.deferred, example.afterwards)):
+        for got, expected in zip(map(shown, calls), told, strict=True):
+            assert got.keys() == expected.keys()
+            assert all(got[key] == pytest.approx(expected[key]) for key in got)
+    assert passage.waited == example.waited
     if example.received is not None:
         assert passage.received is not None
         assert same_values(passage.received.values, example.received)
     if passage.received is not None:
         assert (passage.received.lost, passage.received.late) == (example.lost, example.late)
+        assert passage.received.error == example.fails
         assert [part.values for part in passage.received.more] == list(example.then)
 
 
@@ -85,6 +101,19 @@ def test_operators_on_values_show_where_they_stay_away(name: str) -> None:
     assert any(example.away for example in examples) or not is_on_values
 
 
+@pytest.mark.parametrize("name", [name for name in names() if operator(name).family == CATALOGUE])
+def test_operators_of_the_catalogue_say_what_they_stand_for_and_where_they_apply(name: str) -> None:
+    rule = operator(name)
+    assert re.search(r"\b(28|20|14|13|9|4|2) of the bugs", rule.stands_for), "no evidence"
+    assert rule.stands_for.endswith(".")
+    assert rule.where
+    assert rule.rank < 1000, "it has no place in the documentation"
+
+
+def test_the_catalogue_is_one() -> None:
+    assert sum(operator(name).family == CATALOGUE for name in names()) >= 30
+
+
 @pytest.mark.parametrize(("name", "index"), CASES)
 def test_operators_keep_what_they_promise_about_doing_nothing(name: str, index: int) -> None:
     example = example_of(name, index)
@@ -94,7 +123,8 @@ def test_operators_keep_what_they_promise_about_doing_nothing(name: str, index: 
 @pytest.mark.parametrize("name", names())
 def test_who_never_makes_the_call_promises_it(name: str) -> None:
     examples = operator(name).examples
-    assert operator(name).does_nothing == all(not one.away and not one.performed for one in examples)
+    makes_none = all(not one.away and not one.performed and not one.afterwards for one in examples)
+    assert operator(name).does_nothing == makes_none
 
 
 @pytest.mark.parametrize(("name", "index"), [case for case in CASES if case[0] not in CONTROLS])

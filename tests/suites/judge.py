@@ -27,7 +27,12 @@ from .message_editor import edits_of, is_named, noting_refusals
 
 HERE = Path(__file__).resolve().parent
 #: what stands beside a copy, with an underscore before its name
-PLANTED = (HERE / "planted.py", HERE / "planted_messages.py", HERE / "planted_graded.py")
+PLANTED = (
+    HERE / "planted.py",
+    HERE / "planted_messages.py",
+    HERE / "planted_graded.py",
+    HERE / "planted_catalogue.py",
+)
 IGNORED = shutil.ignore_patterns(".mutabot", "__pycache__", ".pytest_cache", "judge.toml")
 SEEDS = """
 import json, os, pytest
@@ -126,7 +131,10 @@ class Judge:
         place = f"{mutant['file']}|{span['line']}|{span['end_line']}" if mutant["operation"] else "||"
         if not self._refusals_are_ours():
             return replace(found, refused=self._names_a_refusal(found.text, mutant))
-        return replace(found, refused=self._notes(edits, place) > self._notes([], place))
+        before, after = self._notes([], place), self._notes(edits, place)
+        if before and before == after:  # whether it is the mutated call that is refused cannot be counted
+            return Judgement("unwritable", text="the robot refuses the original there as well")
+        return replace(found, refused=after > before)
 
     def _refusals_are_ours(self) -> bool:
         """Whether the project itself defines all exceptions by which its robot refuses."""
@@ -181,7 +189,7 @@ class Judge:
         for file in PLANTED:
             shutil.copy(file, place / "planted" / f"_{file.name}")
         (place / "planted" / "_judge_seeds.py").write_text(SEEDS)
-        for edit in sorted(edits, key=lambda edit: edit.start, reverse=True):
+        for edit in sorted(edits, key=lambda edit: (edit.file, edit.start), reverse=True):
             file = copy / edit.file
             file.write_bytes(edit.applied(file.read_bytes()))
         return copy

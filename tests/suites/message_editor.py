@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from fnmatch import fnmatchcase
 from typing import Any
 
+from .catalogue_editor import catalogue_edits
 from .editor import DEVIATIONS, UNITS, CannotWriteError, Edit, Facts, Source, edits_for
 
 MESSAGES = '__import__("_planted_messages")'
@@ -29,6 +30,8 @@ def edits_of(facts: Facts, mutant: Mapping[str, Any]) -> list[Edit]:
     Raises CannotWriteError where the editors know none.
     """
     if not is_named(mutant):
+        if mutant["family"] == "catalogue":
+            return catalogue_edits(facts, Source(facts.folder / mutant["file"], mutant["file"]), mutant)
         return edits_for(facts, mutant)
     return MessageEditor(facts, Source(facts.folder / mutant["file"], mutant["file"]), mutant).edits()
 

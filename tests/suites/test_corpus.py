@@ -30,6 +30,16 @@ def test_every_verdict_is_that_of_plain_pytest(name: str) -> None:
     assert "fails" in {one.plain.state for one in found.compared}
 
 
+@pytest.mark.whole
+def test_every_verdict_on_the_catalogue_is_that_of_plain_pytest() -> None:
+    found = compare(
+        PROJECTS / "fault_catalogue", families=("catalogue",), only={"catalogue": 2 * MUTANTS},
+        jobs=len(os.sched_getaffinity(0)),
+    )  # fmt: skip
+    assert found.disagreements == []
+    assert len(found.compared) >= 2 * MUTANTS
+
+
 def test_the_corpus_has_at_least_forty_projects_that_can_be_read() -> None:
     folders = corpus()
     assert len(folders) >= 40

@@ -11,8 +11,13 @@ from typing import Any
 
 import pytest
 
+from mutabot.operators import names
+from mutabot.operators import operator as operator_of
+
+from .catalogue_editor import CatalogueEditor
 from .editor import CannotWriteError, Facts, edits_for
 from .judge import Judge
+from .message_editor import edits_of
 
 VOCABULARY = """
     refusals = ["robot:Refused"]
@@ -280,3 +285,43 @@ def test_the_judge_imports_nothing_of_mutabot() -> None:
         [sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True
     )
     assert json.loads(done.stdout) == []
+
+
+CATALOGUE = '__import__("_planted_catalogue")'
+FAULTS = {
+    "cm-for-m": (
+        "arm.move(0.5)", "Arm.move", "dx", "taken-cm",
+        f"arm.move({P}.partial({CATALOGUE}.scaled, 0.01)(0.5))",
+    ),
+    "old-reading": (
+        "arm.where()", "Arm.where", "result", "1",
+        f"{P}.changed('', {P}.partial({CATALOGUE}.old, 'mission.py:x#1:call:y', 1), arm.where())",
+    ),
+    "double-command": (
+        "arm.open()", "Arm.open", None, "30%", f"{CATALOGUE}.by_chance(0.3, arm.open, {P}.twice(arm.open))()"
+    ),
+    "swap-next": (
+        "arm.open(), arm.move(1.0)", "Arm.move", None, "",
+        f"{CATALOGUE}.then(arm.open)(), {CATALOGUE}.held(arm.move, lambda self: None)(1.0)",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("operator", FAULTS)
+def test_a_fault_of_the_catalogue_is_an_edit_too(tmp_path: Path, operator: str) -> None:
+    call, operation, quantity, variant, expected = FAULTS[operator]
+    source = f"x = [{call}, arm]\n"
+    facts = Facts.of(project(tmp_path, source))
+    told = {"operator": operator, "operation": f"robot:{operation}", "quantity": quantity, "variant": variant}
+    found = source.encode()
+    for edit in sorted(
+        edits_of(facts, mutant(call, source, family="catalogue", **told)), key=lambda edit: -edit.start
+    ):
+        found = edit.applied(found)
+    assert found.decode() == f"x = [{expected}, arm]\n"
+
+
+@pytest.mark.parametrize("name", [name for name in names() if operator_of(name).family == "catalogue"])
+def test_the_judge_knows_every_operator_of_the_catalogue(name: str) -> None:
+    units = ("cm-for-m", "mm-for-m", "inch-for-mm", "deg-for-rad", "ms-for-s")
+    assert name in units or hasattr(CatalogueEditor, "_" + name.replace("-", "_"))

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
 
 from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.engines.choice import try_controls
 from mutabot.campaign.engines.engine import Remainder
 from mutabot.campaign.plan.planned import Plan
+from mutabot.families import CATALOGUE
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.named import MAIN
+from mutabot.operators import load_all
 from mutabot.vocabulary.load import shipped
 
 from .beginning import at_it, begin, plan_of, selected
@@ -54,6 +57,8 @@ def _report(
     clock = request.vocabulary.clock
     if clock is not None and all(end.simulated is None for end in baseline.ends.values()):
         lines.append(f"unused    clock: no test calls {clock.tick}, so there is no simulated time")
+    nowhere = dict(_nowhere(plan, request.families))
+    lines += [f"nowhere   {name}: {why}" for name, why in nowhere.items()]
     lines += [f"note      {remark}" for remark in baseline.remarks]
     lines += [f"replay    {test}: {why}" for test, why in remainder.reasons.items()]
     data = {
@@ -67,6 +72,7 @@ def _report(
         "unstable": [{"round": r, "test": t, "reason": why} for (r, t), why in baseline.unstable.items()],
         "restless": [{"round": r, "test": t} for r, t in sorted(baseline.restless)],
         "unused": never,
+        "nowhere": nowhere,
         "remarks": [to_data(remark) for remark in baseline.remarks],
     }
     return CheckReport(lines, data)
@@ -74,6 +80,24 @@ def _report(
 
 def _why_left_out(baseline: Baseline) -> str:
     return "cannot matter" if baseline.program.left_out else "would change nothing"
+
+
+def _nowhere(plan: Plan, families: Collection[str]) -> Iterator[tuple[str, str]]:
+    """Operators of the catalogue of which the plan has no mutant, with the reason."""
+    if CATALOGUE not in families:
+        return
+    made = {mutant.operator for mutant in plan.mutants}
+    reasons: dict[str, Counter[str]] = {}
+    for item in plan.left_out:
+        name = item.id.rpartition(":")[2].partition("=")[0].partition("@")[0]
+        reasons.setdefault(name, Counter())[item.reason] += 1
+    for rule in load_all():
+        if rule.family != CATALOGUE or rule.name in made:
+            continue
+        if rule.name in reasons:
+            yield rule.name, reasons[rule.name].most_common(1)[0][0]
+        else:
+            yield rule.name, f"nothing here has what it needs: {rule.where}"
 
 
 def _unused(vocabulary: Vocabulary, never: Sequence[str]) -> Iterator[str]:

@@ -18,6 +18,7 @@ from mutabot.exit_codes import ExitCode
 
 from . import campaign, init, replay, report, results, suggest, thresholds
 from .comparing import compare
+from .lists import operators
 from .options import Version
 
 _SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
@@ -46,6 +47,7 @@ def options(
 app.command(rich_help_panel=_SETUP)(init.init)
 app.command(rich_help_panel=_SETUP)(campaign.check)
 app.command("list", rich_help_panel=_SETUP)(campaign.list_)
+app.command(rich_help_panel=_SETUP)(operators.operators)
 app.command(rich_help_panel=_RUN)(campaign.run)
 app.command(rich_help_panel=_RUN)(compare.compare)
 app.command(rich_help_panel=_RUN)(replay.replay)

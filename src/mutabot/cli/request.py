@@ -60,7 +60,7 @@ def request_of(
         confirm=bool(given.get("confirm")),
         repeats=given.get("repeats", True),
         baseline=given.get("baseline") or configuration.baseline_repetitions,
-        families=_families(given.get("family")) or configuration.families,
+        families=families_of(given.get("family")) or configuration.families,
         sample=size,
         one_per_site=bool(given.get("one_per_site")),
         order=given.get("order") or configuration.order,
@@ -72,8 +72,8 @@ def request_of(
     )
 
 
-def _families(given: Sequence[str] | None) -> tuple[str, ...]:
-    """The families of the command line, in the order of their numbers."""
+def families_of(given: Sequence[str] | None) -> tuple[str, ...]:
+    """The families of the command line, in the order of their numbers. Raises UsageError."""
     from mutabot.settings.families import asked_for
 
     named = (name.strip() for text in given or () for name in text.split(","))

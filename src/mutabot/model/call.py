@@ -32,7 +32,7 @@ class Mishap(StrEnum):
 
 
 class NotToldError(LookupError):
-    """What tells where the robot is has told nothing yet."""
+    """What tells where the robot is has told nothing yet, or does not tell this quantity."""
 
 
 async def _unknown(quantity: Quantity) -> float:
@@ -51,6 +51,18 @@ async def _no_wait(seconds: float) -> None:
     raise LookupError("nothing lets the program's time pass")
 
 
+def _no_previous() -> Mapping[str, Value] | None:
+    raise LookupError("nobody knows what the call before this one was told")
+
+
+def _no_defer(call: Call) -> None:
+    raise LookupError("nobody makes calls later")
+
+
+def _no_refusal(error: BaseException) -> bool:
+    return False
+
+
 @dataclass(frozen=True, slots=True)
 class Reply:
     """What an operation answered, with the values it reads.
@@ -65,6 +77,7 @@ class Reply:
         late: seconds of the program's clock by which the program gets it later.
         lost: whether the program never gets it.
         more: what comes after it, of what comes by itself.
+        error: the exception (``module:Name``) that the program gets in its stead; empty if it gets the reply.
     """
 
     values: Mapping[str, Value] = field(default_factory=dict)
@@ -73,6 +86,7 @@ class Reply:
     late: float = 0.0
     lost: bool = False
     more: tuple[Reply, ...] = ()
+    error: str = ""
 
     def with_value(self, quantity: Quantity, value: Value) -> Reply:
         """The same reply with another value for one quantity."""
@@ -90,6 +104,10 @@ class Reply:
         """The same reply, of which the program never hears."""
         return replace(self, lost=True)
 
+    def failing(self, error: str) -> Reply:
+        """The same reply, in whose stead the program gets this exception (``module:Name``)."""
+        return replace(self, error=error)
+
     def followed_by(self, *others: Reply) -> Reply:
         """The same reply, and then these."""
         return replace(self, more=(*self.more, *others))
@@ -102,7 +120,7 @@ class Reply:
     @property
     def comes_as_usual(self) -> bool:
         """Whether the program gets it once and at once."""
-        return not (self.late or self.lost or self.more)
+        return not (self.late or self.lost or self.more or self.error)
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +144,11 @@ class Call:
         cannot: why something cannot befall it here; empty if it can.
         time: simulated seconds since the test's first tick; raises LookupError without a clock.
         wait: lets so many seconds pass on the program's clock; raises LookupError where nothing says how.
+        previous: what the program's call of this operation, or text command, before this one wrote; None if
+            there was none in this test. Raises LookupError where nobody knows.
+        defer: has a call made right after the program's next command; never if none follows. While one is
+            due, the operator is not asked: the next call at its site is made as it is.
+        is_refusal: whether an exception is one by which the robot refuses a command.
     """
 
     operation: Operation
@@ -140,6 +163,9 @@ class Call:
     cannot: Callable[[Mishap], str] = _nothing
     time: Callable[[], float] = _no_time
     wait: Callable[[float], Awaitable[None]] = _no_wait
+    previous: Callable[[], Mapping[str, Value] | None] = _no_previous
+    defer: Callable[[Call], None] = _no_defer
+    is_refusal: Callable[[BaseException], bool] = _no_refusal
 
     @property
     def is_command(self) -> bool:

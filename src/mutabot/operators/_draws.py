@@ -8,11 +8,23 @@ al. 2011).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from random import Random
 
+_BITS = 64
 
-def keyed(random: Random) -> Callable[[int], Random]:
-    """What gives the generator of a call, by the call's number; ``random`` is the mutant's own."""
-    key = random.getrandbits(64)
-    return lambda number: Random(f"{key}:{number}")
+
+class Draws:
+    """A generator for each hit of a site, in one test.
+
+    Args:
+        random: the mutant's generator for this round and test; one number is taken of it, now.
+    """
+
+    def __init__(self, random: Random) -> None:
+        self._key = random.getrandbits(_BITS)
+        self._hit = 0
+
+    def next(self) -> Random:
+        """The generator of the next hit. To be asked once at each hit, whatever becomes of it."""
+        self._hit += 1
+        return Random(f"{self._key}:{self._hit}")

@@ -98,6 +98,11 @@ class Example:
         raises: what the program gets instead of an answer; None if it gets one.
         away: why the operator changes nothing here; empty if it does act.
         note: one line for the documentation.
+        previous: values of the program's call of this operation before this one, wherever it stands.
+        waited: seconds of the program's time that pass meanwhile.
+        afterwards: values of each call that is made right after the program's next command.
+        fails: the exception (``module:Name``) that the program gets in the stead of the robot's answer.
+        refused: whether the robot refuses the call.
     """
 
     subject: Subject
@@ -114,6 +119,11 @@ class Example:
     late: float = 0.0
     time: float = 0.0
     then: tuple[Mapping[str, Value], ...] = ()
+    previous: Mapping[str, Value] | None = None
+    waited: float = 0.0
+    afterwards: tuple[Mapping[str, Any], ...] = ()
+    fails: str = ""
+    refused: bool = False
 
 
 class Operator(Rule):
@@ -131,10 +141,13 @@ class Operator(Rule):
         draws: whether it adds a number that is drawn anew for each round, which reports then show.
         remembers: whether what it does to a call depends on earlier ones of the same test. It is then given
             copies, which the program cannot change afterwards, and one middleware for all calls of a test.
+        copies: whether it is to be given copies if it remembers; one that remembers nothing but values of its
+            own making says that it is not.
         asks_time: whether it asks what time it is in the simulation (``call.time``); it is then used only
             where the vocabulary names a clock.
         asks_wait: whether it lets the program's time pass (``call.wait``); it is then used only where the
             vocabulary says how (``wait``), or a middleware does.
+        needs_error: whether it acts only on calls that raise: it is left out where none did in the baseline.
         is_raced: whether it leaves to chance what the program's processes still get done, so that equal runs
             may end differently: survivors are run again as well as kills.
         is_for_oracle: whether readings that the tests' own checks take are a place for it, too.
@@ -147,9 +160,11 @@ class Operator(Rule):
     asks_neighbours: ClassVar[bool] = False
     does_nothing: ClassVar[bool] = False
     remembers: ClassVar[bool] = False
+    copies: ClassVar[bool] = True
     draws: ClassVar[bool] = False
     asks_time: ClassVar[bool] = False
     asks_wait: ClassVar[bool] = False
+    needs_error: ClassVar[bool] = False
     is_raced: ClassVar[bool] = False
     is_for_oracle: ClassVar[bool] = True
 

@@ -56,17 +56,28 @@ class Passage:
         performed: the calls that reached the robot.
         answered: the robot's answers to them.
         received: what the program received; None while the mutant is still at work.
+        waited: seconds of the program's time that the mutant let pass.
+        deferred: calls to be made right after the program's next command.
+        is_late: whether it is the passage of such a call.
     """
 
     call: Call
     performed: list[Call] = field(default_factory=list)
     answered: list[Reply] = field(default_factory=list)
     received: Reply | None = None
+    waited: float = 0.0
+    deferred: list[Call] = field(default_factory=list)
+    is_late: bool = False
 
     @property
     def acted(self) -> bool:
-        """Whether the mutant changed anything that the robot or the program could notice."""
-        return self.changed_command or self.changed_reading
+        """Whether the mutant changed anything that the robot or the program could notice, or will."""
+        return self.acted_at_once or bool(self.deferred)
+
+    @property
+    def acted_at_once(self) -> bool:
+        """The same, without what is only done later."""
+        return self.changed_command or self.changed_reading or self.waited > 0.0
 
     @property
     def away(self) -> str:
@@ -78,6 +89,8 @@ class Passage:
     @property
     def changed_command(self) -> bool:
         """Whether the robot was told something else than the program said."""
+        if self.is_late:
+            return True
         if len(self.performed) != 1:
             return bool(self.performed) or self.received is not None
         performed = self.performed[0]
@@ -90,8 +103,10 @@ class Passage:
     @property
     def changed_reading(self) -> bool:
         """Whether the program was told something else than the robot answered."""
-        if self.received is None or not self.answered:
+        if self.received is None:
             return False
+        if not self.answered:  # the robot raised, and the program does not hear of it
+            return bool(self.performed)
         answered = self.answered[-1]
         if not self.received.comes_as_usual:
             return True
@@ -115,6 +130,13 @@ def recording(passage: Passage, proceed: Proceed) -> Proceed:
 
 async def passed(passage: Passage, middleware: Middleware, proceed: Proceed) -> Reply:
     """Send the passage's call through the mutant."""
+    wait = passage.call.wait
+
+    async def waited(seconds: float) -> None:
+        await wait(seconds)
+        passage.waited += seconds
+
+    passage.call = replace(passage.call, wait=waited, defer=passage.deferred.append)
     passage.received = await middleware(passage.call, recording(passage, proceed))
     return passage.received
 
@@ -126,11 +148,13 @@ def rehearse(
     *,
     current: Mapping[str, float] | None = None,
     payload: object = None,
+    refusal: Exception | None = None,
     operator: str,
 ) -> Passage:
     """Send a recorded call through a mutant, with a robot that always answers ``replied``.
 
     ``payload`` stands for what is in the reply beside the values: it is unlike any other object.
+    ``refusal``: what the robot raises instead of answering, if it does.
     LookupError from ``call.current`` passes through when ``current`` does not say where the robot is.
     """
 
@@ -140,6 +164,8 @@ def rehearse(
         return current[quantity.name]
 
     async def answer(call: Call) -> Reply:
+        if refusal is not None:
+            raise refusal
         return Reply(dict(replied), payload)
 
     passage = Passage(replace(call, current=where))

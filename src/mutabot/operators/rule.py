@@ -46,6 +46,9 @@ class Rule(ABC):
         rank: its place in the documentation and in the numbering of mutants: smaller first, then by name.
             Without one it comes after those that have one.
         published: rows of the table of published operators that it makes; empty for all others.
+        stands_for: the bug class that it stands for and the evidence of it, in one sentence; may be empty for
+            those that are published.
+        where: where it applies, in the words of vocabularies.
     """
 
     name: ClassVar[str]
@@ -54,6 +57,8 @@ class Rule(ABC):
     examples: ClassVar[tuple[Any, ...]] = ()
     rank: ClassVar[int] = 1000
     published: ClassVar[tuple[Published, ...]] = ()
+    stands_for: ClassVar[str] = ""
+    where: ClassVar[str] = ""
 
 
 R = TypeVar("R", bound=Rule)

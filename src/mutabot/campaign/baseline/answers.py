@@ -27,14 +27,17 @@ class RecordedAnswers:
     Attributes:
         first: note of the first call that returned, by test (``Idle.key``).
         varying: the tests in which later calls returned something else.
+        has_raised: whether any call raised.
     """
 
     first: dict[str, Any] = field(default_factory=dict)
     varying: dict[str, None] = field(default_factory=dict)
+    has_raised: bool = False
 
     def add(self, round: int, test: str, note: Any) -> None:
         """The next call of the place in this test has returned, or raised."""
         if isinstance(note, dict) and "raised" in note:
+            self.has_raised = True
             return
         key = Idle.key(round, test)
         first = self.first.setdefault(key, note)

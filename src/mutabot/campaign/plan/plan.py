@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from random import Random
 from typing import Any
 
-from mutabot.campaign.baseline.answers import NoAnswerError, idle_of
+from mutabot.campaign.baseline.answers import NoAnswerError, RecordedAnswers, idle_of
 from mutabot.campaign.baseline.baseline import Baseline, Hit
 from mutabot.campaign.baseline.places import Place
 from mutabot.errors import OperatorError
@@ -86,11 +86,12 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             mutant = replace(
                 mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
             )
+            if rule.needs_error and not baseline.answers[place].has_raised:
+                reason = "no call raises in the baseline"
             if rule.asks_idle and reason is None:
                 try:
-                    mutant = replace(
-                        mutant, idle=idle_of(operation, subject.pattern, baseline.answers[place])
-                    )
+                    answers = _answers(baseline, place) if rule.needs_error else baseline.answers[place]
+                    mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
                 except NoAnswerError as error:
                     reason = str(error)
             if reason is None:
@@ -98,6 +99,17 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             else:
                 left_out.append(LeftOut(mutant.id, mutant.description, reason))
     return Plan(mutants, left_out)
+
+
+def _answers(baseline: Baseline, place: Place) -> RecordedAnswers:
+    """What calls of a place returned; where all of them raised, what the same command returned elsewhere."""
+    others = (
+        answers
+        for other, answers in baseline.answers.items()
+        if (other.operation, other.pattern) == (place.operation, place.pattern) and answers.first
+    )
+    own = baseline.answers[place]
+    return own if own.first else next(others, own)
 
 
 def _subjects(

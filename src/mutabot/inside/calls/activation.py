@@ -24,7 +24,7 @@ from mutabot.operators.passage import Carried, Passage, passed
 
 from . import mishaps
 from .door import Door, here
-from .keeping import kept_call, kept_reply
+from .keeping import held, kept_call, kept_reply
 from .refusing import answered, heard, is_told_on, refused_of
 
 
@@ -62,6 +62,8 @@ class Activation:
     _moment: Moment | None = None
     _test: tuple[int, str] = (0, "")
     _early: Evidence = field(default_factory=Evidence)
+    _due: list[Deferred] = field(default_factory=list)
+    _next: list[Deferred] = field(default_factory=list)
 
     def keep_early(self) -> None:
         """What it did before the first test counts in every test."""
@@ -79,6 +81,7 @@ class Activation:
         self._test = (round, test)
         self._moment = moment
         self.watched = ()
+        self._due, self._next = [], []
 
     def is_here(self, site: tuple[Span, Role], target: str) -> bool:
         """Whether calls of this operation at this place are the mutant's, bar the text command."""
@@ -102,16 +105,19 @@ class Activation:
         """
         assert self._middleware is not None
         self.evidence.hits += 1
-        passage = Passage(kept_call(call) if self.rule.remembers else call)
+        passage = Passage(kept_call(call) if self._copies else call)
         is_due = self._moment is None or self._moment.holds(number, self.time())
         performer = _Performer(self, door, passage, is_async, does_nothing=is_due and self.rule.does_nothing)
         self._commands, self._told, self._is_passed = 0, 0, False
+        middleware = self._middleware if is_due else _not_yet
+        passage.call = replace(passage.call, is_refusal=partial(is_refusal, names=self.refusals))
         try:
             if self._idle is not None:
                 passage.call = replace(passage.call, idle=self._answer(self._idle, door, call))
-            reply = await passed(passage, self._middleware if is_due else _not_yet, performer.proceed)
+            reply = await passed(passage, _one_is_due if self._due else middleware, performer.proceed)
             reply = passage.received = mishaps.heard_of(passage.call, reply)
             self.note(passage)
+            self._next += [Deferred(door, held(one), passage, is_async) for one in passage.deferred]
             last = passage.answered[-1] if passage.answered else None
             handed = mishaps.hand_over(passage.call, reply, partial(door.result, passage.call, original=last))
         except BaseException as error:
@@ -124,6 +130,28 @@ class Activation:
                 self.evidence.failure = f"operator {self.mutant.operator}: {type(error).__name__}: {error}"
             raise
         return await handed(), last
+
+    async def catch_up(self, is_async: bool) -> None:
+        """A command of the program's is over: make the calls that were deferred until after it.
+
+        One that must be awaited waits for a command that is awaited as well. Raises what the robot raises.
+        """
+        due = [one for one in self._due if is_async or not one.is_async]
+        self._due = [one for one in self._due if one not in due] + self._next
+        self._next = []
+        for one in due:
+            passage = Passage(one.passage.call, is_late=True)
+            performer = _Performer(self, one.door, passage, one.is_async, does_nothing=False)
+            passage.performed.append(one.call)
+            try:
+                await performer.proceed(one.call)
+            finally:
+                if not one.passage.acted_at_once:
+                    self._acts(passage)
+
+    @property
+    def _copies(self) -> bool:
+        return self.rule.remembers and self.rule.copies
 
     def heard(self, name: str, message: Any) -> None:
         """A message came by, which may say that the robot refuses what it was told."""
@@ -184,10 +212,13 @@ class Activation:
 
     def note(self, passage: Passage) -> None:
         """What became of a call that is over, or of whose mutant this process dies."""
-        if not passage.acted:
+        if not passage.acted_at_once:
             if passage.away:
                 self.evidence.away[passage.away] = self.evidence.away.get(passage.away, 0) + 1
             return
+        self._acts(passage)
+
+    def _acts(self, passage: Passage) -> None:
         if not self.evidence.acted:
             self.evidence.example = self._example(passage)
             self.on_act()
@@ -200,13 +231,38 @@ class Activation:
         if passage.changed_command:
             after = passage.performed[0].values.get(name) if passage.performed else None
             return (passage.call.values.get(name), after)
-        received = passage.received.values.get(name) if passage.received is not None else None
+        reply = passage.received
+        received = reply.values.get(name) if reply is not None else None
+        if reply is not None and reply.error:
+            received = f"raises {reply.error}"
         return (passage.answered[-1].values.get(name), received)
 
 
 async def _not_yet(call: Call, proceed: Proceed) -> Reply:
     """A call that is not at the mutant's moment."""
     return await proceed(call.as_is("it is not the moment"))
+
+
+async def _one_is_due(call: Call, proceed: Proceed) -> Reply:
+    """A call that an earlier one waits for."""
+    return await proceed(call.as_is("an earlier one is made after it"))
+
+
+@dataclass(frozen=True, slots=True)
+class Deferred:
+    """A call that is made right after the program's next command.
+
+    Attributes:
+        door: its operation's.
+        call: the call.
+        passage: that of the call in which it was deferred.
+        is_async: whether what it returns is to be awaited.
+    """
+
+    door: Door
+    call: Call
+    passage: Passage
+    is_async: bool
 
 
 @dataclass(slots=True)
@@ -249,7 +305,7 @@ class _Performer:
         if mutated and self.activation.watched:
             self.activation.refused_as(answered(call, result))
         reply = self.door.reply(call, result)
-        return kept_reply(reply) if self.activation.rule.remembers else reply
+        return kept_reply(reply) if self.activation._copies else reply
 
     def _last_words(self) -> None:
         """This process is about to die of the mutant: tell what it did."""

@@ -78,6 +78,7 @@ class Door:
         self._signature: inspect.Signature | None = None
         self._writer = Writer(operation, on_problem)
         self._last_replies: dict[str | None, Any] = {}
+        self._last_written: dict[str | None, dict[str, Value]] = {}
         self.commands = 0
         self.calls = 0
         self.lately: dict[str, Mapping[str, Value]] = {}
@@ -87,6 +88,7 @@ class Door:
     def reset(self) -> None:
         """Forget earlier answers and commands: a new test begins."""
         self._last_replies.clear()
+        self._last_written.clear()
         self.lately.clear()
         self.commands = self.calls = 0
 
@@ -110,9 +112,13 @@ class Door:
         async def current(quantity: Quantity) -> float:
             return await self._where(quantity, invocation, pattern)
 
-        waits = self.time is not None and self.time.can_wait
-        cannot = partial(why_not, means, waits=waits)
-        found = Call(self.operation, pattern, values, current=current, payload=invocation, cannot=cannot)
+        cannot = partial(why_not, means)
+        before = self._last_written.get(_text_of(pattern))
+        self._last_written[_text_of(pattern)] = {name: snapshot(value) for name, value in values.items()}
+        found = Call(
+            self.operation, pattern, values, current=current, payload=invocation, cannot=cannot,
+            previous=lambda: before,
+        )  # fmt: skip
         if self.time is None:
             return found
         return replace(found, time=self.time.now, wait=self.time.wait if means is None else means.sleep)
@@ -230,7 +236,7 @@ class Door:
             if is_reading_of(part, quantity):
                 number = part.path.get(value)
                 return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
-        raise LookupError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
+        raise NotToldError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
 
     def _lately_at(self, reading: Operation, quantity: Quantity) -> float:
         """Where a quantity is by what came last under a name: the program knows no better."""
@@ -240,7 +246,7 @@ class Door:
                 if number is None:
                     raise NotToldError(f"nothing has come yet of {reading.target}")
                 return quantity.from_unit(float(number), part.unit) if part.unit else float(number)
-        raise LookupError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
+        raise NotToldError(f"{reading.target} does not read the {quantity.axis} of a {quantity.kind}")
 
     def last_answer(self, call: Call) -> Reply | None:
         """What the robot answered last to this command in the running test; None if it has not yet.
@@ -271,6 +277,8 @@ def _text_of(pattern: Pattern | None) -> str | None:
 
 def _typed_like(value: Value, original: Value) -> Value:
     """``value`` in the type of the original, where that is a scalar of a numeric library."""
+    if value is None:
+        return None
     if hasattr(original, "dtype") and not hasattr(value, "dtype") and not getattr(original, "shape", None):
         kind = type(original)
         return kind(value) if getattr(original.dtype, "kind", "") == "f" else value

@@ -21,6 +21,21 @@ def kept_call(call: Call) -> Call:
     return replace(call, payload=replace(invocation, args=args, kwargs=kwargs, arguments=arguments))
 
 
+def held(call: Call) -> Call:
+    """A call that is made later: what the vocabulary describes of its arguments is copied, all else is not.
+
+    The program may use a pose again for the next call; an argument that is no data is the same object then.
+    """
+    invocation = call.payload
+    bound: Arguments | None = invocation.arguments
+    if bound is None or call.operation.named is not None:  # a message is data
+        return kept_call(call)
+    roots = {name for name in call.operation.described if name in bound.values}
+    args, kwargs = bound.replaced({name: copied(bound.values[name]) for name in roots})
+    arguments = Arguments.of(bound.signature, args, kwargs)
+    return replace(call, payload=replace(invocation, args=args, kwargs=kwargs, arguments=arguments))
+
+
 def kept_reply(reply: Reply) -> Reply:
     """The same reply, with a copy of what the robot answered."""
     return replace(reply, payload=copied(reply.payload))

@@ -1,4 +1,4 @@
-"""What befalls a call beside other values: it is late, cancelled, or its process dies of it."""
+"""What befalls a call beside other values: it is late, cancelled, fails, or its process dies of it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from importlib import import_module
 from typing import Any, NoReturn
 
 from mutabot.inside.targets.delivery import Delivery
 from mutabot.inside.targets.means import Means
+from mutabot.inside.targets.names import resolve
 from mutabot.model import Call, Mishap, Reply
 from mutabot.model.named import ANSWERED, COMING
 
@@ -23,15 +25,11 @@ from .keeping import copied
 RESTARTED = "MUTABOT_RESTARTED"
 _NO_SECOND = "who waits for one message hears no second"
 _FOLDER = os.getcwd()
+_SAYS = "no reading (planted by mutabot)"
 
 
-def why_not(means: Means | None, mishap: Mishap, *, waits: bool = False) -> str:
-    """Why something cannot befall a call here; empty if it can.
-
-    ``waits``: whether the vocabulary says what lets the program's time pass.
-    """
-    if means is None and mishap is Mishap.LATE:
-        return "" if waits else "the vocabulary does not say what lets the program's time pass (wait = …)"
+def why_not(means: Means | None, mishap: Mishap) -> str:
+    """Why something cannot befall a call here; empty if it can."""
     if means is None:
         return "it is no call of a middleware"
     if mishap is Mishap.CANCELLED and means.cancel is None:
@@ -50,16 +48,14 @@ async def before(call: Call, at_end: Callable[[], None]) -> None:
     """What befalls a call before it is made; ``at_end`` is told before this process dies of it."""
     if not call.mishaps:
         return
-    if Mishap.LATE in call.mishaps and _is_answered(call):
-        await call.wait(call.mishaps[Mishap.LATE])
-    if call.mishaps.keys() == {Mishap.LATE}:
-        return
     means = _means(call)
     if Mishap.JUMPED in call.mishaps and means.jump is not None:
         means.jump(call.mishaps[Mishap.JUMPED])
     if Mishap.KILLED in call.mishaps or Mishap.RESTARTED in call.mishaps:
         at_end()
         _end(anew=Mishap.RESTARTED in call.mishaps)
+    if Mishap.LATE in call.mishaps and _is_answered(call):
+        await means.sleep(call.mishaps[Mishap.LATE])
 
 
 def timed(call: Call, perform: Callable[[], Any]) -> Callable[[], Any]:
@@ -89,12 +85,13 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
     """How the program gets a reply; ``result`` makes its object of one.
 
     Raises LookupError where nobody knows how. What is returned raises what the middleware raises for an
-    answer that never comes.
+    answer that never comes, and what the program gets in the stead of a reading.
     """
+    if reply.error:
+        return partial(_raised, missing(reply.error))
     named = call.operation.named
     comes = named is not None and named.form in COMING
-    is_only_late = call.payload.means is None and not (reply.lost or reply.more)
-    means = None if reply.comes_as_usual or is_only_late else _means(call)
+    means = None if reply.comes_as_usual else _means(call)
     if means is not None and reply.lost and not comes and means.lost is None:
         raise LookupError(f"nobody knows how {call.operation.name} loses its answer")
     if means is not None and comes:
@@ -105,13 +102,38 @@ def hand_over(call: Call, reply: Reply, result: Callable[[Reply], Any]) -> Calla
         got = None if reply.lost else result(reply)
 
     async def handed() -> Any:
-        if reply.late and not comes:
-            await call.wait(reply.late)
         if means is None or comes:
             return got
+        if reply.late:
+            await means.sleep(reply.late)
         return await means.lost() if reply.lost and means.lost is not None else got
 
     return handed
+
+
+def missing(name: str) -> BaseException:
+    """What the program gets in the stead of a reading: an exception of this class (``module:Name``).
+
+    Raises LookupError if there is none, or if it is no exception.
+    """
+    module, _, qualname = name.partition(":")
+    try:
+        kind: Any = resolve(import_module(module), qualname)[2]
+    except (ImportError, LookupError) as error:
+        raise LookupError(f"missing = {name!r} names nothing: {error}") from error
+    if not (isinstance(kind, type) and issubclass(kind, BaseException)):
+        raise LookupError(f"missing = {name!r} is no exception")
+    for given in ((_SAYS,), ()):
+        try:
+            return kind(*given)
+        except TypeError:  # it wants other arguments
+            continue
+    bare: BaseException = kind.__new__(kind)
+    return bare
+
+
+async def _raised(error: BaseException) -> NoReturn:
+    raise error
 
 
 def _means(call: Call) -> Means:

@@ -201,6 +201,9 @@ class Passing:
                     result = reply.payload
                 else:
                     result, reply = await mutant.perform(door, call, is_async, number)
+                if self.activations and call.is_command and site[1] is Role.PROGRAM:
+                    for activation in self.activations:
+                        await activation.catch_up(is_async)
                 # 4. The program receives the result.
                 return result
             finally:

@@ -200,7 +200,9 @@ class Quantity:
         return seconds_of(value) if self.kind is Kind.STAMP else value
 
     def put(self, start: Any, value: Value) -> Any:
-        """A copy of what its path starts at, with another value. Raises PathError."""
+        """A copy of what its path starts at, with another value, or None. Raises PathError."""
+        if value is None:
+            return self.path.put(start, None)
         if self.kind is Kind.STAMP:
             value = with_seconds(self.path.get(start), value)
         elif self.is_whole:

@@ -13,7 +13,7 @@ from mutabot.model import Call, Kind, Middleware, Mode, Operation, Pattern, Proc
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import from_rotation_vector, product
 from mutabot.model.values.units import convert_difference
-from mutabot.operators._draws import keyed
+from mutabot.operators._draws import Draws
 from mutabot.operators.operator import Operator, Subject, is_number
 from mutabot.operators.robot._values import NOT_GIVEN, label, quantity_of, why_away
 
@@ -112,13 +112,13 @@ class GradedOperator(Operator):
         self, subject: Subject, random: Random
     ) -> Callable[[Value, Callable[[], float]], Value | None]:
         """What makes the new value of each call in turn; None to stay away."""
-        draws, size = keyed(random), self.size_of(subject)
+        draws, size = Draws(random), self.size_of(subject)
         quantity = quantity_of(subject)
         passed = Passed(0, lambda: 0.0, random, is_relative=quantity.mode is Mode.BY)
 
         def changed(value: Value, time: Callable[[], float]) -> Value | None:
             passed.number += 1
-            passed.time, passed.random = time, draws(passed.number)
+            passed.time, passed.random = time, draws.next()
 
             def number(before: float) -> float:
                 after = self.number(size, before, passed)

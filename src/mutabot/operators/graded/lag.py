@@ -7,7 +7,7 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.families import GRADED
-from mutabot.model import Call, Kind, Middleware, Mishap, Operation, Path, Pattern, Proceed, Quantity, Reply
+from mutabot.model import Call, Kind, Middleware, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.units import Dimension, convert
 from mutabot.operators.graded._ladders import ladder_in
@@ -32,12 +32,12 @@ class Lag(Operator):
     asks_wait = True
     is_for_oracle = False
     examples: ClassVar[tuple[Example, ...]] = (
-        Example(Subject(_HOME, variant="200ms", magnitude=200.0, unit="ms"), performed=({"late": 0.2},)),
+        Example(Subject(_HOME, variant="200ms", magnitude=200.0, unit="ms"), performed=({},), waited=0.2),
         Example(
             Subject(_FEEL, variant="50ms", magnitude=50.0, unit="ms"),
             replied={"result": 0.3},
             performed=({},),
-            late=0.05,
+            waited=0.05,
             note="what was seen then is told now",
         ),
     )
@@ -54,12 +54,12 @@ class Lag(Operator):
         seconds = convert(subject.magnitude or 0.0, subject.unit or "s", "s")
 
         async def mutated(call: Call, proceed: Proceed) -> Reply:
-            why = call.cannot(Mishap.LATE)
-            if why:
-                return await proceed(call.as_is(why))
             if call.is_command:
-                return await proceed(call.with_mishap(Mishap.LATE, seconds))
-            return (await proceed(call)).later(seconds)
+                await call.wait(seconds)
+                return await proceed(call)
+            reply = await proceed(call)
+            await call.wait(seconds)
+            return reply
 
         return mutated
 

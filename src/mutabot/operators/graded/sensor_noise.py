@@ -6,7 +6,7 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
-from mutabot.operators._draws import keyed
+from mutabot.operators._draws import Draws
 from mutabot.operators.graded._ladders import Ladder, own_ladder
 from mutabot.operators.graded._shape import GradedOperator, Passed
 from mutabot.operators.operator import Example, Subject
@@ -32,7 +32,7 @@ class SensorNoise(GradedOperator):
             replied={".x": 0.55},
             performed=({},),
             # the draw for the first call of the generator that the examples are run with
-            received={".x": 0.55 + 0.01 * keyed(Random(1))(1).gauss(0.0, 1.0)},
+            received={".x": 0.55 + 0.01 * Draws(Random(1)).next().gauss(0.0, 1.0)},
             note="σ = 10 mm",
         ),
         Example(

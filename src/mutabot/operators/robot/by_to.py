@@ -43,6 +43,7 @@ class ByTo(Operator):
     asks_where = True
     summary = "A relative amount is taken for an absolute target, and the other way round."
     rank = 20
+    where = "written translations and rotations whose operation has a current that tells them"
     published = (
         Published(5, "translate forward by δ", "translate forward *to* δ"),
         Published(6, "translate backwards by δ", "translate backwards *to* δ"),

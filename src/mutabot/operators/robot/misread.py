@@ -30,6 +30,7 @@ class Misread(ReadValueOperator):
     name = "misread"
     summary = "A label, such as a colour, or a flag is read as another one."
     rank = 80
+    where = "read labels and flags"
     published = (Published(12, "a colour is classified", "an incorrect colour is returned"),)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

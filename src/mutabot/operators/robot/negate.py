@@ -27,6 +27,7 @@ class Negate(ReadValueOperator):
     name = "negate"
     summary = "A position, distance or angle is read with the wrong sign."
     rank = 60
+    where = "read positions, distances, angles and orientations"
     published = (Published(9, "distance value is x", "distance value is −x"),)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

@@ -34,6 +34,7 @@ class Noise(ReadValueOperator):
     name = "noise"
     summary = "A position, distance or angle is read with Gaussian noise added."
     rank = 70
+    where = "read positions, distances, angles and orientations"
     draws = True
     published = (
         Published(10, "distance value is x", "distance value is x + noise"),

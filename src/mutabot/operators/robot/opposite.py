@@ -30,6 +30,7 @@ class Opposite(Operator):
     name = "opposite"
     summary = "A two-state command does the opposite: open for close, off for on, release for grasp."
     rank = 50
+    where = "written openings and outputs with two ends, and commands with an opposite"
     published = (Published(11, "do command x", "do the opposite, such as release for grasp"),)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

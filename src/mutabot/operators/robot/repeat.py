@@ -21,6 +21,7 @@ class Repeat(Operator):
     name = "repeat"
     summary = "A command is carried out twice; the program sees the second answer."
     rank = 40
+    where = "any command"
     published = (Published(8, "do command x", "do command x twice"),)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

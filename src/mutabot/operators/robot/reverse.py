@@ -50,6 +50,7 @@ class Reverse(WrittenValueOperator):
     name = "reverse"
     summary = "A translation or rotation goes the other way: one component is negated."
     rank = 10
+    where = "written translations, rotations and orientations as a whole"
     published = (
         Published(1, "rotate left by θ", "rotate right by θ"),
         Published(2, "rotate right by θ", "rotate left by θ"),

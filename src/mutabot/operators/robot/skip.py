@@ -24,6 +24,7 @@ class Skip(Operator):
     does_nothing = True
     summary = "A command is not carried out; the program goes on as if it had been."
     rank = 30
+    where = "commands whose answer to doing nothing is known"
     published = (Published(7, "do command x", "do nothing"),)
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(_GRIP), {"position": 1}, performed=(), note="do command x: do nothing"),

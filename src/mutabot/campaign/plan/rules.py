@@ -1,0 +1,50 @@
+"""All operators that there are, as the command line lists them: nothing of a project is asked for it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from mutabot import operators
+from mutabot.classical.registry import load_all as load_classical
+from mutabot.families import OF_CALLS, OF_TEXT
+from mutabot.operators.rule import Rule, in_order
+
+
+@dataclass(frozen=True, slots=True)
+class ListedRule:
+    """One operator.
+
+    Attributes:
+        name, family, summary: the operator's own.
+        where: where it applies, in the words of vocabularies; empty if it does not say.
+        source: the bug class that it stands for, or the published operators that it makes; else empty.
+    """
+
+    name: str
+    family: str
+    summary: str
+    where: str
+    source: str
+
+
+def listed_rules(families: Collection[str] = ()) -> list[ListedRule]:
+    """The operators of these families, or all: by family, in the order of the documentation.
+
+    Raises OperatorError for a plug-in that is of no use.
+    """
+    rules: list[Rule] = [*operators.load_all(), *load_classical()]
+    brought = dict.fromkeys(rule.family for rule in rules if rule.family not in (*OF_CALLS, *OF_TEXT))
+    return [
+        ListedRule(rule.name, rule.family, rule.summary, rule.where, _source(rule))
+        for family in (*OF_CALLS, *brought, *OF_TEXT)
+        if not families or family in families
+        for rule in in_order(rule for rule in rules if rule.family == family)
+    ]
+
+
+def _source(rule: Rule) -> str:
+    if rule.stands_for or not rule.published:
+        return rule.stands_for
+    rows = "; ".join(f"{row.original} → {row.mutant}" for row in rule.published)
+    return f"Published operators: {rows}."

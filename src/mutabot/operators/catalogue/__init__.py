@@ -1,0 +1,1 @@
+"""Faults that robots have: each stands for a class of bugs that studies of robot software count."""

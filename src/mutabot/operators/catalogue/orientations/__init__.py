@@ -1,0 +1,1 @@
+"""Orientations as a whole that are written or read in another way, one operator to a file."""

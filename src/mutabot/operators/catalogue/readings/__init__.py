@@ -1,0 +1,1 @@
+"""What sensors and their drivers do wrong, one operator to a file."""

@@ -1,0 +1,1 @@
+"""Numbers that are taken for another unit, one operator to a file."""
