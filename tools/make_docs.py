@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import configuration_page
-from mutabot.families import CATALOGUE, MIDDLEWARE
+from mutabot.families import CATALOGUE, GRADED, MIDDLEWARE
 from mutabot.model import Mishap, Quantity
 from mutabot.model.values.notation import Notation
 from mutabot.operators import Example, Operator, Subject, operator
@@ -44,6 +44,12 @@ the reason.
 A waypoint that is skipped is [skip](#skip), a wrong sign of one number is [reverse](#reverse) or
 [negate](#negate), and a header's wrong stamp is [shift-stamp](middleware.md#shift-stamp). A blend radius that
 is lost has no operator: no kind of quantity says that a number is one.
+"""
+GRADED_HEAD = """\
+## Graded faults
+
+`--family graded` plants the same fault at rising magnitudes, to find from which on the tests notice it: see
+[thresholds](thresholds.md), which also says where their ladders come from.
 """
 #: what the groups of the catalogue are called; by the folder of their operators
 GROUPS = {
@@ -82,7 +88,7 @@ family uses it:
 
 ```toml
 [project.entry-points."mutabot.operators"]
-drift = "mutabot_drift:Drift"
+creep = "mutabot_creep:Creep"
 ```
 
 The whole package stands in `tests/plugins/package`.
@@ -92,13 +98,17 @@ The whole package stands in `tests/plugins/package`.
 def page() -> str:
     """The text of the page."""
     operators = _operators(of_middleware=False)
-    first = [each for each in operators if each.family != CATALOGUE]
+    graded = [each for each in operators if each.family == GRADED]
+    first = [each for each in operators if each.family not in (CATALOGUE, GRADED)]
     groups = {
         title: [each for each in operators if each.family == CATALOGUE and _group(each) == group]
         for group, title in GROUPS.items()
     }
     lines = [HEAD, *_overview(first), *_published(operators)]
     for each in first:
+        lines += _section(each)
+    lines += [GRADED_HEAD, *_overview(graded)]
+    for each in graded:
         lines += _section(each)
     lines.append(CATALOGUE_HEAD)
     for title, members in groups.items():

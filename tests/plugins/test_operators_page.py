@@ -12,7 +12,12 @@ from mutabot.operators import operator
 from mutabot.operators.registry import built_in
 
 ROOT = Path(__file__).parents[2]
-PAGES = {"robot": "operators.md", "catalogue": "operators.md", "middleware": "middleware.md"}
+PAGES = {
+    "robot": "operators.md",
+    "graded": "operators.md",
+    "catalogue": "operators.md",
+    "middleware": "middleware.md",
+}
 SCRIPT = ROOT / "tools" / "make_docs.py"
 
 

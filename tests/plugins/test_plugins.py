@@ -182,11 +182,11 @@ def mutants(done: subprocess.CompletedProcess[str], *, code: int = 0) -> dict[st
 
 
 def test_the_operator_of_an_installed_plug_in_gets_a_verdict(installed: Path, project: Path) -> None:
-    drift = mutants(mutabot(installed, project, "run", "--json"))["drift"]
+    creep = mutants(mutabot(installed, project, "run", "--json"))["creep"]
     # Each reading is 5 mm farther off, half of what the robot drives in between: it drives too far.
-    assert drift["id"] == "approach.py:run:robot.distance#1:result:drift"
-    assert (drift["rounds"][0]["verdict"], drift["rounds"][0]["by"]) == ("killed", "check")
-    assert drift["description"] == "robot.distance: reads 0.15 m and drifts"
+    assert creep["id"] == "approach.py:run:robot.distance#1:result:creep"
+    assert (creep["rounds"][0]["verdict"], creep["rounds"][0]["by"]) == ("killed", "check")
+    assert creep["description"] == "robot.distance: reads 0.15 m and creeps"
 
 
 def test_without_the_plug_in_its_operator_is_not_there(project: Path) -> None:
@@ -197,10 +197,10 @@ def test_the_plug_ins_examples_do_what_they_say(installed: Path) -> None:
     code = (
         "import sys; sys.path.insert(0, sys.argv[1])\n"
         "from operators.test_examples import *\n"
-        "assert 'drift' in names()\n"
-        "for index in range(len(operator('drift').examples)):\n"
-        "    test_the_example_does_what_it_says('drift', index)\n"
-        "    test_the_example_is_a_place_where_the_operator_acts('drift', index)\n"
+        "assert 'creep' in names()\n"
+        "for index in range(len(operator('creep').examples)):\n"
+        "    test_the_example_does_what_it_says('creep', index)\n"
+        "    test_the_example_is_a_place_where_the_operator_acts('creep', index)\n"
     )
     done = python(installed, "-c", code, str(Path(__file__).parents[1]))
     assert done.returncode == 0, done.stderr

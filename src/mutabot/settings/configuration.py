@@ -252,10 +252,7 @@ class Settings(BaseModel):
     """How small a fault may be that the tests do not notice: a table each, with double brackets; see
     [thresholds](thresholds.md#demands). `run` ends with 1 if a site tolerates more.
 
-        [[tool.mutabot.demand]]
-        site = "mission.py:38"
-        quantity = "y"
-        notice = "5 mm"
+        demand = [{ site = "mission.py:38", quantity = "y", notice = "5 mm" }]
     """
 
 

@@ -23,6 +23,7 @@ class Deadband(GradedOperator):
         "A target or reading that differs from the last one by less than δ is taken for that one; a relative "
         "move shorter than δ is none. As by a worn gear, or a filter against chatter."
     )
+    where = "every number that is commanded or read, bar waits and orientations as a whole"
     rank = 250
     directions = ("",)
     remembers = True

@@ -18,6 +18,7 @@ class Drift(GradedOperator):
 
     name = "drift"
     summary = "A reading drifts: it is off by δ for every second of simulated time since the test began."
+    where = "every number that is read, with a clock in the vocabulary"
     rank = 230
     asks_time = True
     examples: ClassVar[tuple[Example, ...]] = (

@@ -19,6 +19,7 @@ class Early(GradedOperator):
 
     name = "early"
     summary = "A wait is so much shorter, so that what comes next comes too early."
+    where = "waits: arguments of kind `duration`"
     rank = 270
     directions = ("-",)
     examples: ClassVar[tuple[Example, ...]] = (

@@ -28,6 +28,9 @@ class Lag(Operator):
         "Each command is carried out so much later, while the rest of the world goes on; a reading was taken "
         "so much before the program gets it. Needs a `wait` in the vocabulary, or a middleware."
     )
+    where = (
+        "every command that is no wait, and every reading, with a `wait` in the vocabulary or a middleware"
+    )
     rank = 260
     asks_wait = True
     is_for_oracle = False

@@ -25,6 +25,7 @@ class Offset(GradedOperator):
 
     name = "offset"
     summary = "A commanded or read value is off by a fixed amount, at every call, in one direction."
+    where = "every number that is commanded or read, bar waits"
     rank = 200
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

@@ -23,6 +23,7 @@ class Quantise(GradedOperator):
         "A commanded or read value is rounded to the nearest multiple of a step, as by a coarse encoder or"
         " converter."
     )
+    where = "every number that is commanded or read, bar orientations as a whole"
     rank = 240
     directions = ("",)
     examples: ClassVar[tuple[Example, ...]] = (

@@ -25,6 +25,7 @@ class Scale(GradedOperator):
     summary = (
         "A commanded or read value is a share too large (+) or too small (−), as after a wrong calibration."
     )
+    where = "every number whose zero means nothing: amounts, positions, distances, no target angles"
     rank = 210
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(_MOVE, None, _Y, "+5%", 5.0, "percent", "+"), {"dy": 0.2}, performed=({"dy": 0.21},)),

@@ -23,6 +23,7 @@ class SensorNoise(GradedOperator):
         "Each reading is off by Gaussian noise of standard deviation σ. The draws of a round are the same at "
         "every σ: a larger one is the same noise, only larger."
     )
+    where = "every number that is read"
     rank = 220
     draws = True
     directions = ("",)

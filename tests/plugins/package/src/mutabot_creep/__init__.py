@@ -1,4 +1,4 @@
-"""drift: a distance sensor is farther off with each reading."""
+"""creep: a distance sensor is farther off with each reading."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _GAP = Quantity("result", Path(), Kind.DISTANCE, None, "m")
 _MEASURE = Operation("laser:distance", result=(_GAP,), command=False)
 
 
-class Drift(Operator):
+class Creep(Operator):
     """Adds an error that grows by the same step at each reading."""
 
-    name = "drift"
+    name = "creep"
     summary = "A distance is read farther off each time."
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
@@ -57,4 +57,4 @@ class Drift(Operator):
 
     def describe(self, subject: Subject, before: Any, after: Any) -> str:
         assert subject.quantity is not None
-        return f"reads {subject.quantity.text(before)} and drifts"
+        return f"reads {subject.quantity.text(before)} and creeps"
