@@ -43,6 +43,7 @@ class Request:
         pairs: how many mutants of the second order to plant.
         journal: name of the journal's file in mutabot's folder.
         moments: at which of their calls mutants act, a mutant each; None for every call.
+        whole_ladders: whether every magnitude of a ladder is run in every round.
         evidence: whether to record what the world does while tests run.
         pause: by what the campaign can be paused; None if it cannot.
     """
@@ -71,6 +72,7 @@ class Request:
     pairs: int = 200
     journal: str = JOURNAL
     moments: tuple[Moment | None, ...] = (None,)
+    whole_ladders: bool = False
     evidence: bool = False
     pause: Pause | None = None
 

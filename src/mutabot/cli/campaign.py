@@ -81,6 +81,7 @@ def run(
     skip: options.Skip = None,
     family: options.Families = None,
     when: options.When = None,
+    whole_ladders: options.WholeLadders = False,
     order: options.Order = None,
     pairs: options.Pairs = None,
     selection: options.Selection = None,
@@ -105,7 +106,8 @@ def run(
     if port is not None and not serve:
         raise UsageError("--port goes with --serve")
     request = request_of(
-        context.obj, only=only, skip=skip, family=family, when=when, order=order, pairs=pairs,
+        context.obj, only=only, skip=skip, family=family, when=when, whole_ladders=whole_ladders,
+        order=order, pairs=pairs,
         selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
         engine=engine, fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
         evidence=True,

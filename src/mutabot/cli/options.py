@@ -45,6 +45,12 @@ Families = Annotated[
         autocompletion=lambda: list(FAMILIES),
     ),
 ]
+WholeLadders = Annotated[
+    bool,
+    typer.Option(
+        "--whole-ladders", help="Run every magnitude of graded faults, not only what a search needs."
+    ),
+]
 When = Annotated[
     list[str] | None,
     typer.Option(

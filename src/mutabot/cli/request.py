@@ -68,6 +68,7 @@ def request_of(
         every_test=bool(given.get("every_test")),
         no_oracle=bool(given.get("no_oracle")),
         moments=_moments(given.get("when") or configuration.when),
+        whole_ladders=bool(given.get("whole_ladders")),
         evidence=bool(given.get("evidence")) and configuration.evidence > 0,
     )
 
