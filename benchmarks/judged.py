@@ -53,6 +53,7 @@ def main() -> int:
     parser.add_argument(
         "--sample", type=int, help="mutants of each family of an example, instead of its own numbers"
     )
+    parser.add_argument("--families", nargs="+", help="of an example, only mutants of these families")
     parser.add_argument("--unwritable", action="store_true", help="list what the judge cannot write")
     given = parser.parse_args()
     projects = {folder.name: folder for folder in corpus()}
@@ -71,10 +72,8 @@ def main() -> int:
             families += ("catalogue",) if name in CATALOGUE else ()
             folder, limit = projects[name], 30.0
         else:
-            families, only, limit = ("robot", *sorted({*EXAMPLES[name]} - {"robot"})), EXAMPLES[name], 180.0
-            if given.sample:
-                only = dict.fromkeys(families, given.sample)
-            folder = ROOT / "examples" / name
+            families, only = asked_of(name, given)
+            folder, limit = ROOT / "examples" / name, 180.0
         found = compare(
             folder, families=families, only=only, engines=given.engines, jobs=given.jobs, cache=given.cache,
             limit=limit, rounds=given.rounds,
@@ -94,6 +93,15 @@ def main() -> int:
         return 0
     print(total(every))
     return 0 if any(one.compared for one in every) and not any(one.disagreements for one in every) else 1
+
+
+def asked_of(example: str, given: argparse.Namespace) -> tuple[tuple[str, ...], dict[str, int]]:
+    """The families of an example's mutants, and how many of each."""
+    counts = EXAMPLES[example]
+    families = tuple(given.families or ("robot", *sorted({*counts} - {"robot"})))
+    if given.sample:
+        return families, dict.fromkeys(families, given.sample)
+    return families, {family: count for family, count in counts.items() if family in families}
 
 
 def line(found: Found, seconds: float) -> str:

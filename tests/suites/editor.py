@@ -180,7 +180,7 @@ class CallEditor:
 
     def edit(self) -> Edit:
         """The edit."""
-        if self.mutant["moment"] is not None:
+        if self.mutant.get("moment") is not None:
             raise CannotWriteError("a moment")
         if self.mutant["family"] == "graded":
             try:

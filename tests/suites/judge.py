@@ -253,7 +253,7 @@ class Judge:
 def is_drawn(mutant: Mapping[str, Any]) -> bool:
     """Whether a mutant rests on chance."""
     return mutant["operator"] in ("noise", "sensor-noise") or (
-        "%" in mutant["variant"] and mutant["magnitude"] is None
+        "%" in mutant["variant"] and mutant.get("magnitude") is None
     )
 
 

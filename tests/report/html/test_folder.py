@@ -122,4 +122,4 @@ def test_what_was_drawn_is_told_of_operators_that_draw(tmp_path: Path) -> None:
     drawn = {row[rows.columns.index("id")]: row[rows.columns.index("drawn")] for row in rows.rows}
     assert drawn[samples.NOISE.id] == [(0, 0.5, 0.75)]
     assert drawn[samples.REVERSE.id] is None
-    assert {one.name for one in operators.load_all() if one.draws} == {"noise"}
+    assert {one.name for one in operators.load_all() if one.draws} == {"noise", "sensor-noise"}

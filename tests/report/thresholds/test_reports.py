@@ -33,7 +33,7 @@ FIVE = 5
 NOISY = Vocabulary(
     operations=(
         *samples.VOCABULARY.operations[:1],
-        Operation("tracker:box_position", result=(replace(samples.X, noise=0.002),), command=False),
+        Operation("tracker:box_position", result=(replace(samples.X, repeatability=0.002),), command=False),
     )
 )
 READING = {"site": samples.READ, "quantity": ".x", "operation": "tracker:box_position"}
