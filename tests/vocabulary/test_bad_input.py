@@ -166,6 +166,18 @@ VOCABULARIES: dict[str, tuple[str, list[str]]] = {
         GOOD_OPERATION + "signature = '(text)'\nmessage = 'texts'",
         ["robot.toml:4", "message", "'texts'", "'text'"],
     ),
+    "wait_with_a_length": (
+        GOOD_OPERATION + "[wait]\ncall = 'sim:wait'\nunit = 'mm'",
+        ["robot.toml:5", "wait.unit", "did you mean 'ms'"],
+    ),
+    "wait_that_is_no_target": (
+        GOOD_OPERATION + "[wait]\ncall = 'wait'",
+        ["robot.toml:4", "wait.call", "'wait'"],
+    ),
+    "probe_that_is_better_somehow": (
+        "[[probe]]\ncall = 'world:box'\nbetter = 'most'",
+        ["robot.toml:3", "better", "'more'"],
+    ),
     "clock_with_a_length": (
         GOOD_OPERATION + "[clock]\ntick = 'sim:step'\nunit = 'mm'",
         ["robot.toml:5", "clock.unit", "did you mean 'ms'"],
@@ -197,6 +209,43 @@ QUANTITIES: dict[str, tuple[str, list[str]]] = {
     "no_kind": ("arguments.dx = { unit = 'm' }", ["arguments.dx", "'kind'", "missing"]),
     "misspelt_key": ("result = { knd = 'label', values = [1, 2] }", ["'knd'", "'kind'"]),
     "no_table": ("arguments.dx = 'translation'", ["arguments.dx", "expected a table", "'translation'"]),
+    "falling_ladder": ("arguments.dx = { " + _BY + ", ladder = [5, 2] }", ["dx.ladder", "must rise", "5, 2"]),
+    "ladder_that_begins_at_nothing": (
+        "arguments.dx = { " + _BY + ", ladder = [0, 1] }",
+        ["dx.ladder", "more than 0", "both directions"],
+    ),
+    "ladder_of_one_magnitude": (
+        "arguments.dx = { " + _BY + ", ladder = [1] }",
+        ["dx.ladder", "at least two"],
+    ),
+    "ladder_in_an_unknown_unit": (
+        "arguments.dx = { " + _BY + ", ladder = { steps = [1, 2], unit = 'mmm' } }",
+        ["dx.ladder", "'mmm'", "'mm'"],
+    ),
+    "ladder_in_another_dimension": (
+        "arguments.dx = { " + _BY + ", ladder = { steps = [1, 2], unit = 'deg' } }",
+        ["dx.ladder", "'deg' measures no fault of a translation", "mm", "ms"],
+    ),
+    "ladder_of_a_label": (
+        "result = { kind = 'label', values = ['a', 'b'], ladder = [1, 2] }",
+        ["result.ladder", "a label has no magnitudes"],
+    ),
+    "missing_command": (
+        "arguments.dx = { " + _BY + ", missing = 'nan' }",
+        ["dx.missing", "sent is never missing"],
+    ),
+    "missing_in_another_way": (
+        "result = { kind = 'distance', unit = 'm', missing = 'empty' }",
+        ["result.missing", "'empty'", "module:Name"],
+    ),
+    "repeatability_of_nothing": (
+        "result = { kind = 'distance', unit = 'm', repeatability = 0 }",
+        ["result.repeatability", "more than 0"],
+    ),
+    "tool_in_front_of_a_relative_move": (
+        "arguments.dx = { " + _BY + ", tcp = 0.1 }",
+        ["dx.tcp", "target position"],
+    ),
     "unknown_unit": ("arguments.dx = { " + _BY.replace("'m'", "'mmm'") + " }", ["'mmm'", "'mm'"]),
     "unit_written_out": ("arguments.dx = { " + _BY.replace("'m'", "'metres'") + " }", ["dx.unit", "'m'"]),
     "unit_of_another_dimension": (

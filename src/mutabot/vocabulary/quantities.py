@@ -191,7 +191,7 @@ def _quantity(table: QuantityTable, path: Path, axis: str | None, name: str | No
         order=table.order,
         relative=table.relative,
         clip=(table.clip[0], table.clip[1]) if table.clip is not None else None,
-        ladder=tuple(steps) if steps is not None else None,
+        ladder=tuple(map(float, steps)) if steps is not None else None,
         ladder_unit=unit,
         repeatability=table.repeatability,
         missing=table.missing,

@@ -15,7 +15,7 @@ from mutabot.model.values.units import UNITS, Dimension, dimension_of
 from mutabot.settings.mistakes import shown
 
 from .axes import AXES, split_axes
-from .schema import LadderTable, QuantityTable
+from .schema import QuantityTable
 from .targets import target_fault
 
 _MOVED = (Kind.TRANSLATION, Kind.ROTATION)
@@ -250,35 +250,44 @@ def _whole(table: QuantityTable) -> Iterator[Fault]:
 def steps_of(table: QuantityTable) -> tuple[list[float] | None, str | None]:
     """The magnitudes of its ladder and their unit, if it has one of its own."""
     ladder = table.ladder
-    return (ladder.steps, ladder.unit) if isinstance(ladder, LadderTable) else (ladder, None)
+    return (ladder.get("steps"), ladder.get("unit")) if isinstance(ladder, dict) else (ladder, None)
 
 
 def _ladder(table: QuantityTable) -> Iterator[Fault]:
+    if table.ladder is None:
+        return
     steps, unit = steps_of(table)
-    if steps is None:
-        return
-    if table.kind not in MEASURED and table.range is None:
+    is_table = isinstance(table.ladder, dict)
+    if is_table and (table.ladder.keys() != {"steps", "unit"} or not isinstance(unit, str)):
+        yield Fault("ladder", f'write {{ steps = [1, 2, 5], unit = "mm" }}, not {_written(table.ladder)}')
+    elif not isinstance(steps, list) or len(steps) < 2 or not all(map(_is_number, steps)):
+        yield Fault("ladder", f"takes at least two magnitudes, such as [1, 2, 5], not {_written(steps)}")
+    elif table.kind not in MEASURED and table.range is None:
         yield Fault("ladder", f"{_a(table.kind)} has no magnitudes; only what is a number on a scale has")
-        return
-    wrong = [step for step in steps if step <= 0]
-    if wrong:
-        yield Fault("ladder", f"magnitudes are more than 0, not {wrong[0]:g}; both directions are tried")
+    elif min(steps) <= 0:
+        yield Fault("ladder", f"magnitudes are more than 0, not {min(steps):g}; both directions are tried")
     elif any(later <= earlier for earlier, later in pairwise(steps)):
-        yield Fault("ladder", f"must rise from the smallest to the greatest magnitude, got {shown(steps)}")
-    if unit is None:
-        return
+        yield Fault("ladder", f"must rise from the smallest to the greatest magnitude, got {_written(steps)}")
+    elif unit is not None:
+        yield from _ladder_unit(table, unit)
+
+
+def _ladder_unit(table: QuantityTable, unit: str) -> Iterator[Fault]:
     own = DIMENSIONS.get(table.kind, frozenset())
     if table.unit in UNITS:
         own = frozenset({dimension_of(table.unit)})
     elif table.kind in WHOLE:
         own = frozenset({Dimension.ANGLE})
-    fitting = [name for name in UNITS if dimension_of(name) in (*own, Dimension.TIME, Dimension.RATIO)]
+    fitting = tuple(name for name in UNITS if dimension_of(name) in (*own, Dimension.TIME, Dimension.RATIO))
     if unit not in UNITS:
-        yield Fault("ladder", unit, tuple(fitting))
+        yield Fault("ladder", unit, fitting)
     elif unit not in fitting:
-        yield Fault(
-            "ladder", f"{unit!r} measures no fault of {_a(table.kind)}; use {_listed(tuple(fitting))}"
-        )
+        yield Fault("ladder", f"{unit!r} measures no fault of {_a(table.kind)}; use {_listed(fitting)}")
+
+
+def _written(value: Any) -> str:
+    """A value as it stands in the file, where that is short."""
+    return str(value) if len(str(value)) < 60 else shown(value)
 
 
 def _missing(table: QuantityTable, written: bool) -> Iterator[Fault]:

@@ -5,7 +5,8 @@ What the values mean together is checked where the tables are turned into operat
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from enum import StrEnum
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -18,11 +19,11 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
 
-class LadderTable(Table):
-    """``ladder = { steps = [1, 2, 5, 10, 20], unit = "mm" }``"""
+class Better(StrEnum):
+    """Which way a probe's number gets better."""
 
-    steps: Annotated[list[float], Field(min_length=2)]
-    unit: str
+    LESS = "less"
+    MORE = "more"
 
 
 class QuantityTable(Table):
@@ -39,7 +40,7 @@ class QuantityTable(Table):
     noise: float | None = None
     order: str | None = None
     relative: bool = False
-    ladder: Annotated[list[float], Field(min_length=2)] | LadderTable | None = None
+    ladder: Any = None
     repeatability: float | None = None
     missing: str | None = None
     tcp: float | None = None
@@ -157,7 +158,7 @@ class ProbeTable(Table):
     call: str
     tolerance: Annotated[float, Field(ge=0)] = 1e-6
     result: dict[str, Any] | None = None
-    better: Literal["less", "more"] | None = None
+    better: Annotated[Better | None, Field(strict=False)] = None
 
 
 class VocabularyTable(Table):
