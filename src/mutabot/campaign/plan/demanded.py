@@ -16,7 +16,7 @@ from .planned import Plan
 def with_demanded(
     plan: Plan, demands: Sequence[Demand], vocabulary: Vocabulary, families: Sequence[str]
 ) -> Plan:
-    """The plan with a mutant for each demanded magnitude that its ladder lacks, behind all others.
+    """The plan with a mutant for each demanded magnitude that its ladder lacks.
 
     Where graded mutants were not asked for, the ladders stay of which a demand speaks, and no others.
     """
@@ -24,13 +24,20 @@ def with_demanded(
         return plan
     wanted = _wanted(apart(plan.mutants)[1], demands, vocabulary)
     mutants = [one for one in plan.mutants if GRADED in families or not one.ladder or wanted.get(one.ladder)]
-    number = max((one.number for one in mutants), default=0)
     for ladder in apart(mutants)[1]:
-        for size in wanted.get(ladder.id, ()):
-            if not any(is_same(one.magnitude or 0.0, size) for one in ladder.mutants):
-                number += 1
-                mutants.append(_at(ladder.mutants[0], size, number))
+        mutants += [
+            _at(ladder.mutants[0], size)
+            for size in wanted.get(ladder.id, ())
+            if not any(is_same(one.magnitude or 0.0, size) for one in ladder.mutants)
+        ]
     return replace(plan, mutants=mutants)
+
+
+def ladders_last(plan: Plan) -> Plan:
+    """The plan with graded mutants behind all others, whose numbers are the same with and without them."""
+    alone, ladders = apart(plan.mutants)
+    mutants = [*alone, *(mutant for ladder in ladders for mutant in ladder.mutants)]
+    return replace(plan, mutants=[replace(one, number=at) for at, one in enumerate(mutants, start=1)])
 
 
 def demanded_of(
@@ -57,14 +64,13 @@ def _kind_of(mutant: Mutant, vocabulary: Vocabulary) -> Kind | None:
     return next((one.kind for one in quantities if one.name == mutant.quantity), None)
 
 
-def _at(mutant: Mutant, size: float, number: int) -> Mutant:
+def _at(mutant: Mutant, size: float) -> Mutant:
     """Another magnitude of the same fault."""
     old, new = f"{mutant.magnitude:g}", f"{size:g}"
     before, _, behind = mutant.description.rpartition(old)
     variant = mutant.variant.removeprefix(mutant.direction)
     return replace(
         mutant,
-        number=number,
         magnitude=size,
         variant=f"{mutant.direction}{new}{variant.removeprefix(old)}",
         description=f"{before}{new}{behind}",

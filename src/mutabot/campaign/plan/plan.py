@@ -33,7 +33,7 @@ from mutabot.operators import Operator, Subject, load_all
 from mutabot.operators.operator import with_operation
 from mutabot.operators.passage import Passage, rehearse
 
-from .demanded import with_demanded
+from .demanded import ladders_last, with_demanded
 from .moments import at_moments
 from .planned import Plan
 
@@ -58,7 +58,7 @@ def make_plan(
     plan = _plan_of_calls(baseline, vocabulary, operators)
     if tuple(wanted) != (None,):
         plan = at_moments(plan, baseline, vocabulary, wanted)
-    plan = with_demanded(plan, demands, vocabulary, tuple(families))
+    plan = ladders_last(with_demanded(plan, demands, vocabulary, tuple(families)))
     first = len(plan.mutants)
     planted = baseline.program.planted.values()
     of_text = [replace(one.mutant, number=first + one.mutant.number) for one in planted]
