@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
+from mutabot.operators._evidence import SENSORS
 from mutabot.operators.graded._ladders import Ladder, per_second
 from mutabot.operators.graded._shape import GradedOperator, Passed
 from mutabot.operators.operator import Example, Subject
@@ -19,6 +20,7 @@ class Drift(GradedOperator):
     name = "drift"
     summary = "A reading drifts: it is off by δ for every second of simulated time since the test began."
     where = "every number that is read, with a clock in the vocabulary"
+    stands_for = f"A sensor that warms up, or odometry that is summed: {SENSORS}."
     rank = 230
     asks_time = True
     examples: ClassVar[tuple[Example, ...]] = (

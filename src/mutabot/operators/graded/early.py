@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.model.values.units import Dimension
+from mutabot.operators._evidence import TIMING
 from mutabot.operators.graded._ladders import Ladder, ladder_in
 from mutabot.operators.graded._shape import GradedOperator, Passed
 from mutabot.operators.operator import Example, Subject
@@ -20,6 +21,7 @@ class Early(GradedOperator):
     name = "early"
     summary = "A wait is so much shorter, so that what comes next comes too early."
     where = "waits: arguments of kind `duration`"
+    stands_for = f"A wait that was measured on a faster machine: {TIMING}."
     rank = 270
     directions = ("-",)
     examples: ClassVar[tuple[Example, ...]] = (

@@ -10,6 +10,7 @@ from mutabot.families import GRADED
 from mutabot.model import Call, Kind, Middleware, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.units import Dimension, convert
+from mutabot.operators._evidence import TIMING
 from mutabot.operators.graded._ladders import ladder_in
 from mutabot.operators.graded._shape import graded
 from mutabot.operators.operator import Example, Operator, Subject
@@ -31,6 +32,7 @@ class Lag(Operator):
     where = (
         "every command that is no wait, and every reading, with a `wait` in the vocabulary or a middleware"
     )
+    stands_for = f"A busy network or controller: {TIMING}."
     rank = 260
     asks_wait = True
     is_for_oracle = False

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
+from mutabot.operators._evidence import PARAMETERS
 from mutabot.operators.graded._ladders import Ladder, own_ladder
 from mutabot.operators.graded._shape import GradedOperator, Passed
 from mutabot.operators.operator import Example, Subject
@@ -26,6 +27,7 @@ class Offset(GradedOperator):
     name = "offset"
     summary = "A commanded or read value is off by a fixed amount, at every call, in one direction."
     where = "every number that is commanded or read, bar waits"
+    stands_for = f"A tool, a fixture or a camera that stands off, or a wrong constant: {PARAMETERS}."
     rank = 200
     examples: ClassVar[tuple[Example, ...]] = (
         Example(

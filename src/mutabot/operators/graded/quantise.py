@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
+from mutabot.operators._evidence import SENSORS
 from mutabot.operators.graded._ladders import Ladder, own_ladder
 from mutabot.operators.graded._shape import GradedOperator, Passed
 from mutabot.operators.operator import Example, Subject
@@ -24,6 +25,7 @@ class Quantise(GradedOperator):
         " converter."
     )
     where = "every number that is commanded or read, bar orientations as a whole"
+    stands_for = f"A coarse encoder or converter: {SENSORS}."
     rank = 240
     directions = ("",)
     examples: ClassVar[tuple[Example, ...]] = (

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.units import Dimension, convert
+from mutabot.operators._evidence import PARAMETERS
 from mutabot.operators.graded._ladders import Ladder, ladder_in
 from mutabot.operators.graded._shape import GradedOperator, Passed
 from mutabot.operators.operator import Example, Subject
@@ -26,6 +27,7 @@ class Scale(GradedOperator):
         "A commanded or read value is a share too large (+) or too small (−), as after a wrong calibration."
     )
     where = "every number whose zero means nothing: amounts, positions, distances, no target angles"
+    stands_for = f"A wrong gain or calibration factor: {PARAMETERS}."
     rank = 210
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(_MOVE, None, _Y, "+5%", 5.0, "percent", "+"), {"dy": 0.2}, performed=({"dy": 0.21},)),

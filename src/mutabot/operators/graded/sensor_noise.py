@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.operators._draws import Draws
+from mutabot.operators._evidence import SENSORS
 from mutabot.operators.graded._ladders import Ladder, own_ladder
 from mutabot.operators.graded._shape import GradedOperator, Passed
 from mutabot.operators.operator import Example, Subject
@@ -24,6 +25,7 @@ class SensorNoise(GradedOperator):
         "every σ: a larger one is the same noise, only larger."
     )
     where = "every number that is read"
+    stands_for = f"A worse sensor than the program was written for: {SENSORS}."
     rank = 220
     draws = True
     directions = ("",)

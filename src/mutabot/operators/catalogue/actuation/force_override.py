@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
-from mutabot.operators.catalogue._evidence import PARAMETERS
+from mutabot.operators._evidence import PARAMETERS
 from mutabot.operators.operator import Example, Subject
 
 from ._override import Override

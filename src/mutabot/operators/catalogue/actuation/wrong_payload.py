@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
-from mutabot.operators.catalogue._evidence import PARAMETERS
+from mutabot.operators._evidence import PARAMETERS
 from mutabot.operators.catalogue._shape import ValueFault, like
 from mutabot.operators.operator import Example, Subject, map_numbers
 

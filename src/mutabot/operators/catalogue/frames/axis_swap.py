@@ -7,7 +7,7 @@ from itertools import combinations
 from typing import ClassVar
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.operators.catalogue._evidence import FRAMES
+from mutabot.operators._evidence import FRAMES
 from mutabot.operators.catalogue._pairs import Exchange, is_alike
 from mutabot.operators.operator import Example, Subject
 

@@ -23,7 +23,7 @@ from mutabot.model import (
 )
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import Quaternion, from_euler, inverse, product
-from mutabot.operators.catalogue._evidence import FRAMES
+from mutabot.operators._evidence import FRAMES
 from mutabot.operators.operator import Example, Operator, Subject, is_number
 from mutabot.operators.robot._values import NOT_GIVEN, label, quantity_of, why_away
 

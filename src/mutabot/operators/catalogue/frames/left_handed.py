@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 from mutabot.model import Kind, Mode, Operation, Path, Pattern, Quantity
 from mutabot.model.values.quantity import Value
-from mutabot.operators.catalogue._evidence import FRAMES
+from mutabot.operators._evidence import FRAMES
 from mutabot.operators.catalogue._shape import Away, ValuesFault, given, is_written, side_of
 from mutabot.operators.operator import Example, Subject, is_number, map_numbers
 from mutabot.operators.robot._values import label, quantity_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from mutabot.operators.catalogue._evidence import FRAMES
+from mutabot.operators._evidence import FRAMES
 from mutabot.operators.operator import Example, Subject
 
 from ._tcp import MOVE, WrongTcp, Z

@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from mutabot.model import Call, Middleware, Proceed, Reply
 from mutabot.model.values.quantity import Value
+from mutabot.operators._evidence import TIMING
 from mutabot.operators.catalogue._commands import CommandFault
-from mutabot.operators.catalogue._evidence import TIMING
 from mutabot.operators.operator import Example, Subject
 
 from ._gripping import GRIP, WHERE, is_gripping

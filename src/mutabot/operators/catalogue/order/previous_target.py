@@ -8,8 +8,8 @@ from typing import ClassVar
 
 from mutabot.model import Call, Kind, Middleware, Mode, Operation, Path, Proceed, Quantity, Reply
 from mutabot.model.values.quantity import WHOLE, Value, same_values
+from mutabot.operators._evidence import TIMING
 from mutabot.operators.catalogue._commands import CommandFault
-from mutabot.operators.catalogue._evidence import TIMING
 from mutabot.operators.operator import Example, Subject
 
 _KINDS = WHOLE | {Kind.TRANSLATION, Kind.ROTATION}

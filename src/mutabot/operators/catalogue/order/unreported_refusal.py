@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from mutabot.model import Call, Kind, Middleware, Mode, Operation, Path, Proceed, Quantity, Reply
 from mutabot.model.values.quantity import Value
+from mutabot.operators._evidence import COMMANDS
 from mutabot.operators.catalogue._commands import CommandFault, idle_of
-from mutabot.operators.catalogue._evidence import COMMANDS
 from mutabot.operators.operator import Example, Subject
 
 _DX = Quantity("dx", Path("dx"), Kind.TRANSLATION, "x", "m", "base", Mode.BY)

@@ -7,7 +7,7 @@ from typing import ClassVar
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.model.values.rotation import from_euler
 from mutabot.model.values.units import convert
-from mutabot.operators.catalogue._evidence import FRAMES
+from mutabot.operators._evidence import FRAMES
 from mutabot.operators.operator import Example, Subject
 from mutabot.operators.robot._values import quantity_of
 

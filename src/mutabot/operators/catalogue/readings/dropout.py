@@ -12,7 +12,7 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Middleware, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.named import COMING
 from mutabot.model.values.quantity import Value
-from mutabot.operators.catalogue._evidence import SENSORS
+from mutabot.operators._evidence import SENSORS
 from mutabot.operators.operator import Example, Operator, Subject, map_numbers
 from mutabot.operators.robot._values import NOT_GIVEN, label, quantity_of
 

@@ -10,7 +10,7 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Middleware, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.named import COMING
 from mutabot.model.values.quantity import Value
-from mutabot.operators.catalogue._evidence import TIMING
+from mutabot.operators._evidence import TIMING
 from mutabot.operators.operator import Example, Operator, Subject
 
 #: seconds: a camera whose picture has to be worked out

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
-from mutabot.operators.catalogue._evidence import SENSORS
+from mutabot.operators._evidence import SENSORS
 from mutabot.operators.catalogue._shape import ValueFault, middle_of, within
 from mutabot.operators.operator import Example, Subject, is_number, map_numbers
 from mutabot.operators.robot._values import quantity_of

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
-from mutabot.operators.catalogue._evidence import SENSORS
+from mutabot.operators._evidence import SENSORS
 from mutabot.operators.catalogue._pairs import Exchange, is_alike
 from mutabot.operators.operator import Example, Subject
 

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from mutabot.model import Kind, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
-from mutabot.operators.catalogue._evidence import SENSORS
+from mutabot.operators._evidence import SENSORS
 from mutabot.operators.catalogue._shape import Away, ValueFault
 from mutabot.operators.operator import Example, Subject
 from mutabot.operators.robot._values import quantity_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import ClassVar
 
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.operators.catalogue._evidence import UNITS
+from mutabot.operators._evidence import UNITS
 from mutabot.operators.operator import Example, Subject
 
 from ._factor import OtherUnit, both_ways
