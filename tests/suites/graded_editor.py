@@ -94,4 +94,5 @@ def _later(editor: CallEditor, mutant: Mapping[str, Any]) -> Edit:
     told = editor.operation
     is_command = told.get("command", bool(told.get("arguments")) or not told.get("result"))
     when = "before" if is_command else "after"
-    return editor._with_callee(f"{GRADED}.{when}({_hint(editor, 'wait')}, {seconds!r}, {editor._callee()})")
+    wait = f"lambda SECONDS: {_hint(editor, 'wait')}"
+    return editor._with_callee(f"{GRADED}.{when}({wait}, {seconds!r}, {editor._callee()})")
