@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import sys
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -115,13 +115,13 @@ class Door:
         cannot = partial(why_not, means)
         before = self._last_written.get(_text_of(pattern))
         self._last_written[_text_of(pattern)] = {name: snapshot(value) for name, value in values.items()}
-        found = Call(
+        times: dict[str, Any] = {}
+        if self.time is not None:
+            times = {"time": self.time.now, "wait": self.time.wait if means is None else means.sleep}
+        return Call(
             self.operation, pattern, values, current=current, payload=invocation, cannot=cannot,
-            previous=lambda: before,
+            previous=lambda: before, **times,
         )  # fmt: skip
-        if self.time is None:
-            return found
-        return replace(found, time=self.time.now, wait=self.time.wait if means is None else means.sleep)
 
     def perform(self, call: Call, original: Call) -> Any:
         """Do what the call says; returns the operation's own result (an awaitable for async ones)."""
