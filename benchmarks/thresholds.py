@@ -24,6 +24,7 @@ import time
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
+from math import comb
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -118,9 +119,12 @@ def seeds(given: argparse.Namespace, place: Path) -> bool:
                 total += 1
                 held += _holds(own, others)
     promised = 1 - 2 * 0.5**given.rounds
-    share = f"{held / total:.0%}; promised {promised:.0%}"
+    fewer = sum(
+        comb(total, count) * promised**count * (1 - promised) ** (total - count) for count in range(held + 1)
+    )
+    share = f"{held / total:.0%}; promised {promised:.0%}, which gives so few or fewer in {fewer:.0%}"
     print(f"{held} of {total} brackets hold the median of the other seeds' rounds ({share})")
-    return held / total >= promised
+    return fewer > 0.05
 
 
 def _holds(own: list[Bracket], others: list[Bracket]) -> bool:
