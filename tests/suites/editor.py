@@ -209,6 +209,10 @@ class CallEditor:
 
     def _reverse(self) -> Edit:
         quantity = self._quantity()
+        if quantity["kind"] == "quaternion":  # the inverse rotation
+            return self._argument(f"{PLANTED}.partial({PLANTED}.conjugate, {quantity['order']!r})")
+        if quantity["kind"] == "euler":
+            raise CannotWriteError("the inverse of Euler angles")
         limits = quantity.get("range")
         if limits is None:
             return self._argument(f"{PLANTED}.negative", minus=True)

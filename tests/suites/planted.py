@@ -40,6 +40,12 @@ def negative_within(low: float, high: float, turn: float, value: Any) -> Any:
     return each(turned, value)
 
 
+def conjugate(order: str, value: Any) -> Any:
+    """The quaternion of the inverse rotation."""
+    items = [part if name == "w" else -part for name, part in zip(order, value, strict=True)]
+    return type(value)(items) if isinstance(value, list | tuple) else type(value)(*items)
+
+
 def noisy(deviation: float, value: Any) -> Any:
     """With Gaussian noise; the judge looks at several draws."""
     return each(lambda number: number + _RANDOM.gauss(0.0, deviation), value)
