@@ -117,6 +117,7 @@ def end(ends: dict[str, dict[str, Outcome]], mutant: str) -> Outcome:
     return ends["replay"][f"mission.py:{mutant}"]
 
 
+@pytest.mark.whole
 def test_both_engines_agree_on_every_mutant(ends: dict[str, dict[str, Outcome]]) -> None:
     assert ends["auto"].keys() == ends["replay"].keys()
     different = {

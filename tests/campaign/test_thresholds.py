@@ -111,6 +111,7 @@ def test_what_the_robot_refuses_is_no_detection(found: dict[str, list[Bracket]])
     assert all(one.refused is None for one in found["arm.move_by#1:dx:offset=+"])
 
 
+@pytest.mark.whole
 def test_magnitude_and_verdict_agree_in_both_engines(tmp_path: Path) -> None:
     ends = []
     for engine in ("branch", "replay"):

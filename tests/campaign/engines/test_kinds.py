@@ -146,6 +146,7 @@ def by_function(found: dict[str, Outcome]) -> dict[str, dict[str, Outcome]]:
     return table
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("plugins")
 def test_both_engines_agree_on_groups_doctests_subtests_and_limits_of_the_suite(tmp_path: Path) -> None:
     folder = write_project(tmp_path, MISSION, TESTS, vocabulary=MOVES, configuration=CONFIGURATION)

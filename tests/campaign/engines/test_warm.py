@@ -47,6 +47,7 @@ TESTS = """
     """
 
 
+@pytest.mark.whole
 def test_the_engines_agree_where_tests_start_processes(tmp_path: Path) -> None:
     project = write_project(tmp_path, MISSION, TESTS)
     found: dict[str, dict[str, Outcome]] = {

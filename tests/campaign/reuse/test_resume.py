@@ -546,6 +546,7 @@ def assert_nothing_is_left(project: Project) -> None:
     assert not list(project.journal.parent.glob("*.new"))
 
 
+@pytest.mark.whole
 def test_campaigns_killed_at_random_moments_end_like_an_undisturbed_one() -> None:
     words = [sys.executable, str(BENCHMARK), "--kills", "5", "--rounds", "1", "--seed", "7"]
     done = subprocess.run(words, capture_output=True, text=True, check=False)

@@ -68,6 +68,7 @@ class Timed(Quiet):
         super().advance(line)
 
 
+@pytest.mark.whole
 def test_mutants_that_only_wait_leave_their_places_to_others(tmp_path: Path) -> None:
     limits = "timeout_seconds = 6\ntimeout_factor = 1000.0\n"
     project = write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + limits)
