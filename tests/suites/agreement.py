@@ -23,6 +23,7 @@ from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
 from .editor import Facts
+from .graded_editor import OPERATORS as GRADED_OPERATORS
 from .judge import IGNORED, MORE_DRAWS, Judge, Judgement, is_drawn, is_raced
 
 ENGINES = ("branch", "replay")
@@ -230,6 +231,8 @@ def left_out(data: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     places = {one["id"].rpartition(":")[0].rpartition(":")[0]: one for one in data["mutants"]}
     for item in data["left_out"]:
         subject, _, operator = item["id"].rpartition(":")
+        if operator.partition("=")[0] in GRADED_OPERATORS:
+            continue  # its magnitude is not told
         site, _, quantity = subject.rpartition(":")
         other = places.get(site)
         if (
@@ -316,7 +319,10 @@ def request_for(
 def campaign(request: Request) -> dict[str, Any]:
     """A whole campaign, as the JSON of ``mutabot results``."""
     with Journal.open(run_campaign(request, Silent())) as journal:
-        return results_data(read_results(journal))
+        data = results_data(read_results(journal))
+    # of a ladder the search runs some magnitudes; reports hold them apart, the judge does not
+    ran = [one for one in data["graded"] if all(end.get("verdict") for end in one["rounds"])]
+    return {**data, "mutants": [*data["mutants"], *ran]}
 
 
 def chosen(request: Request, only: Mapping[str, int]) -> list[str]:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .editor import CallEditor, Edit
 
+#: the operators that it writes
+OPERATORS = frozenset({"offset", "scale", "sensor-noise", "drift", "quantise", "deadband", "lag", "early"})
 GRADED = '__import__("_planted_graded")'
 #: in the SI's units, or fractions
 SIZES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "um": 1e-6, "rad": 1.0, "deg": 0.017453292519943295, "s": 1.0,
