@@ -41,7 +41,17 @@ def edit(editor: CallEditor, mutant: Mapping[str, Any]) -> Edit:
     is_read = mutant["quantity"] == "result" or any(
         mutant["quantity"].partition("[")[0] == path.partition("[")[0] for path in group
     )
-    return editor._result(change) if is_read else editor._argument(change)
+    if is_read:
+        return editor._result(change)
+    name = mutant["quantity"]
+    given = {one.arg for one in editor.call.keywords}
+    if name.isidentifier() and editor.pattern is None and name in editor._parameters():
+        place = editor._parameters().index(name)
+        if name not in given and place >= len(
+            editor.call.args
+        ):  # its default, which a person would write out
+            return editor._with_callee(f"{GRADED}.with_default({editor._callee()}, {name!r}, {change})")
+    return editor._argument(change)
 
 
 def _size(mutant: Mapping[str, Any], quantity: Mapping[str, Any]) -> float:

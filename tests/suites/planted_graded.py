@@ -5,6 +5,7 @@ Edits reach it by ``__import__("_planted_graded")``. Sizes are in the unit of th
 
 from __future__ import annotations
 
+import inspect
 import os
 import random
 from collections.abc import Callable
@@ -54,6 +55,16 @@ def with_deadband(size: float, name: str, relative: bool, value: float) -> float
     after = value if origin is None or abs(value - origin) >= size else origin
     _LAST[name] = after
     return after
+
+
+def with_default(function: Callable[..., Any], name: str, change: Change) -> Callable[..., Any]:
+    """A function that is told another value of a parameter than its default."""
+    default = inspect.signature(function).parameters[name].default
+
+    def told(*args: Any, **kwargs: Any) -> Any:
+        return function(*args, **{name: change(default), **kwargs})
+
+    return told
 
 
 def before(wait: Callable[[float], Any], seconds: float, function: Callable[..., Any]) -> Callable[..., Any]:
