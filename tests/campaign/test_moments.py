@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -46,9 +47,12 @@ TESTS = """
         assert not wrong, f"calls {wrong}"
 """
 
+#: runs *reverse* at a moment, in so many rounds
+Run = Callable[..., list[Outcome]]
+
 
 @pytest.fixture(params=["branch", "replay"])
-def outcome(request: pytest.FixtureRequest, tmp_path: Path):  # type: ignore[no-untyped-def]
+def outcome(request: pytest.FixtureRequest, tmp_path: Path) -> Run:
     """Runs *reverse* at a moment, and returns its outcome."""
 
     def run(moment: str, rounds: int = 1) -> list[Outcome]:
@@ -68,20 +72,20 @@ def calls_of(outcome: Outcome) -> list[int]:
     return [int(number) for number in inside.split(",")]
 
 
-def test_one_call_alone_is_wrong(outcome) -> None:  # type: ignore[no-untyped-def]
+def test_one_call_alone_is_wrong(outcome: Run) -> None:
     assert calls_of(outcome("7")[0]) == [7]
 
 
-def test_all_calls_from_one_on_are_wrong(outcome) -> None:  # type: ignore[no-untyped-def]
+def test_all_calls_from_one_on_are_wrong(outcome: Run) -> None:
     assert calls_of(outcome("from 48")[0]) == [48, 49, 50]
 
 
-def test_calls_in_a_window_of_simulated_time_are_wrong(outcome) -> None:  # type: ignore[no-untyped-def]
+def test_calls_in_a_window_of_simulated_time_are_wrong(outcome: Run) -> None:
     # the first tick is at 0.1 s, so call 12 begins 1 s after it
     assert calls_of(outcome("0.95-1.25 s")[0]) == [12, 13, 14]
 
 
-def test_a_drawn_call_is_one_in_each_round_and_not_always_the_same(outcome) -> None:  # type: ignore[no-untyped-def]
+def test_a_drawn_call_is_one_in_each_round_and_not_always_the_same(outcome: Run) -> None:
     drawn = [calls_of(one) for one in outcome("once", rounds=4)]
     assert all(len(calls) == 1 for calls in drawn)
     assert len({calls[0] for calls in drawn}) > 1

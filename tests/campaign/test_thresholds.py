@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
-from mutabot.model.graded.ladder import Bracket, bracket_of, seen
+from mutabot.model.graded.ladder import Bracket, Seen, bracket_of, seen
 from tests.campaign.project import Quiet, request_for, write_project
 
 ROBOT = """
@@ -76,14 +76,14 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[Bracket]]:
     request = request_for(folder, families=("graded",), rounds=2)
     with Journal.open(run_campaign(request, Quiet())) as journal:
         mutants = {one.id: one for one in journal.mutants()}
-        rows: dict[tuple[str, int], dict[float, object]] = {}
+        rows: dict[tuple[str, int], dict[float, Seen]] = {}
         for one in journal.outcomes():
             mutant = mutants[one.mutant]
             assert mutant.magnitude is not None
             rows.setdefault((mutant.ladder, one.round), {})[mutant.magnitude] = seen(one)
     brackets: dict[str, list[Bracket]] = {}
     for (ladder, _), row in rows.items():
-        brackets.setdefault(ladder.partition("run:")[2], []).append(bracket_of(row))  # type: ignore[arg-type]
+        brackets.setdefault(ladder.partition("run:")[2], []).append(bracket_of(row))
     return brackets
 
 
