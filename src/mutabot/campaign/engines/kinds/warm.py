@@ -1,7 +1,8 @@
 """Warm: like replay, but processes begin as forks of one that has imported what they import.
 
 It is for tests that start processes: worker and nodes then begin in some ten milliseconds instead of several
-hundred. What ends as an error, or so that it says nothing, is run once more by replay.
+hundred; and for mutants that act while the program is imported, since all that comes before that import is the
+same for all of them. What ends as an error, or so that it says nothing, is run once more by replay.
 """
 
 from __future__ import annotations
@@ -31,9 +32,9 @@ class Warm:
     may_share = False
 
     def run(self, campaign: Campaign, trials: list[Trial], left: Remainder) -> Iterator[Outcome | ControlEnd]:
-        """Controls first, then each mutant by itself, if its tests start processes."""
+        """Controls first, then each mutant by itself, if it is one that this is for."""
         is_all = campaign.request.engine == self.name
-        own = [trial for trial in trials if is_all or _starts_processes(campaign, *trial)]
+        own = [trial for trial in trials if is_all or _gains(campaign, *trial)]
         if len(own) < _LEAST and not is_all:
             own = []
         chosen = {(mutant.id, round) for mutant, round in own}
@@ -59,9 +60,11 @@ class Warm:
             yield from run_controls(campaign, mutants, warm=True)
 
 
-def _starts_processes(campaign: Campaign, mutant: Mutant, round: int) -> bool:
-    """Whether tests that judge a mutant have had processes of the program below them."""
+def _gains(campaign: Campaign, mutant: Mutant, round: int) -> bool:
+    """Whether it acts before any test, or tests that judge it have had processes of the program below them."""
     baseline = campaign.baseline
+    if baseline.is_early(mutant):
+        return True
     ends = (baseline.ends[round, test] for test in baseline.judges(round, mutant))
     return any(end.footprint is not None and end.footprint.processes for end in ends)
 
