@@ -8,7 +8,7 @@ import runpy
 import sys
 import traceback
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -139,7 +139,7 @@ def test_an_alternative_chosen_at_the_first_evaluation_stands_at_once(tmp_path: 
     with imported(tmp_path, text) as (module, hook):
         told: list[int] = []
 
-        def fork(number: int, indexes: frozenset[int]) -> None:
+        def fork(number: int, alike: Sequence[frozenset[int]]) -> None:
             told.append(number)
             if len(told) == 2:  # the second test is where this process becomes the mutant
                 hook.alternatives.activate(choices(text)[0][0])

@@ -19,6 +19,7 @@ from mutabot.inside.calls.bypasses import Bypasses
 from mutabot.inside.calls.door import Door
 from mutabot.inside.calls.passing import Aside, Passing, is_under_way
 from mutabot.inside.calls.trace import Recorder
+from mutabot.inside.fork.bunch import Bunch
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.readings.along import Along, Rehearsal, rehearse
 from mutabot.inside.readings.clock import ClockReader
@@ -30,7 +31,7 @@ from mutabot.inside.targets.interception import Interception
 from mutabot.inside.targets.target import Finding, Handler
 from mutabot.inside.text.returns import Returns
 from mutabot.inside.text.session_text import SessionText
-from mutabot.model import Call, Choice, Moment, Mutant, Operation, Probe, Role, Span
+from mutabot.model import Call, Moment, Mutant, Operation, Probe, Role, Span
 from mutabot.model.values.quantity import Value
 
 from .evidence import Evidence, together
@@ -217,13 +218,13 @@ class Session:
         self.passing.trunk = trunk
         trunk.is_moment = self._is_moment
 
-    def become(self, mutant: Mutant, choices: tuple[Choice, ...]) -> None:
-        """In a branch that was just forked: be its mutant; ``choices`` are its alternatives in the text."""
-        self.passing.trunk, self.branch = None, mutant.id
-        self.activate(mutant)
+    def become(self, bunch: Bunch) -> None:
+        """In a branch that was just forked: be its mutants."""
+        self.passing.trunk, self.branch = None, bunch.first.id
+        self.activate(bunch.first)
         self._start_activations()
         if self.text is not None:
-            self.text.become(choices)
+            self.text.become(bunch)
 
     def take_on(self, job: Job, pipe: Sink) -> None:
         """Go on with a job of the same program and vocabulary. What was installed stays."""

@@ -1,8 +1,8 @@
 """Trunk and branches: run each test once as the original, and fork at the first moment a mutant differs.
 
-At a site with live mutants the trunk forks one child per mutant. The child inherits everything that came
-before, takes on its mutant, finishes the test it is in, reports, and leaves without taking down what it
-shares with the trunk. The trunk goes on as the original.
+At a site with live mutants the trunk forks one child per mutant, or per bunch of mutants that behave alike.
+The child inherits everything that came before, takes on its mutant, finishes the test it is in, reports, and
+leaves without taking down what it shares with the trunk. The trunk goes on as the original.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ from mutabot.border.job import Branching
 from mutabot.border.lines import BranchDied, TokensHeld, Unbranched, Undiverged
 from mutabot.inside.pipe import Pipe
 from mutabot.inside.watchdogs import alarm_held
-from mutabot.model import Call, Choice, Mutant, Span
+from mutabot.model import Call, Mutant, Span
 from mutabot.model.alternative import AT_ONCE
 
+from .bunch import Board, Bunch
 from .forkable import open_now, why_not
 from .isolate import Foot, isolate_files
 from .lifeline import ALONE
@@ -46,7 +47,7 @@ class Child:
     """A branch that runs.
 
     Attributes:
-        mutant: id of its mutant.
+        mutants: ids of the mutants that it began as.
         test: the test it is in.
         pid, pidfd: its process.
         until: moment (``time.monotonic``) at which its time is up.
@@ -54,7 +55,7 @@ class Child:
         overdue, where: whether its time was up, and where it was then.
     """
 
-    mutant: str
+    mutants: tuple[str, ...]
     test: str
     pid: int
     pidfd: int
@@ -70,8 +71,8 @@ class Branch(Protocol):
     def begin(self) -> None:
         """First of all, right after the fork."""
 
-    def become(self, mutant: Mutant, choices: tuple[Choice, ...]) -> None:
-        """Last of all: go on from here as this mutant; ``choices`` are its alternatives in the text."""
+    def become(self, bunch: Bunch) -> None:
+        """Last of all: go on from here as these mutants."""
 
 
 @dataclass(slots=True)
@@ -95,6 +96,7 @@ class Trunk:
     where_is: Callable[[int], str | None] = lambda _: None
     is_moment: Callable[[Mutant, int], bool] = lambda mutant, number: True
     _tokens: Tokens = field(init=False)
+    _board: Board = field(init=False)
     _live: dict[Key, list[Mutant]] = field(default_factory=dict)
     _tests: dict[str, frozenset[str]] = field(default_factory=dict)
     _decided: set[str] = field(default_factory=set)
@@ -105,12 +107,14 @@ class Trunk:
     _pid: int = field(default_factory=os.getpid)
     _forking: bool = False
     _copied: bool = False
+    _bunch: Bunch | None = None
 
     def __post_init__(self) -> None:
         os.register_at_fork(before=self._note_copy)
         reading, writing = self.branching.tokens
         self._tokens = Tokens(reading, writing, lambda held: self.pipe.send(TokensHeld(held)))
         self._tests = {mutant: frozenset(tests) for mutant, tests in self.branching.tests.items()}
+        self._board = Board(self.branching.mutants)
         self._known = open_now()
         for mutant in self.branching.mutants:
             for key in self._keys(mutant):
@@ -139,12 +143,19 @@ class Trunk:
         pattern = call.pattern.text if call.pattern is not None else None
         key = (span, call.operation.target, pattern)
         here = self._live.get(key, ())
-        self._fork(key, [one for one in here if one.moment is None or self.is_moment(one, number)])
+        self._fork(key, [[one] for one in here if one.moment is None or self.is_moment(one, number)])
 
-    def fork_at_place(self, place: int, indexes: frozenset[int]) -> None:
-        """The same at a place of the program text, for the mutants that are these alternatives."""
+    def fork_at_place(self, place: int, alike: Sequence[frozenset[int]]) -> None:
+        """The same at a place of the program text, for the mutants that are these alternatives.
+
+        ``alike``: those that have one value now stand together.
+        """
         here = self._live.get(place, ())
-        self._fork(place, [one for one in here if self._index(one, place) in indexes])
+        bunches: list[list[Mutant]] = []
+        for indexes in alike:
+            found = [one for one in here if self._index(one, place) in indexes]
+            bunches += [found] if min(indexes) >= 0 else [[one] for one in found]
+        self._fork(place, bunches)
 
     def places(self) -> dict[int, frozenset[int]]:
         """The alternatives of the program text that are live in the running test, by place."""
@@ -182,23 +193,48 @@ class Trunk:
         is_alone = len(choices) == 1 and not any(single.operation for single in mutant.singles)
         return choices[0].index if is_alone else AT_ONCE
 
-    def _fork(self, key: Key, here: Sequence[Mutant]) -> None:
-        if not here or os.getpid() != self._pid:  # a copy that the test has forked for itself
+    def _fork(self, key: Key, bunches: Sequence[Sequence[Mutant]]) -> None:
+        if not any(bunches) or os.getpid() != self._pid:  # a copy that the test has forked for itself
             return
         with alarm_held():
-            self._fork_due(key, here)
+            self._fork_due(key, bunches)
 
-    def _fork_due(self, key: Key, here: Sequence[Mutant]) -> None:
-        due = [mutant for mutant in here if self._is_due(mutant)]
+    def _fork_due(self, key: Key, bunches: Sequence[Sequence[Mutant]]) -> None:
+        found = [[mutant for mutant in bunch if self._is_due(mutant)] for bunch in bunches]
+        due = [bunch for bunch in found if bunch]
         self._live[key] = [one for one in self._live[key] if one.id not in self._decided]
         if not due:
             return
+        ids = [mutant.id for bunch in due for mutant in bunch]
+        self._branched.update(ids)
+        if self._may_fork(ids):
+            self._fork_each(due)
+
+    def _may_fork(self, mutants: Sequence[str]) -> bool:
+        """Whether forking is safe; if not, it is told that these mutants are not branched here."""
         reason = why_not((child.pid for child in self._children.values()), self._known)
         if reason is not None:
-            self._branched.update(mutant.id for mutant in due)
-            self.pipe.send(Unbranched(self._test, tuple(mutant.id for mutant in due), reason))
+            self.pipe.send(Unbranched(self._test, tuple(mutants), reason))
+        return reason is None
+
+    def part_at_place(self, place: int, alike: Sequence[frozenset[int]]) -> None:
+        """In a branch of several mutants: those that have another value now go on in branches of their own.
+
+        One after the other, while this process waits: together they need the one token that they have.
+        """
+        bunch = self._bunch
+        if bunch is None or os.getpid() != self._pid:  # as above
             return
-        self._fork_each(due)
+        with alarm_held():
+            for indexes in alike:
+                parting = bunch.take_out(place, indexes)
+                if self._may_fork([mutant.id for mutant in parting]):
+                    began = time.perf_counter()
+                    pid = self._fork_one(parting)
+                    if pid == 0:
+                        return
+                    os.waitpid(pid, 0)
+                    bunch.waited += time.perf_counter() - began
 
     def finish(self) -> None:
         """All tests are over: wait for the branches that still run, holding no token meanwhile."""
@@ -219,37 +255,50 @@ class Trunk:
         return mutant.id not in self._decided
 
     def _is_running(self, mutant: str) -> bool:
-        return any(child.mutant == mutant for child in self._children.values())
+        return any(mutant in child.mutants for child in self._children.values())
 
-    def _fork_each(self, mutants: list[Mutant]) -> None:
-        for mutant in mutants:
+    def _fork_each(self, bunches: Sequence[list[Mutant]]) -> None:
+        for bunch in bunches:
             self._wait_while_paused()
-            self._branched.add(mutant.id)
-            foot = Foot()
-            self._forking = True
-            pid = os.fork()
-            self._forking = False
+            pid = self._fork_one(bunch)
             if pid == 0:
-                self._become_branch(mutant, foot)
                 return
-            limit = self.branching.walls.get(self._test, self.branching.wall)
+            # those that part wait for each other
+            limit = self.branching.walls.get(self._test, self.branching.wall) * len(bunch)
             pidfd = os.pidfd_open(pid)
-            child = Child(mutant.id, self._test, pid, pidfd, time.monotonic() + limit, limit)
-            self._children[pidfd] = child
+            ids = tuple(mutant.id for mutant in bunch)
+            self._children[pidfd] = Child(ids, self._test, pid, pidfd, time.monotonic() + limit, limit)
             self._take_token()
+
+    def _fork_one(self, bunch: list[Mutant]) -> int:
+        """Fork a branch; 0 in the branch, which is these mutants then."""
+        for mutant in bunch:
+            self._board.clear(mutant.id)
+        foot = Foot()
+        self._forking = True
+        pid = os.fork()
+        self._forking = False
+        if pid == 0:
+            self._become_branch(bunch, foot)
+        return pid
 
     def _note_copy(self) -> None:
         """This process is about to be forked, by whomever."""
         self._copied = self._copied or not self._forking
+        if self._bunch is not None:
+            self._bunch.is_copied |= not self._forking
 
-    def _become_branch(self, mutant: Mutant, foot: Foot) -> None:
+    def _become_branch(self, mutants: list[Mutant], foot: Foot) -> None:
         self.branch.begin()
         for child in self._children.values():
             os.close(child.pidfd)
         self._children.clear()
         isolate_files(self.log)
         foot.restore()
-        self.branch.become(mutant, self.branching.choices.get(mutant.id, ()))
+        choices = {mutant.id: self.branching.choices.get(mutant.id, ()) for mutant in mutants}
+        self._bunch = Bunch(mutants, choices, self._board, self.part_at_place)
+        self._pid = os.getpid()
+        self.branch.become(self._bunch)
 
     def _wait_while_paused(self) -> None:
         """Branches at work end meanwhile, and what they held goes back; the trunk keeps its own token."""
@@ -303,8 +352,8 @@ class Trunk:
         _, status = os.waitpid(child.pid, 0)
         os.close(child.pidfd)
         code = os.waitstatus_to_exitcode(status)
-        if code != ALIVE and not self.branching.every_test:
-            self._decided.add(child.mutant)
-        if code not in (ALIVE, DECIDED, STOPPED):
+        if not self.branching.every_test:
+            self._decided.update(one for one in child.mutants if self._board.code(one) != ALIVE)
+        if code not in (ALIVE, DECIDED, STOPPED) and len(child.mutants) == 1:  # of several, who knows
             overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None
-            self.pipe.send(BranchDied(child.mutant, child.test, code, overdue, child.where))
+            self.pipe.send(BranchDied(child.mutants[0], child.test, code, overdue, child.where))

@@ -14,10 +14,10 @@ from mutabot.border.lines import BranchEnd, Unbranched
 from mutabot.border.test_end import TestEnd
 from mutabot.inside.footprint.deeds import Deed
 from mutabot.inside.footprint.footprints import Footprints
+from mutabot.inside.fork.bunch import Bunch
 from mutabot.inside.fork.lifeline import die_with_parent
 from mutabot.inside.fork.trunk import ALIVE, DECIDED, FAILED, STOPPED
 from mutabot.inside.session import Session
-from mutabot.model import Choice, Mutant
 
 from . import outcomes
 
@@ -40,6 +40,7 @@ class BranchOfTest:
         self._footprints = footprints
         self._start_clocks = start_clocks
         self._trunk = 0
+        self._bunch: Bunch | None = None
         self._shared: float | None = None
 
     def expect(self) -> None:
@@ -59,38 +60,45 @@ class BranchOfTest:
         # nobody reads a branch's traceback, and to lay one out takes longer than most branches
         self.item.config.option.tbstyle = "value"
 
-    def become(self, mutant: Mutant, choices: tuple[Choice, ...]) -> None:
-        """Go on from here as this mutant."""
-        self._session.become(mutant, choices)
+    def become(self, bunch: Bunch) -> None:
+        """Go on from here as these mutants."""
+        self._bunch, self._trunk = bunch, os.getpid()  # from which others may part
+        self._session.become(bunch)
 
     def leave_if_it_is_one(self, end_of_test: Callable[[], TestEnd] | None) -> None:
         """The test is over: a branch reports and goes, without running anything of the trunk's.
 
         ``end_of_test`` tells how the test has ended; None if it was torn off.
         """
-        mutant = self._session.branch
-        if mutant is None:
+        if self._bunch is None:
             return
         code = FAILED
         try:
             if end_of_test is not None:
-                code = self._report(mutant, end_of_test())
+                code = self._report(self._bunch, end_of_test())
         finally:  # whatever happens, the trunk's code must not run on in this process
             os._exit(code)
 
-    def _report(self, mutant: str, end: TestEnd) -> int:
+    def _report(self, bunch: Bunch, end: TestEnd) -> int:
         """Say how the test of this branch ended; returns the exit code that tells the trunk."""
         sites = self._session.recorder.sites_of_trace() if end.outcome != outcomes.FAILED else ()
         if end.outcome == outcomes.FAILED:  # only survivors are compared with the original
             end = replace(end, trace=(), returned=(), moments=())
-        self._session.pipe.send(BranchEnd(mutant, end, sites, self._shared))
-        return DECIDED if end.is_decided else ALIVE
+        code = DECIDED if end.is_decided else ALIVE
+        mutants = bunch.end(code)
+        each = 1 / len(mutants)  # they share what it took
+        end = replace(end, wall=(end.wall - bunch.waited) * each, cpu=end.cpu * each)
+        for mutant in mutants:
+            self._session.pipe.send(BranchEnd(mutant, end, sites, self._shared))
+        return code
 
     def _leave_before(self, deed: Deed) -> None:
         """A branch is about to do what the original does not, and what others would notice: it leaves."""
-        test, mutant = self._session.test, self._session.branch
+        mutants = self._bunch.end(STOPPED) if self._bunch is not None else [""]
         try:
-            self._session.pipe.send(Unbranched(test, (mutant or "",), f"with a mutant, it {deed}"))
+            self._session.pipe.send(
+                Unbranched(self._session.test, tuple(mutants), f"with a mutant, it {deed}")
+            )
         finally:
             os._exit(STOPPED)
 

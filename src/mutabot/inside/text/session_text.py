@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from mutabot.border.job import Job
 from mutabot.border.lines import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.inside.calls.activation import is_refusal, with_refusal
 from mutabot.inside.evidence import Evidence
+from mutabot.inside.fork.bunch import Bunch
 from mutabot.inside.pipe import Sink
-from mutabot.model import Call, Choice
+from mutabot.model import Call
 
 from .import_hook import ImportHook
 
@@ -63,7 +64,7 @@ class SessionText:
     def start_test(
         self,
         test: str,
-        branch: Callable[[int, frozenset[int]], None] | None,
+        branch: Callable[[int, Sequence[frozenset[int]]], None] | None,
         live: Mapping[int, frozenset[int]],
     ) -> None:
         """A test begins. In a trunk, ``branch`` is told a place and which of its ``live`` alternatives are
@@ -97,12 +98,15 @@ class SessionText:
             seen = [*self.hook.sightings.seen(), *(seen for one in others for seen in one.sightings)]
             self.pipe.send(TextsSeen(tuple(imported), tuple(seen)))
 
-    def become(self, choices: tuple[Choice, ...]) -> None:
-        """In a branch that was just forked: let these alternatives stand in the text from now on."""
+    def become(self, bunch: Bunch) -> None:
+        """In a branch that was just forked: let the alternatives of its first mutant stand in the text.
+
+        Those of the others are watched: they part as soon as they differ from it.
+        """
         alternatives = self.hook.alternatives
-        alternatives.on_place = None
-        alternatives.watch({})
-        alternatives.activate(*choices)
+        alternatives.on_place = bunch.part
+        alternatives.watch(bunch.watched)
+        alternatives.activate(*bunch.choices[bunch.first.id])
 
     @property
     def hits(self) -> Mapping[int, int]:

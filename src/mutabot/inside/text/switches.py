@@ -10,7 +10,7 @@ from __future__ import annotations
 import builtins
 import sys
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from types import CodeType, FrameType
 from typing import Any, NoReturn
@@ -19,7 +19,7 @@ from mutabot.inside.readings.plain import opaque
 from mutabot.model.alternative import FATAL, IDENTITY, RUNTIME, Choice
 from mutabot.operators.control import FatalFault
 
-from .foresee import Forms, locals_of, value_of
+from .foresee import Forms, alone, locals_of, value_of
 
 
 @cache
@@ -92,8 +92,8 @@ class Alternatives:
         examples: value of the original and of the alternative when they first differed, by place; of what
             is no plain value, its type.
         on_place: told the number of a watched place, and which of its watched alternatives are about to
-            differ from the original for the first time, or may be; it may activate one of them, which then
-            stands for the original at once.
+            differ for the first time from what stands there, or may be, those of one value together; it may
+            activate one of them, which then stands there at once.
         forms: gives a place as trees that can be looked ahead of; None for statements.
         on_first: told the number of a place that is on when it is first evaluated since ``start``.
         on_act: told the number of an active place when its alternative is known to change something, or
@@ -108,7 +108,7 @@ class Alternatives:
         self.idle: dict[int, int] = {}
         self.examples: dict[int, tuple[Any, Any]] = {}
         self._told: set[int] = set()
-        self.on_place: Callable[[int, frozenset[int]], None] | None = None
+        self.on_place: Callable[[int, Sequence[frozenset[int]]], None] | None = None
         self.forms: Callable[[int], Forms | None] = lambda place: None
         self._forms: dict[int, Forms | None] = {}
         self.on_act: Callable[[int], None] | None = None
@@ -184,7 +184,7 @@ class Alternatives:
     def _look_ahead(self, switch: Switch, frame: FrameType) -> None:
         place = switch.place
         due = self._differing(switch, frame)
-        switch.watched -= due
+        switch.watched = switch.watched.difference(*due)
         if not switch.watched and switch.index is None:
             self.switches[place] = False
         if due and self.on_place is not None:
@@ -207,13 +207,19 @@ class Alternatives:
             self._forms[place] = self.forms(place)
         return self._forms[place]
 
-    def _differing(self, switch: Switch, frame: FrameType) -> frozenset[int]:
+    def _differing(self, switch: Switch, frame: FrameType) -> list[frozenset[int]]:
+        """The watched alternatives that differ from what stands there, or may; equal ones together."""
         place = switch.place
         forms = self._forms_of(place)
-        foreseeable = frozenset(index for index in switch.watched if index >= 0)
+        unforeseeable = frozenset(index for index in switch.watched if index < 0)
         if forms is None or self.hits[place] > _LOOKS or threading.active_count() > 1:
-            return switch.watched  # another thread may change what an evaluation depends on
-        return switch.watched - foreseeable | forms.differing(foreseeable, frame)
+            unforeseeable = switch.watched  # another thread may change what an evaluation depends on
+        elif unforeseeable != switch.watched:
+            return [
+                *alone(unforeseeable),
+                *forms.differing(switch.watched - unforeseeable, frame, self.active.get(place)),
+            ]
+        return alone(unforeseeable)
 
     def _control(self, place: int, index: int) -> None:
         """The controls, which every place knows: nothing happens, or it raises."""

@@ -1,8 +1,8 @@
 """Warm: like replay, but processes begin as forks of one that has imported what they import.
 
 It is for tests that start processes: worker and nodes then begin in some ten milliseconds instead of several
-hundred; and for mutants that act while the program is imported, since all that comes before that import is the
-same for all of them. What ends as an error, or so that it says nothing, is run once more by replay.
+hundred; and for mutants that act while the program is imported, since all that comes before that import is
+the same for all of them. What ends as an error, or so that it says nothing, is run once more by replay.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Warm:
 
 
 def _gains(campaign: Campaign, mutant: Mutant, round: int) -> bool:
-    """Whether it acts before any test, or tests that judge it have had processes of the program below them."""
+    """Whether it acts before any test, or tests that judge it have had processes below them."""
     baseline = campaign.baseline
     if baseline.is_early(mutant):
         return True
