@@ -28,6 +28,7 @@ from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.reuse.reuse import reuse
 from mutabot.campaign.reuse.snapshot import Snapshot
+from mutabot.campaign.reuse.state import State
 from mutabot.campaign.search.search import run_ladders
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptions_kept
@@ -108,9 +109,11 @@ def _run(
         _run_all(campaign, plan, sink)
         look_again(campaign, plan.mutants, sink, request.clock() - started)
         return
-    dependencies = Dependencies(request, baseline, _collected(results), before, after, watch.opened)
+    state = State.now(request, before, after, watch.opened)
+    dependencies = Dependencies(request, baseline, _collected(results), state)
+    journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
     note_outdated(journal, request, dependencies)
-    done = reuse(journal, dependencies, plan.mutants, request.rounds, progress)
+    done = reuse(journal, dependencies, plan.mutants, request.rounds, progress).done
     sink = Sink(journal, _key_of(journal, dependencies, plan))
     try:
         _run_all(campaign, plan, sink, done)

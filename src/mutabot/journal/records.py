@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from mutabot.border.test_end import TestEnd
-from mutabot.model import Outcome
+from mutabot.model import Outcome, Verdict
 from mutabot.model.outcome import same_end
 
 #: keys of the journal's meta
@@ -57,10 +57,40 @@ class Kept:
     Attributes:
         key: what it depends on.
         is_sound: whether it says anything about the mutant, and not about the tool or the machine.
+        verdict: the verdict.
     """
 
     key: str
     is_sound: bool
+    verdict: Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """An outcome on its way from one campaign to another.
+
+    Attributes:
+        mutant, round, verdict, by: as in the outcome.
+        data: the outcome as JSON.
+        key: what it depends on.
+        presumed: whether it is only presumed to be what it would be now.
+    """
+
+    mutant: str
+    round: int
+    verdict: str
+    by: str | None
+    data: str
+    key: str
+    presumed: bool = False
+
+    def with_data(self, data: str) -> Row:
+        """The same with other data."""
+        return replace(self, data=data)
+
+    def with_key(self, key: str) -> Row:
+        """The same with another key."""
+        return replace(self, key=key)
 
 
 @dataclass(frozen=True, slots=True)
