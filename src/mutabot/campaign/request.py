@@ -45,6 +45,8 @@ class Request:
         moments: at which of their calls mutants act, a mutant each; None for every call.
         whole_ladders: whether every magnitude of a ladder is run in every round.
         evidence: whether to record what the world does while tests run.
+        since: the revision of git from which on changes are looked at; None for no such comparison.
+        other_journal: a journal, or the folder of a project, to take outcomes over from beside the own one.
         pause: by what the campaign can be paused; None if it cannot.
     """
 
@@ -74,6 +76,8 @@ class Request:
     moments: tuple[Moment | None, ...] = (None,)
     whole_ladders: bool = False
     evidence: bool = False
+    since: str | None = None
+    other_journal: Path | None = None
     pause: Pause | None = None
 
     @property

@@ -6,7 +6,7 @@ import errno
 import platform
 import time
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -30,6 +30,8 @@ from mutabot.campaign.reuse.reuse import reuse
 from mutabot.campaign.reuse.snapshot import Snapshot
 from mutabot.campaign.reuse.state import State
 from mutabot.campaign.search.search import run_ladders
+from mutabot.campaign.since.git import Revision
+from mutabot.campaign.since.since import Altered, only_altered, open_others
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Result
@@ -85,6 +87,7 @@ def _run(
     evidence: Evidence | None,
 ) -> None:
     started = request.clock()
+    revision = Revision.find(request.root, request.since) if request.since is not None else None
     before = Snapshot.take(request.root)
     with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress, evidence)
@@ -113,7 +116,13 @@ def _run(
     dependencies = Dependencies(request, baseline, _collected(results), state)
     journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
     note_outdated(journal, request, dependencies)
-    done = reuse(journal, dependencies, plan.mutants, request.rounds, progress).done
+    with ExitStack() as stack:
+        others = [stack.enter_context(one) for one in open_others(request, progress)]
+        found = reuse(journal, dependencies, plan.mutants, request.rounds, progress, others)
+    done: Collection[tuple[str, int]] = found.done
+    if revision is not None:
+        altered = Altered.of(revision, campaign, _collected(results), dependencies, plan.mutants)
+        plan, done = only_altered(journal, altered, found, plan, request.rounds, progress)
     sink = Sink(journal, _key_of(journal, dependencies, plan))
     try:
         _run_all(campaign, plan, sink, done)

@@ -92,6 +92,8 @@ def run(
     jobs: options.Jobs = None,
     engine: options.Engine = "auto",
     fresh: options.Fresh = False,
+    since: options.Since = None,
+    journal: options.OtherJournal = None,
     verify: options.Verify = 0,
     confirm: options.Confirm = False,
     repeats: options.Repeats = True,
@@ -110,7 +112,7 @@ def run(
         order=order, pairs=pairs,
         selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
         engine=engine, fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
-        evidence=True,
+        evidence=True, since=since, other_journal=journal,
     )  # fmt: skip
     with ExitStack() as stack:
         campaign = stack.enter_context(_served(request, port)).run if serve else partial(_run, request)

@@ -109,6 +109,20 @@ Picture = Annotated[
 ]
 Stored = Annotated[bool, typer.Option("--results", help="Run nothing; show what the last comparison found.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Run everything again, also outcomes that still hold.")]
+Since = Annotated[
+    str | None,
+    typer.Option(
+        "--since",
+        metavar="REF",
+        help="Run only what changes since this revision of git can have altered; take over the rest.",
+    ),
+]
+OtherJournal = Annotated[
+    Path | None,
+    typer.Option(
+        "--journal", metavar="PATH", help="Take over what still holds from this journal as well, as of CI."
+    ),
+]
 Verify = Annotated[
     int,
     typer.Option(

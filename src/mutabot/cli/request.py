@@ -70,6 +70,8 @@ def request_of(
         moments=_moments(given.get("when") or configuration.when),
         whole_ladders=bool(given.get("whole_ladders")),
         evidence=bool(given.get("evidence")) and configuration.evidence > 0,
+        since=given.get("since"),
+        other_journal=given.get("other_journal"),
     )
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import json
 import zlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -160,6 +160,13 @@ class Journal(JournalReader):
                 execute("INSERT INTO left_out VALUES (?, ?, ?)", item.id, item.reason, dump(item))
             for file, text in (sources or {}).items():
                 execute("INSERT INTO source VALUES (?, ?)", file, text)
+
+    def keep_planned(self, mutants: Collection[str]) -> None:
+        """Leave only these mutants in the plan."""
+        with self._store.transaction() as execute:
+            for (mutant,) in execute("SELECT id FROM mutant").fetchall():
+                if mutant not in mutants:
+                    execute("DELETE FROM mutant WHERE id = ?", mutant)
 
     # Outcomes
 

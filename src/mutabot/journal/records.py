@@ -13,6 +13,7 @@ from mutabot.model.outcome import same_end
 DRAWING = "drawing"
 VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
 REPEATS = "repeats"
+SINCE = "since"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 
@@ -145,6 +146,24 @@ class Drawing:
     def stratum(self, family: str, role: str) -> Stratum | None:
         """That of a family in a role."""
         return next((one for one in self.strata if (one.family, one.role) == (family, role)), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Since:
+    """What a campaign ran of what has changed since a revision; counts are of mutants in rounds.
+
+    Attributes:
+        ref, commit: the revision as it was named, and its commit.
+        run: how many were run, by the reason.
+        taken_over: how many were taken over.
+        not_judged: how many were neither, by the reason.
+    """
+
+    ref: str
+    commit: str
+    run: Mapping[str, int] = field(default_factory=dict)
+    taken_over: int = 0
+    not_judged: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -77,7 +77,9 @@ class Piece:
             case Kind.FILE:
                 return self.file
 
-    def digest(self, bound: Iterable[tuple[str, tuple[str, ...]]], words: Mapping[str, str] | None = None) -> str:
+    def digest(
+        self, bound: Iterable[tuple[str, tuple[str, ...]]], words: Mapping[str, str] | None = None
+    ) -> str:
         """What it says, as a digest.
 
         Args:

@@ -128,7 +128,7 @@ class Project:
                 yield dotted, targets
 
     def _resolve(self, file: str, name: str) -> tuple[str, ...]:
-        """What a name at the module level of a file stands for: ``file:name``, or a file; empty if nothing."""
+        """What a name at the module level of a file stands for: ``file:name``, or a file; empty if none."""
         key = file, name
         if key not in self._resolved:
             self._resolved[key] = ()  # for whoever asks in a circle
@@ -168,7 +168,10 @@ class Project:
                 return here if position else ()
             found = [target for one in files for target in self._resolve(one, name)]
             found += [
-                other for one in files for other in self._files_of(one, "." + name) if one.endswith("__init__.py")
+                other
+                for one in files
+                for other in self._files_of(one, "." + name)
+                if one.endswith("__init__.py")
             ]
             here = tuple(dict.fromkeys(found))
         return here
@@ -181,7 +184,9 @@ class Project:
             return self._paths.get(name, [])
         folder = PurePosixPath(file).parents[min(level, len(PurePosixPath(file).parents)) - 1]
         whole = ".".join([*folder.parts, *(name.split(".") if name else [])])
-        return [one for one in self._paths.get(whole, []) if one.startswith(f"{folder}/") or str(folder) == "."]
+        return [
+            one for one in self._paths.get(whole, []) if one.startswith(f"{folder}/") or str(folder) == "."
+        ]
 
 
 def _parsed(text: bytes) -> ast.Module | None:

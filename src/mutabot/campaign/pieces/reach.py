@@ -19,11 +19,11 @@ from .renaming import Renaming
 
 #: methods that others may call although the project nowhere mentions them beside the object
 _PROTOCOLS = {
-    "write", "read", "readline", "readlines", "close", "flush", "seek", "fileno", "run", "start", "stop", "join",
-    "send", "recv", "get", "put", "acquire", "release", "keys", "items", "values", "handle", "emit", "filter",
-    "format", "step", "reset", "render", "update", "default", "encode", "decode", "submit", "result", "cancel",
-    "execute", "callback", "notify", "on_next", "throw", "next", "open", "append", "pop", "forward", "fit",
-    "predict", "transform",
+    "write", "read", "readline", "readlines", "close", "flush", "seek", "fileno", "run", "start", "stop",
+    "join", "send", "recv", "get", "put", "acquire", "release", "keys", "items", "values", "handle", "emit",
+    "filter", "format", "step", "reset", "render", "update", "default", "encode", "decode", "submit",
+    "result", "cancel", "execute", "callback", "notify", "on_next", "throw", "next", "open", "append", "pop",
+    "forward", "fit", "predict", "transform",
 }  # fmt: skip
 #: bases that call nothing of what inherits from them
 _QUIET_BASES = {
@@ -47,7 +47,9 @@ class Reach:
         starts_processes: whether some test has processes of the program below it.
     """
 
-    def __init__(self, project: Project, everywhere: Iterable[str], *, starts_processes: bool = False) -> None:
+    def __init__(
+        self, project: Project, everywhere: Iterable[str], *, starts_processes: bool = False
+    ) -> None:
         self.project = project
         pieces, self._aliases = project.pieces, project.aliases()
         self._by_name: dict[str, list[int]] = defaultdict(list)
@@ -134,7 +136,7 @@ class Reach:
         return frozenset(range(len(self.project.pieces)))
 
     def _begins(self, file: str, test: str) -> tuple[list[int], set[str]]:
-        """Where a test begins: its function, or what its class inherits, or all of a file that makes tests."""
+        """Where a test begins: its function, what its class inherits, or all of a file that makes tests."""
         numbers = self._by_file.get(file, [])
         parts = [part.partition("[")[0] for part in test.split("::")[1:]]
         name = ".".join(parts)
@@ -155,7 +157,7 @@ class Reach:
                 yield self._methods[piece.file, f"{piece.name}.{name}"]
 
     def _is_outside(self, piece: Piece, seen: set[str]) -> bool:
-        """Whether a class inherits from one that is not of the project, and may call what it does not know."""
+        """Whether a class inherits from one of others, which may call what it does not know."""
         for base in piece.bases:
             if base in seen or base in _QUIET_BASES or _ERROR.fullmatch(base):
                 continue

@@ -100,7 +100,14 @@ def take_apart(file: str, tree: ast.Module, pure: Collection[str], *, is_test: b
 
 def _add(module: Module, name: str, kind: Kind, nodes: list[ast.AST], *, is_root: bool = False) -> None:
     module.pieces.append(
-        Piece(module.file, name, kind, tuple(nodes), Mentions.of(nodes), is_root or name.rpartition(".")[2] in _ROOTS)
+        Piece(
+            module.file,
+            name,
+            kind,
+            tuple(nodes),
+            Mentions.of(nodes),
+            is_root or name.rpartition(".")[2] in _ROOTS,
+        )
     )
 
 
@@ -113,9 +120,7 @@ _ROOTS = {
 }  # fmt: skip
 
 
-def _function(
-    module: Module, node: ast.FunctionDef | ast.AsyncFunctionDef, name: str
-) -> Iterator[ast.AST]:
+def _function(module: Module, node: ast.FunctionDef | ast.AsyncFunctionDef, name: str) -> Iterator[ast.AST]:
     """Add a function; yields what of it runs when the module is imported, beyond making the function."""
     is_root = node.name.startswith("pytest_") or any(_is_autouse(one) for one in node.decorator_list)
     registered = [one for one in node.decorator_list if not _is_harmless(one)]
@@ -176,9 +181,7 @@ def _constant(node: ast.stmt) -> str:
 
 
 def _stored(node: ast.AST) -> set[str]:
-    return {
-        one.id for one in ast.walk(node) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
-    }
+    return {one.id for one in ast.walk(node) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
 
 
 def _is_plain(value: ast.expr, pure: Collection[str], *, any_class: bool = False) -> bool:

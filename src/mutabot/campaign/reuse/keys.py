@@ -14,7 +14,7 @@ import json
 import platform
 import sys
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from importlib.metadata import distributions
 from itertools import islice
 from pathlib import Path
@@ -27,12 +27,11 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.pieces.mentions import names_in
 from mutabot.campaign.pieces.project import Project
 from mutabot.campaign.pieces.reach import Reach, Reached
-from mutabot.campaign.pieces.renaming import Renaming
 from mutabot.campaign.request import Request
 from mutabot.model import Mutant, Vocabulary
 
 from .snapshot import _HASH, _digest_of
-from .state import State
+from .state import State, read
 
 #: what something is made of: names, and a digest or a plain value for each
 Parts = Mapping[str, str]
@@ -61,6 +60,7 @@ class Dependencies:
         request, baseline: the campaign.
         tests: all tests that the baseline collected.
         state: the project's files.
+        read: what a file of the configuration holds.
 
     Attributes:
         files: the files that count, with their digests.
@@ -70,11 +70,18 @@ class Dependencies:
         reach: what tests can run.
     """
 
-    def __init__(self, request: Request, baseline: Baseline, tests: Iterable[str], state: State) -> None:
+    def __init__(
+        self,
+        request: Request,
+        baseline: Baseline,
+        tests: Iterable[str],
+        state: State,
+        read: Callable[[Path], bytes | None] = read,
+    ) -> None:
         self.files, self.texts = state.files, state.texts
         self.parts: dict[str, Parts] = {}
         self._told = 0
-        self._request, self._baseline, self._names = request, baseline, state.names
+        self._request, self._baseline, self.names = request, baseline, state.names
         self._test_files = {self.file_of(test) for test in tests}
         self._places: dict[Any, str] = {}
         self._reached: dict[Any, Reached] = {}
@@ -84,7 +91,7 @@ class Dependencies:
         self.common = {
             **{name: digest for name, digest in self.files.items() if name not in self.texts},
             **self.reach.project.around,
-            **_pytest_parts(request),
+            **_pytest_parts(request, read),
             **_settings(request),
             **_vocabulary_parts(request.vocabulary),
             **_versions(),
@@ -98,7 +105,7 @@ class Dependencies:
     def reach_of(self, digests: Mapping[str, str], texts: Mapping[str, bytes]) -> Reach:
         """What tests can run of these Python files, everything else being as it is now."""
         vocabulary = _without_source(to_data(self._request.vocabulary))
-        everywhere = {*self._names, *_targets({**vocabulary, "operations": ()})}
+        everywhere = {*self.names, *_targets({**vocabulary, "operations": ()})}
         footprints = (end.footprint for end in self._baseline.ends.values())
         starts = any(one is not None and one.processes for one in footprints)
         return Reach(Project(digests, texts, self._test_files), everywhere, starts_processes=starts)
@@ -122,7 +129,7 @@ class Dependencies:
         )
 
     def judges(self, mutant: Mutant, round: int) -> tuple[tuple[str, ...], ...]:
-        """The tests that judge a mutant, and those that would if they passed only together with all others."""
+        """The tests that judge a mutant, and those that would if they passed only with all others."""
         selections = (self._baseline.judges(round, mutant), tuple(self._baseline.tests[round]))
         return tuple(dict.fromkeys(selections))
 
@@ -264,26 +271,26 @@ def _settings(request: Request) -> dict[str, str]:
     }
 
 
-def _pytest_parts(request: Request) -> dict[str, str]:
+def _pytest_parts(request: Request, read: Callable[[Path], bytes | None]) -> dict[str, str]:
     """Pytest's arguments, and configuration that it finds in folders above the project."""
     parts = {"pytest's arguments": " ".join(request.arguments)}
     for depth, folder in enumerate((request.root, *request.root.parents)):
         for name in _CONFIGURATIONS:
-            path = folder / name
-            if not path.is_file():
+            text = read(folder / name)
+            if text is None:
                 continue
             shown = "../" * depth + name
             if name == "pyproject.toml":
-                parts[f"tool.pytest in {shown}"] = _HASH + _digest(_pytest_table(path))
+                parts[f"tool.pytest in {shown}"] = _HASH + _digest(_pytest_table(text))
             elif depth:
-                parts[shown] = _digest_of(path) or _HASH
+                parts[shown] = _HASH + hashlib.blake2b(text, digest_size=12).hexdigest()
     return parts
 
 
-def _pytest_table(path: Path) -> Any:
+def _pytest_table(text: bytes) -> Any:
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        data = tomllib.loads(text.decode("utf-8"))
+    except ValueError:
         return None
     tool = data.get("tool")
     return tool.get("pytest") if isinstance(tool, dict) else None

@@ -24,8 +24,7 @@ class Reasons:
         """In words."""
         new = self._dependencies.keys(mutant, round)[0]
         names = self._changes(old, new, mutant, round)
-        more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-        return ", ".join(names[:_SHOWN]) + more
+        return shortened(names)
 
     def _changes(self, old: str, new: str, mutant: Mutant, round: int) -> list[str]:
         before, now = old.split(), new.split()
@@ -50,9 +49,8 @@ class Reasons:
         key = before[1], now[1], before[3]
         if key not in self._known:
             old, new = self._parts(before[1]), self._dependencies.parts[now[1]]
-            unnamed = {REACHED, *(name for name in (JUDGES, ASIDE) if old.get(REACHED) != new.get(REACHED))}
             names = self._pieces(before[3], mutant, round) if old.get(REACHED) != new[REACHED] else []
-            unnamed = unnamed if names else set()
+            unnamed = {REACHED, JUDGES, ASIDE} if names else set()
             others = changes(
                 {name: value for name, value in old.items() if name not in unnamed},
                 {name: value for name, value in new.items() if name not in unnamed},
@@ -79,3 +77,25 @@ def different(before: dict[str, tuple[str, ...]], now: dict[str, tuple[str, ...]
     found = [f"{name} changed" for name in now if name in before and before[name] != now[name]]
     found += [f"{name} is gone" for name in before if name not in now]
     return sorted(found) + sorted(f"{name} is new" for name in now if name not in before)
+
+
+def apart(then: Dependencies, now: Dependencies, mutant: Mutant, round: int) -> str:
+    """What differs between two states of the files, as far as a mutant depends on it, in words."""
+    tests = now.judges(mutant, round)[0]
+    names = different(
+        then.reach.says(then.reached(mutant, tests)), now.reach.says(now.reached(mutant, tests))
+    )
+    before, after = (one.keys(mutant, round)[0].split() for one in (then, now))
+    for position in (1, 0):
+        old, new = then.parts[before[position]], now.parts[after[position]]
+        names += changes(
+            {name: value for name, value in old.items() if name != REACHED},
+            {name: value for name, value in new.items() if name != REACHED},
+        )
+    return shortened(names)
+
+
+def shortened(names: list[str]) -> str:
+    """The first few of them."""
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return ", ".join(names[:_SHOWN]) + more

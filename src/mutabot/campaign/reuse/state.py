@@ -42,26 +42,28 @@ class State:
         """
         digests = {name: file.digest for name, file in after.files.items()}
         files = counted(request, digests, after.touched_since(before), opened)
-        read = {name: _read(request.root / name) for name in files if name.endswith(".py")}
-        return cls(files, {name: text for name, text in read.items() if text is not None}, named(request.root, files))
+        found = {name: read(request.root / name) for name in files if name.endswith(".py")}
+        texts = {name: text for name, text in found.items() if text is not None}
+        return cls(files, texts, named(request.root, files))
 
 
 def named(root: Path, files: Mapping[str, str]) -> frozenset[str]:
     """The names that files beside the program text mention: by them, libraries may find what to call."""
     found: set[str] = set()
     for name in files:
-        text = _read(root / name) if _MAY_NAME.fullmatch(name) else None
+        text = read(root / name) if _MAY_NAME.fullmatch(name) else None
         if text is not None and len(text) <= _LONGEST:
             found |= names_in(text.decode("utf-8", "replace"))
     for name in ("pyproject.toml", "setup.cfg"):
-        text = _read(root / name)
+        text = read(root / name)
         if text is not None:
             for entry in _ENTRY.findall(text.decode("utf-8", "replace")):
                 found |= names_in(entry)
     return frozenset(found)
 
 
-def _read(path: Path) -> bytes | None:
+def read(path: Path) -> bytes | None:
+    """What a file holds; None if it cannot be read."""
     try:
         return path.read_bytes()
     except OSError:

@@ -23,12 +23,10 @@ class TakenOver:
         self._trees = Trees(dependencies)
         self._lines: dict[str, Lines | None] = {}
 
-    def take(
-        self, source: JournalReader, pair: tuple[str, int], key: str, now: tuple[str, ...]
-    ) -> bool:
+    def take(self, source: JournalReader, pair: tuple[str, int], key: str, now: tuple[str, ...]) -> bool:
         """Take one over; returns False if it names a line that nobody can find."""
         row = source.row(*pair)
-        tree = key.split()[-1]
+        tree = key.rsplit(maxsplit=1)[-1]
         if tree != self._dependencies.tree:
             lines = self._lines_from(source, tree)
             data = lines.moved(row.data) if lines is not None else None
