@@ -178,6 +178,13 @@ class Reach:
             self._whole[reached] = _together(self._said(number) for number in reached)
         return self._whole[reached]
 
+    def files(self, reached: Reached, renaming: Renaming) -> dict[str, str]:
+        """The files that hold these pieces, and what they were called, or where the pieces stood."""
+        return {
+            piece.file: renaming.target(f"{piece.file}:{piece.name}").partition(":")[0]
+            for piece in self._of(reached)
+        }
+
     def says(self, reached: Reached) -> dict[str, tuple[str, ...]]:
         """What each of these pieces says, by the piece in words."""
         found: dict[str, list[str]] = defaultdict(list)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+_IDENTIFIER = re.compile(r"[^\W\d]\w*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +36,22 @@ class Renaming:
         if moved is not None:
             return moved if name in self.functions else f"{moved}{dot}{inner}"
         return f"{self.files.get(file, file)}:{rest}"
+
+    def word(self, text: str) -> str:
+        """A text with the identifiers in it as they were."""
+        return _IDENTIFIER.sub(lambda match: self.words.get(match[0], match[0]), text) if self.words else text
+
+    def path(self, text: str) -> str:
+        """A text with the files in it as they were called."""
+        for now, was in self.files.items():
+            text = re.sub(rf"(?<![\w./-]){re.escape(now)}(?![\w./-])", was, text)
+        return text
+
+    def tells_of(self, text: str) -> bool:
+        """Whether a text names something by what it was called."""
+        names = {*self.words.values(), *self.files.values()}
+        names |= {was.partition(":")[0] for was in self.functions.values()}
+        return any(re.search(rf"(?<![\w]){re.escape(name)}(?![\w])", text) for name in names)
 
     def dotted(self, name: str) -> str:
         """``a.b.c`` as it was called."""

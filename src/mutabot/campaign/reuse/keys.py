@@ -27,8 +27,11 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.pieces.mentions import names_in
 from mutabot.campaign.pieces.project import Project
 from mutabot.campaign.pieces.reach import Reach, Reached
+from mutabot.campaign.pieces.renaming import Renaming
 from mutabot.campaign.request import Request
+from mutabot.families import OF_TEXT
 from mutabot.model import Mutant, Vocabulary
+from mutabot.operators import operator
 
 from .snapshot import _HASH, _digest_of
 from .state import State, read
@@ -93,6 +96,7 @@ class Dependencies:
             **self.reach.project.around,
             **_pytest_parts(request, read),
             **_settings(request),
+            **self._roles({name: name for name in self.files if name not in self.texts}),
             **_vocabulary_parts(request.vocabulary),
             **_versions(),
         }
@@ -136,6 +140,22 @@ class Dependencies:
     def holds(self, key: str, mutant: Mutant, round: int) -> bool:
         """Whether an outcome with this key would come out the same now."""
         return any(says_same(key, now) for now in self.keys(mutant, round))
+
+    def holds_renamed(
+        self, key: str, mutant: Mutant, round: int, renaming: Renaming, parts: Callable[[str], Parts | None]
+    ) -> bool:
+        """The same, where things were called otherwise; ``parts``: what digests in that key stand for."""
+        was = key.split()
+        common, of_place = parts(was[0]), parts(was[1])
+        if common is None or of_place is None or _draws(mutant):
+            return False
+        own = {renaming.path(name): renaming.path(value) for name, value in self.common.items()}
+        if common != own or was[2] != self.keys(mutant, round)[0].split()[2]:
+            return False
+        return any(
+            of_place == self._place_parts(mutant, round, tests, renaming)
+            for tests in self.judges(mutant, round)
+        )
 
     def still_hold(self, key: str, of_place: Parts) -> bool:
         """Whether all that is known now of what a key stands for is as it was; the rest is taken for granted.
@@ -201,37 +221,51 @@ class Dependencies:
         return named if all(named) else tuple(self._operations)
 
     def _of_place(self, mutant: Mutant, round: int, tests: tuple[str, ...]) -> str:
-        reached = self.reached(mutant, tests)
-        operations = self._operations_of(mutant)
         aside = tuple(self._baseline.missing_judges(round, mutant)) if self._baseline.unstable else ()
-        key = (tests, reached, operations, aside)
+        key = (tests, self.reached(mutant, tests), self._operations_of(mutant), aside)
         found = self._places.get(key)
         if found is None:
-            parts = {
-                **self.place_parts(tests, operations, aside),
-                REACHED: _HASH + self.reach.digest(reached),
-            }
-            found = self._places[key] = self._stored(parts)
+            found = self._places[key] = self._stored(self._place_parts(mutant, round, tests))
         return found
 
-    def place_parts(
-        self, tests: tuple[str, ...], operations: Iterable[str], aside: Iterable[str] = ()
+    def _place_parts(
+        self, mutant: Mutant, round: int, tests: tuple[str, ...], renaming: Renaming | None = None
     ) -> dict[str, str]:
-        """What counts at a place, beside what its tests can reach."""
+        reached = self.reached(mutant, tests)
+        aside = self._baseline.missing_judges(round, mutant)
         return {
             **{
                 name: digest
-                for operation in operations
+                for operation in self._operations_of(mutant)
                 for name, digest in self._operations.get(operation, {}).items()
             },
+            **self._roles(self.reach.files(reached, renaming or Renaming())),
             JUDGES: _HASH + _digest(sorted(tests)),
             **({ASIDE: _HASH + _digest(sorted(aside))} if aside else {}),
+            REACHED: _HASH + self.reach.digest(reached, renaming),
         }
+
+    def _roles(self, files: Mapping[str, str]) -> dict[str, str]:
+        """Which of these files are program and which are oracle; by what they were called."""
+        found = {}
+        for file, was in files.items():
+            role = _role(file, self._request)
+            if role:
+                found[f"role of {was}"] = role
+        return found
 
     def _stored(self, parts: Parts) -> str:
         digest = _digest(parts)
         self.parts[digest] = parts
         return digest
+
+
+def _draws(mutant: Mutant) -> bool:
+    """Whether a mutant draws numbers, which follow from its id."""
+    return any(
+        one.moment is not None or (one.family not in OF_TEXT and operator(one.operator).draws)
+        for one in mutant.singles
+    )
 
 
 def changes(old: Parts, new: Parts) -> list[str]:
@@ -260,8 +294,6 @@ def _settings(request: Request) -> dict[str, str]:
     configuration = request.configuration
     return {
         "seed": str(request.seed),
-        "program": ", ".join(configuration.program),
-        "oracle": ", ".join(configuration.oracle) or "none",
         "oracle_nodes": ", ".join(configuration.oracle_nodes) or "none",
         "timeout_factor": str(configuration.timeout_factor),
         "timeout_seconds": str(configuration.timeout_seconds),
@@ -269,6 +301,15 @@ def _settings(request: Request) -> dict[str, str]:
         **({"every test": "run"} if request.every_test else {}),
         **({"the checks": "switched off"} if request.no_oracle else {}),
     }
+
+
+def _role(file: str, request: Request) -> str:
+    """Whose calls stand in a file: ``program``, ``oracle``, or empty."""
+    configuration = request.configuration
+    for role, sources in (("program", configuration.program), ("oracle", configuration.oracle)):
+        if any(source in (".", file) or file.startswith(f"{source}/") for source in sources):
+            return role
+    return ""
 
 
 def _pytest_parts(request: Request, read: Callable[[Path], bytes | None]) -> dict[str, str]:

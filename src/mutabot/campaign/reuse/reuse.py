@@ -18,6 +18,7 @@ from .taken_over import TakenOver
 
 #: reasons that a note gives before it says how many more there are
 _SHOWN = 3
+_GONE = "a line that they name is gone"
 Pair = tuple[str, int]
 
 
@@ -80,18 +81,20 @@ def _take(
     why: str | None = None
     for (source, kept), explained in zip(sources, reasons, strict=True):
         outcome = kept.get(pair)
-        if outcome is None:
-            continue
-        if not dependencies.holds(outcome.key, mutant, round):
-            why = explained.of(outcome.key, mutant, round) if why is None else why
-        elif not outcome.is_sound:
+        holds = outcome is not None and dependencies.holds(outcome.key, mutant, round)
+        if outcome is not None and holds and not outcome.is_sound:
             found.unsound.add(pair)
-        elif taken.take(source, pair, outcome.key, dependencies.keys(mutant, round)):
+        elif outcome is not None and holds:
+            if taken.take(source, pair, outcome.key, dependencies.keys(mutant, round)):
+                found.done.add(pair)
+            why = why or _GONE
+        elif taken.take_renamed(source, kept, mutant, round):
             found.done.add(pair)
+        elif outcome is not None and why is None:
+            why = explained.of(outcome.key, mutant, round)
+        if pair in found.done:
             found.unsound.discard(pair)
             return
-        else:
-            why = why or "a line that they name is gone"
     if why is not None:
         found.why[pair] = why
     elif pair not in found.unsound:

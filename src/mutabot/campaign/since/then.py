@@ -86,7 +86,9 @@ def _request(
         except (ConfigurationError, UsageError) as error:
             raise ConfigurationError(f"at {revision.short}: {error}") from error
     seed = then.seed if request.seed == configuration.seed else request.seed
-    return replace(request, configuration=replace(then, root=root), vocabulary=vocabulary, seed=seed)
+    return replace(
+        request, configuration=then.model_copy(update={"root": root}), vocabulary=vocabulary, seed=seed
+    )
 
 
 def _put(folder: Path, name: str, text: bytes | None) -> None:
