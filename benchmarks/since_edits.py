@@ -26,6 +26,8 @@ from mutabot.border.codec import to_data
 from mutabot.journal.reader import JournalReader
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
+#: how often an edit of a kind is tried: many are not possible, or make the tests fail
+TRIES = 8
 #: what a run costs, which no two runs have alike
 COST = {"wall", "cpu", "shared"}
 ERRANDS = {
@@ -319,17 +321,21 @@ def moved_function(folder: Path, subject: Subject, chance: random.Random) -> str
     imports = "".join(
         "".join(lines[one.lineno - 1 : one.end_lineno])
         for one in tree.body
-        if isinstance(one, ast.Import | ast.ImportFrom) and getattr(one, "module", "") != "__future__"
+        if isinstance(one, ast.Import | ast.ImportFrom)
+        and getattr(one, "module", "") != "__future__"
+        and any(re.search(rf"\b{alias.asname or alias.name}\b", body) for alias in one.names)
     )
     future = "from __future__ import annotations\n"
     new = path.with_name(f"{node.name.strip('_')}_apart.py")
     new.write_text((future if future in text else "") + imports + "\n\n" + body)
     del lines[node.lineno - 1 : node.end_lineno]
-    place = next(
+    starts = ("import ", "from ", "def ", "class ")
+    able_lines = (
         index
         for index, one in enumerate(lines)
-        if re.match(r"(import |from (?!__future__))", one) or one.startswith(("def ", "class "))
+        if one.startswith(starts) and not one.startswith("from __future__")
     )
+    place = next(able_lines, len(lines))
     lines.insert(place, f"from {new.stem} import {node.name}\n")
     path.write_text("".join(lines))
     if name in subject.program:
@@ -426,10 +432,16 @@ def outcomes_of(folder: Path) -> tuple[dict[tuple[str, int], dict[str, Any]], se
     with JournalReader.open(folder / ".mutabot" / "journal.sqlite") as journal:
         found = {(one.mutant, one.round): to_data(one) for one in journal.outcomes()}
         reused = journal.reused()
-    return {
-        pair: {name: value for name, value in data.items() if name not in COST}
-        for pair, data in found.items()
-    }, reused
+    return {pair: without_cost(data) for pair, data in found.items()}, reused
+
+
+def without_cost(outcome: dict[str, Any]) -> dict[str, Any]:
+    """An outcome without what no two runs have alike: times of the wall clock."""
+    kept = {name: value for name, value in outcome.items() if name not in COST}
+    kept["diverged"] = [
+        one if one["is_simulated"] else {**one, "at": None, "fault": None} for one in outcome["diverged"]
+    ]
+    return kept
 
 
 def git(folder: Path, *command: str) -> None:
@@ -519,7 +531,8 @@ def main() -> int:
                 subject, folder = SUBJECTS[name](), work / name
                 known[name] = folder, subject, before(folder, subject, given.rounds)
             original, subject, old = known[name]
-            done = one_edit(work, original, subject, kind, chance, given.rounds)
+            tries = (one_edit(work, original, subject, kind, chance, given.rounds) for _ in range(TRIES))
+            done = next((one for one in tries if one is not None), None)
             if done is None:
                 continue
             told, said, since, whole = done

@@ -13,7 +13,7 @@ from mutabot.model.outcome import same_end
 DRAWING = "drawing"
 VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
 REPEATS = "repeats"
-SINCE = "since"
+SINCE, BUDGET = "since", "budget"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 
@@ -164,6 +164,41 @@ class Since:
     run: Mapping[str, int] = field(default_factory=dict)
     taken_over: int = 0
     not_judged: Mapping[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class BudgetedClass:
+    """Outcomes that a campaign in limited time takes to tell alike much.
+
+    Attributes:
+        name: what they have in common.
+        round: 0-based round.
+        mutants: numbers of the mutants, in the random order in which they were to be run.
+        counted: how many of these, from the first on, were run in batches that ended in time. Others may
+            have ended as well, but rather the quick ones.
+    """
+
+    name: str
+    round: int
+    mutants: tuple[int, ...]
+    counted: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Budgeted:
+    """How a campaign used its limited time.
+
+    Attributes:
+        seconds: the time it was given.
+        done: number of the mutant and round of outcomes that were known before.
+        classes: all others, in the order in which they were to be run.
+        is_whole: whether everything was run; None while that is not known.
+    """
+
+    seconds: float
+    done: tuple[tuple[int, int], ...] = ()
+    classes: tuple[BudgetedClass, ...] = ()
+    is_whole: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,12 +45,16 @@ class Mentions:
     Attributes:
         names: identifiers of every kind, also those in strings that consist of names.
         dotted: attributes of names, as far as they go: ``robot.Arm.move_by``.
+        bare: names that are not only asked for an attribute.
+        words: identifiers in strings that consist of names.
         any: whether it may reach what it does not mention.
         text: whether it may read program text or its line numbers.
     """
 
     names: set[str] = field(default_factory=set)
     dotted: set[str] = field(default_factory=set)
+    bare: set[str] = field(default_factory=set)
+    words: set[str] = field(default_factory=set)
     any: bool = False
     text: bool = False
 
@@ -60,8 +64,11 @@ class Mentions:
         found = cls()
         files = False
         for node in nodes:
+            owners = {id(one.value) for one in ast.walk(node) if isinstance(one, ast.Attribute)}
             for one in ast.walk(node):
                 files = _take(found, one) or files
+                if isinstance(one, ast.Name) and id(one) not in owners:
+                    found.bare.add(one.id)
         found.any = found.any or not _ANY_NAME.isdisjoint(found.names)
         found.text = not _TEXT.isdisjoint(found.names) or (files and not _READS.isdisjoint(found.names))
         return found
@@ -109,6 +116,7 @@ def _dotted(node: ast.expr) -> str:
 
 def _take_text(found: Mentions, text: str) -> bool:
     if _NAMES.fullmatch(text):
+        found.words.update(names_in(text))
         found.names.update(names_in(text))
     elif "{" in text:
         found.names.update(name for part in _FIELD.findall(text) for name in names_in(part))

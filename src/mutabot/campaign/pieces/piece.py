@@ -98,8 +98,6 @@ _IDENTIFIERS = {"id", "attr", "arg", "name", "asname", "module", "names", "kwd_a
 
 def _said(node: object, words: Mapping[str, str]) -> str:
     """A syntax tree as text, like ``ast.dump``, with other identifiers."""
-    if not words and isinstance(node, ast.AST):
-        return ast.dump(node)
     if isinstance(node, ast.AST):
         fields = (
             f"{name}={_word(value, words) if name in _IDENTIFIERS else _said(value, words)}"

@@ -55,8 +55,15 @@ class Project:
             module = take_apart(file, tree, pure, is_test=file in self.tests)
             self.modules[file] = module
             self.pieces += module.pieces
+        words = {word for piece in self.pieces for word in piece.mentions.words}
+        handed = {
+            target
+            for piece in self.pieces
+            for name in piece.mentions.bare
+            for target in self._resolve(piece.file, name)
+        }
         for module in self.modules.values():
-            self.pieces += self._passed_on(module)
+            self.pieces += self._passed_on(module, words, handed)
 
     def digest(self, piece: Piece, renaming: Renaming | None = None) -> str:
         """What a piece says; as it was called before, if that is given."""
@@ -66,6 +73,12 @@ class Project:
             for name, targets in self._bindings(piece)
         ]
         return piece.digest(bound, renaming.words)
+
+    def is_only_moved(self, piece: Piece, renaming: Renaming) -> bool:
+        """Whether it passes on what stood there before."""
+        here = f"{piece.file}:{piece.name}"
+        targets = {renaming.target(one) for one in self._resolve(piece.file, piece.name)}
+        return piece.kind is Kind.PASSED and targets == {renaming.target(here)}
 
     @property
     def around(self) -> dict[str, str]:
@@ -104,8 +117,15 @@ class Project:
                         found[bound].add(name)
         return found
 
-    def _passed_on(self, module: Module) -> Iterator[Piece]:
-        """Names that a module imports from others of the project and does not mention itself."""
+    def _passed_on(self, module: Module, words: Collection[str], handed: Collection[str]) -> Iterator[Piece]:
+        """Names that a module imports from others of the project and does not mention itself.
+
+        They matter where the module itself is handed around, so that nobody knows who asks it for what.
+        """
+        path = PurePosixPath(module.file)
+        called = path.parent.name if path.stem == "__init__" else path.stem
+        if called not in words and module.file not in handed:
+            return
         own = {name for piece in module.pieces for name in piece.mentions.names}
         for name in module.imports.keys() - own:
             targets = self._resolve(module.file, name)

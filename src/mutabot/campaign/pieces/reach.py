@@ -173,6 +173,7 @@ class Reach:
             return _together(
                 (renaming.target(f"{piece.file}:{piece.name}"), self.project.digest(piece, renaming))
                 for piece in self._of(reached)
+                if not self.project.is_only_moved(piece, renaming)
             )
         if reached not in self._whole:
             self._whole[reached] = _together(self._said(number) for number in reached)

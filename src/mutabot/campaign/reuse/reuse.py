@@ -18,7 +18,8 @@ from .taken_over import TakenOver
 
 #: reasons that a note gives before it says how many more there are
 _SHOWN = 3
-_GONE = "a line that they name is gone"
+#: why an outcome is not taken over although it holds
+GONE = "a line that they name is gone"
 Pair = tuple[str, int]
 
 
@@ -87,7 +88,7 @@ def _take(
         elif outcome is not None and holds:
             if taken.take(source, pair, outcome.key, dependencies.keys(mutant, round)):
                 found.done.add(pair)
-            why = why or _GONE
+            why = why or GONE
         elif taken.take_renamed(source, kept, mutant, round):
             found.done.add(pair)
         elif outcome is not None and why is None:

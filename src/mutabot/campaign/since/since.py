@@ -12,7 +12,7 @@ from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, says_same
 from mutabot.campaign.reuse.reasons import apart
-from mutabot.campaign.reuse.reuse import Pair, Reused
+from mutabot.campaign.reuse.reuse import GONE, Pair, Reused
 from mutabot.errors import ConfigurationError, JournalError, UsageError
 from mutabot.journal.files import find_journal
 from mutabot.journal.journal import Journal
@@ -89,8 +89,9 @@ def only_altered(
     What the changes cannot have altered is not run, also where no journal holds an outcome of it.
     """
     pairs = [(mutant.id, round) for round in range(rounds) for mutant in plan.mutants]
-    left = [pair for pair in pairs if pair not in found.done and pair not in altered.why]
-    run = {pair: why for pair, why in altered.why.items() if pair not in found.done}
+    why = {**altered.why, **{pair: GONE for pair, reason in found.why.items() if reason == GONE}}
+    left = [pair for pair in pairs if pair not in found.done and pair not in why]
+    run = {pair: reason for pair, reason in why.items() if pair not in found.done}
     reasons = Counter(_why_not_taken(found, pair) for pair in left)
     since = Since(
         ref=altered.revision.ref,
