@@ -1,7 +1,8 @@
 """Edit small projects at random, run `--since HEAD`, and hold what it gives against a whole fresh campaign.
 
-Use: ``python benchmarks/since_edits.py [--edits 40] [--seed 1] [--rounds 2] [--projects errands,scales,paper]``.
-Prints a line per edit and JSON at the end; the exit code is 1 if any outcome differs in anything but cost.
+Use: ``python benchmarks/since_edits.py [--edits 40] [--seed 1] [--rounds 2] [--projects errands,scales,paper]
+[--kinds program,moved,renamed,test,vocabulary,helper]``. Prints a line per edit and JSON at the end; the exit
+code is 1 if any outcome differs in anything but cost.
 """
 
 from __future__ import annotations

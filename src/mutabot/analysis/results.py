@@ -12,21 +12,26 @@ from mutabot.families import GRADED
 from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
+    BUDGET,
     CONFIRMATION,
     DRAWING,
     FLAKY,
     REPEATS,
+    SINCE,
     VERIFICATION,
     BaselineTest,
+    Budgeted,
     ControlEnd,
     Drawing,
     Flaky,
     Repeats,
+    Since,
     Verification,
 )
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
 from mutabot.model.selector import fits
 
+from .budgeted import Estimate, estimates_of
 from .divergence import explain, is_indistinguishable, quantity_of, rank, worst_of
 from .score import Group, KillRate, RoundScores, groups_of
 
@@ -120,6 +125,9 @@ class Results:
         attempt: why a later campaign ended before it ran anything; None if there was none.
         graded: the mutants of family ``graded``, by number. The magnitudes of a ladder are no population of
             faults, and most of them need not be run: no score and no list of survivors knows of them.
+        since: what was run of what has changed since a revision; None if that was not asked for.
+        budget: how limited time was used; None if it was not limited.
+        estimates: what the scores of all mutants would be, where the time was not enough for them.
     """
 
     meta: Mapping[str, Any]
@@ -139,6 +147,9 @@ class Results:
     drawn: tuple[Group, ...] = ()
     attempt: str | None = None
     graded: tuple[MutantResult, ...] = ()
+    since: Since | None = None
+    budget: Budgeted | None = None
+    estimates: tuple[Estimate, ...] = ()
 
     @property
     def everything(self) -> tuple[MutantResult, ...]:
@@ -223,6 +234,9 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     drawing = from_data(Drawing, meta[DRAWING]) if DRAWING in meta else None
     groups = groups_of(mutants, outcomes, rounds, drawing)
     drawn = groups if drawing is not None else ()
+    budget = from_data(Budgeted, meta[BUDGET]) if BUDGET in meta else None
+    is_cut = budget is not None and not budget.is_whole
+    estimates = estimates_of(budget, mutants, outcomes) if budget is not None and is_cut else ()
     old = _Earlier.of(journal, mutants, outcomes, rounds) if earlier else _Earlier()
     if old.outcomes:
         mutants = sorted([*mutants, *old.mutants], key=lambda mutant: mutant.number)
@@ -255,6 +269,9 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         drawing=drawing,
         drawn=drawn,
         attempt=_attempt(journal),
+        since=from_data(Since, meta[SINCE]) if SINCE in meta else None,
+        budget=budget,
+        estimates=estimates,
     )
 
 

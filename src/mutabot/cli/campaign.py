@@ -94,6 +94,7 @@ def run(
     fresh: options.Fresh = False,
     since: options.Since = None,
     journal: options.OtherJournal = None,
+    budget: options.Budget = None,
     verify: options.Verify = 0,
     confirm: options.Confirm = False,
     repeats: options.Repeats = True,
@@ -112,7 +113,7 @@ def run(
         order=order, pairs=pairs,
         selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
         engine=engine, fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
-        evidence=True, since=since, other_journal=journal,
+        evidence=True, since=since, other_journal=journal, budget=budget,
     )  # fmt: skip
     with ExitStack() as stack:
         campaign = stack.enter_context(_served(request, port)).run if serve else partial(_run, request)

@@ -123,6 +123,14 @@ OtherJournal = Annotated[
         "--journal", metavar="PATH", help="Take over what still holds from this journal as well, as of CI."
     ),
 ]
+Budget = Annotated[
+    str | None,
+    typer.Option(
+        "--budget",
+        metavar="TIME",
+        help="End within this time (90s, 10m, 1h30m), baseline included: run first what tells most.",
+    ),
+]
 Verify = Annotated[
     int,
     typer.Option(

@@ -34,6 +34,7 @@ def request_of(
     """
     from mutabot.campaign.request import Request
     from mutabot.settings.configuration import load_configuration
+    from mutabot.settings.duration import seconds_of
     from mutabot.settings.sample import Sample
     from mutabot.vocabulary import load
 
@@ -72,6 +73,7 @@ def request_of(
         evidence=bool(given.get("evidence")) and configuration.evidence > 0,
         since=given.get("since"),
         other_journal=given.get("other_journal"),
+        budget=None if given.get("budget") is None else seconds_of(given["budget"]),
     )
 
 

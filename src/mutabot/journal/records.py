@@ -157,6 +157,7 @@ class Since:
         run: how many were run, by the reason.
         taken_over: how many were taken over.
         not_judged: how many were neither, by the reason.
+        presumed: how many were only presumed to be as they were.
     """
 
     ref: str
@@ -164,6 +165,7 @@ class Since:
     run: Mapping[str, int] = field(default_factory=dict)
     taken_over: int = 0
     not_judged: Mapping[str, int] = field(default_factory=dict)
+    presumed: int = 0
 
 
 @dataclass(frozen=True, slots=True)

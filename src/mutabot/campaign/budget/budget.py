@@ -2,55 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 from mutabot.border.codec import to_data
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.choice import run_trials
 from mutabot.campaign.engines.engine import Trial
 from mutabot.campaign.plan.ladders import apart
+from mutabot.campaign.reuse.reuse import Reused
 from mutabot.campaign.search.search import run_ladders
 from mutabot.campaign.sink import Sink
 from mutabot.campaign.workers.interruption import OutOfTimeError, limited
 from mutabot.journal.records import BUDGET, Budgeted, BudgetedClass
-from mutabot.model import Mutant, Verdict
+from mutabot.model import Mutant
 from mutabot.settings.duration import in_words
 
 from .batches import Batches, run_in_batches
 from .order import Class, Pair, in_order
 
-
-@dataclass(frozen=True, slots=True)
-class Known:
-    """What is known before anything is run.
-
-    Attributes:
-        done: mutants, by id, and rounds that need not be run.
-        before: what outcomes were that do not hold any more.
-        at_changed_site: whether what stands where a mutant acts is not what it was.
-    """
-
-    done: Collection[Pair]
-    before: Mapping[Pair, Verdict]
-    at_changed_site: Callable[[Mutant], bool]
+#: how a campaign ended whose budget was not enough
+OUT_OF_TIME = "out of time"
 
 
 def run_within(
-    campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, known: Known, until: float, seconds: float
+    campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, found: Reused, until: float
 ) -> bool:
     """Run what can be run until then; returns whether that is all.
 
     What is under way when the time is up is cut off, and nothing is said of it. Ladders come last.
 
     Args:
+        found: what is known before.
         until: when all must have ended, by ``Request.clock``.
-        seconds: the budget, as it was given.
     """
     request, progress = campaign.request, campaign.progress
     alone, ladders = apart(mutants)
-    classes = in_order(alone, request.rounds, known.done, request.seed, known.before, known.at_changed_site)
-    written = _Written(sink, classes, Budgeted(seconds, done=_numbers(alone, known.done)))
+    classes = in_order(alone, request.rounds, found.done, request.seed, found.before, found.sites)
+    seconds = request.budget or 0.0
+    written = _Written(sink, classes, Budgeted(seconds, done=_numbers(alone, found.done)))
     progress.note(f"budget: {in_words(seconds)}, of which {max(until - request.clock(), 0.0):.0f} s are left")
     batches = Batches(campaign, until)
     trials = [trial for one in classes for trial in one.trials]
@@ -62,7 +52,7 @@ def run_within(
         with limited(until, request.clock):
             is_whole = run_in_batches(batches, trials, run, written.note)
             if is_whole and ladders:
-                run_ladders(campaign, ladders, sink, known.done)
+                run_ladders(campaign, ladders, sink, found.done)
     except OutOfTimeError:
         is_whole = False
     written.end(is_whole)
@@ -87,7 +77,8 @@ class _Written:
     def told(self) -> str:
         """In words."""
         ended = sum(one.counted for one in self._budgeted.classes)
-        return f"{ended} of {sum(len(one.trials) for one in self._classes)} outcomes were found in batches that ended"
+        planned = sum(len(one.trials) for one in self._classes)
+        return f"{ended} of {planned} outcomes were found in batches that ended in time"
 
     def note(self, count: int) -> None:
         """So many, in their order, have ended."""

@@ -6,7 +6,7 @@ are run are a fair sample of the class. It depends on the seed and the mutants' 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import blake2b
 
@@ -42,24 +42,23 @@ def in_order(
     done: Iterable[Pair],
     seed: int,
     before: Mapping[Pair, Verdict],
-    at_changed_site: Callable[[Mutant], bool],
+    sites: Collection[str],
 ) -> list[Class]:
     """The classes of all that is not done, one round after the other.
 
     Args:
         before: what outcomes were that do not hold any more.
-        at_changed_site: whether what stands where a mutant acts is not what it was.
+        sites: mutants, by id, at which something else stands than when they were run.
     """
     done = set(done)
     firsts = _one_per_site(mutants, seed)
-    changed = {mutant.id for mutant in mutants if at_changed_site(mutant)} if before else set()
     classes = []
     for round in range(rounds):
         found: dict[str, list[Trial]] = {}
         for mutant in _shuffled(mutants, f"{seed}:budget:{round}"):
             pair = (mutant.id, round)
             if pair not in done:
-                name = _class_of(before.get(pair), mutant.id in changed, mutant.id in firsts)
+                name = _class_of(before.get(pair), mutant.id in sites, mutant.id in firsts)
                 found.setdefault(name, []).append((mutant, round))
         classes += [Class(name, round, tuple(found[name])) for name in _ORDER if name in found]
     return classes

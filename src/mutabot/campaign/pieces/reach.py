@@ -92,13 +92,18 @@ class Reach:
 
     def at(self, file: str, function: str) -> Reached:
         """What stands where a mutant does, and what that can run."""
+        return self.closure(self._at(file, function), ())
+
+    def standing(self, file: str, function: str) -> str:
+        """What stands where a mutant does, as a digest."""
+        return _together(self._said(number) for number in self._at(file, function))
+
+    def _at(self, file: str, function: str) -> list[int]:
         numbers = self._by_file.get(file, [])
         pieces = self.project.pieces
         name = function.partition(".<locals>")[0]
         own = [number for number in numbers if pieces[number].name == name]
-        if not own:
-            own = [number for number in numbers if pieces[number].kind is not Kind.FUNCTION]
-        return self.closure(own, ())
+        return own or [number for number in numbers if pieces[number].kind is not Kind.FUNCTION]
 
     def closure(self, pieces: Iterable[int], names: Iterable[str]) -> Reached:
         """All that is reached from these pieces and names."""

@@ -19,12 +19,26 @@ class Reasons:
         self._journal, self._dependencies = journal, dependencies
         self._trees = Trees(dependencies)
         self._known: dict[tuple[str, ...], list[str]] = {}
+        self._sites: dict[tuple[str, ...], bool] = {}
 
     def of(self, old: str, mutant: Mutant, round: int) -> str:
         """In words."""
         new = self._dependencies.keys(mutant, round)[0]
         names = self._changes(old, new, mutant, round)
         return shortened(names)
+
+    def is_site_changed(self, old: str, mutant: Mutant) -> bool:
+        """Whether what stands where a mutant acts says something else, or nobody knows."""
+        key = (old.rsplit(maxsplit=1)[-1], *(one.site.id for one in mutant.singles))
+        if key not in self._sites:
+            then = self._trees.reach(self._journal, key[0])
+            now = self._dependencies.reach
+            self._sites[key] = then is None or any(
+                then.standing(one.site.span.file, one.site.span.function)
+                != now.standing(one.site.span.file, one.site.span.function)
+                for one in mutant.singles
+            )
+        return self._sites[key]
 
     def _changes(self, old: str, new: str, mutant: Mutant, round: int) -> list[str]:
         before, now = old.split(), new.split()

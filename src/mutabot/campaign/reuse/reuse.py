@@ -10,7 +10,7 @@ from mutabot.campaign.request import Progress
 from mutabot.journal.journal import Journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import Kept
-from mutabot.model import Mutant
+from mutabot.model import Mutant, Verdict
 
 from .keys import Dependencies
 from .reasons import Reasons
@@ -32,12 +32,16 @@ class Reused:
         why: of the others that there are outcomes of, why these do not hold.
         unsound: of which there are outcomes that say nothing.
         first: of which there are none.
+        before: what the others were that do not hold.
+        sites: mutants at which something else stands than when they were run.
     """
 
     done: set[Pair] = field(default_factory=set)
     why: dict[Pair, str] = field(default_factory=dict)
     unsound: set[Pair] = field(default_factory=set)
     first: list[Pair] = field(default_factory=list)
+    before: dict[Pair, Verdict] = field(default_factory=dict)
+    sites: set[str] = field(default_factory=set)
 
 
 def reuse(
@@ -93,6 +97,9 @@ def _take(
             found.done.add(pair)
         elif outcome is not None and why is None:
             why = explained.of(outcome.key, mutant, round)
+            found.before[pair] = outcome.verdict
+            if explained.is_site_changed(outcome.key, mutant):
+                found.sites.add(mutant.id)
         if pair in found.done:
             found.unsound.discard(pair)
             return

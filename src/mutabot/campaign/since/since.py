@@ -83,10 +83,11 @@ class Altered:
 
 def only_altered(
     journal: Journal, altered: Altered, found: Reused, plan: Plan, rounds: int, progress: Progress
-) -> tuple[Plan, set[Pair]]:
-    """The plan without mutants of which nothing is known nor run, and what need not be run of it.
+) -> Plan:
+    """The plan without mutants of which nothing is known nor run.
 
-    What the changes cannot have altered is not run, also where no journal holds an outcome of it.
+    What the changes cannot have altered is not run, also where no journal holds an outcome of it: ``found``
+    says so from then on.
     """
     pairs = [(mutant.id, round) for round in range(rounds) for mutant in plan.mutants]
     why = {**altered.why, **{pair: GONE for pair, reason in found.why.items() if reason == GONE}}
@@ -105,7 +106,8 @@ def only_altered(
     known = {mutant for mutant, _ in found.done | run.keys()}
     kept = [mutant for mutant in plan.mutants if mutant.id in known]
     journal.keep_planned(known)
-    return Plan(kept, plan.left_out, plan.drawing), {*found.done, *left}
+    found.done.update(left)
+    return Plan(kept, plan.left_out, plan.drawing)
 
 
 def _why_not_taken(found: Reused, pair: Pair) -> str:
