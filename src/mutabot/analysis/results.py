@@ -50,6 +50,7 @@ class MutantResult:
         why: one line about how it ended.
         earlier: whether an earlier campaign found some of it.
         outdated: whether something has changed since that it depends on, as far as that is known.
+        presumed: whether an outcome is only presumed to be as it was before something changed elsewhere.
     """
 
     mutant: Mutant
@@ -58,6 +59,7 @@ class MutantResult:
     why: str
     earlier: bool = False
     outdated: bool = False
+    presumed: bool = False
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
@@ -243,13 +245,19 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         outcomes = [*outcomes, *old.outcomes]
         groups = groups_of(mutants, outcomes, rounds, None)
     graded = {mutant.id for mutant in mutants if mutant.family == GRADED}
+    presumed = {name for name, _ in journal.presumed()}
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
     def result(mutant: Mutant) -> MutantResult:
         row = tuple(by_place.get((mutant.id, number)) for number in range(rounds))
         why = explain(mutant, [outcome for outcome in row if outcome is not None], vocabulary)
         found = MutantResult(mutant, row, quantity_of(mutant, vocabulary), why)
-        return replace(found, earlier=mutant.id in old.ids, outdated=mutant.id in old.outdated)
+        return replace(
+            found,
+            earlier=mutant.id in old.ids,
+            outdated=mutant.id in old.outdated,
+            presumed=mutant.id in presumed,
+        )
 
     return Results(
         meta=meta,

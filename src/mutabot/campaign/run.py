@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import platform
 import time
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -118,7 +118,9 @@ def _run(
     note_outdated(journal, request, dependencies)
     with ExitStack() as stack:
         others = [stack.enter_context(one) for one in open_others(request, progress)]
-        found = reuse(journal, dependencies, plan.mutants, request.rounds, progress, others)
+        found = reuse(
+            journal, dependencies, plan.mutants, request.rounds, progress, others, presume=request.sites_only
+        )
     if revision is not None:
         altered = Altered.of(revision, campaign, _collected(results), dependencies, plan.mutants)
         plan = only_altered(journal, altered, found, plan, request.rounds, progress)
@@ -127,7 +129,7 @@ def _run(
         is_whole = _run_all(campaign, plan, sink, found, started)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
-    _tidy(request, journal, whole)
+    _tidy(request, journal, whole, found.presumed.values())
     return is_whole
 
 
@@ -155,12 +157,15 @@ def _run_mutants(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tu
     run_ladders(campaign, ladders, sink, done, always)
 
 
-def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
-    """Forget mutants that the program has no longer; of other families and orders nothing is known now."""
+def _tidy(request: Request, journal: Journal, whole: Plan, origins: Iterable[str]) -> None:
+    """Forget mutants that the program has no longer; of other families and orders nothing is known now.
+
+    ``origins``: mutants on whose outcomes others are presumed.
+    """
     if request.order == 1:
         known = {mutant.id for mutant, _ in journal.known()}
         others = {mutant for mutant, _ in journal.kept() if family_of(mutant) not in request.families}
-        journal.tidy([*others, *known, *(mutant.id for mutant in whole.mutants)])
+        journal.tidy([*others, *known, *origins, *(mutant.id for mutant in whole.mutants)])
 
 
 def _collected(results: Sequence[Result]) -> set[str]:

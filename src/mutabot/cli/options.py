@@ -117,6 +117,14 @@ Since = Annotated[
         help="Run only what changes since this revision of git can have altered; take over the rest.",
     ),
 ]
+SitesOnly = Annotated[
+    bool,
+    typer.Option(
+        "--sites-only",
+        help="With --since: presume that mutants whose own statement, operation and tests are unchanged end "
+        "as before, also where other program text has changed.",
+    ),
+]
 OtherJournal = Annotated[
     Path | None,
     typer.Option(

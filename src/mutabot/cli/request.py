@@ -72,6 +72,7 @@ def request_of(
         whole_ladders=bool(given.get("whole_ladders")),
         evidence=bool(given.get("evidence")) and configuration.evidence > 0,
         since=given.get("since"),
+        sites_only=bool(given.get("sites_only")),
         other_journal=given.get("other_journal"),
         budget=None if given.get("budget") is None else seconds_of(given["budget"]),
     )

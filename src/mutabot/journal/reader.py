@@ -114,6 +114,14 @@ class JournalReader:
         """The mutants and rounds whose outcomes were taken over from an earlier campaign."""
         return set(self._store.rows(f"SELECT mutant, round FROM outcome WHERE reused AND rowid IN ({LAST})"))
 
+    def presumed(self) -> set[tuple[str, int]]:
+        """Those of them that are only presumed to be what they would be now."""
+        return set(
+            self._store.rows(
+                f"SELECT mutant, round FROM outcome WHERE reused = {PRESUMED} AND rowid IN ({LAST})"
+            )
+        )
+
     # Earlier campaigns
 
     def kept(self) -> dict[tuple[str, int], Kept]:

@@ -153,6 +153,7 @@ def result_data(result: MutantResult) -> dict[str, Any]:
         "why": result.why,
         "earlier": result.earlier,
         "outdated": result.outdated,
+        "presumed": result.presumed,
     }
 
 

@@ -14,6 +14,8 @@ from mutabot.campaign.engines.engine import Trial
 
 #: the share of the time left that a batch may take, and that of the first, whose cost is a guess
 _SHARE, _FIRST = 0.5, 0.2
+#: a batch is to cost so many times what its trunks do, if that takes no more than this share of the time left
+_WORTH, _MOST = 4.0, 0.8
 #: a mutant ends in the midst of its tests, mostly: the share of their time that is expected of the first
 _GUESS = 0.6
 
@@ -51,7 +53,7 @@ class Batches:
             tests.update((round, test) for test in judges)
             cost += sum(self._wall(round, test) for test in judges) * self._factor
             trunks = self._trunks(tests)
-            if cost + trunks > wanted and count:
+            if cost + trunks > max(wanted, min(_WORTH * trunks, _MOST * left)) and count:
                 return count
             if cost + trunks > left:
                 return 0

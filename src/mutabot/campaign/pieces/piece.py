@@ -88,25 +88,25 @@ class Piece:
         """
         if self.kind is Kind.FILE:
             return self.text
-        said = [_said(node, words or {}) for node in self.nodes]
-        return hashlib.blake2b(repr((said, sorted(bound))).encode(), digest_size=12).hexdigest()
+        whole = [said(node, words or {}) for node in self.nodes]
+        return hashlib.blake2b(repr((whole, sorted(bound))).encode(), digest_size=12).hexdigest()
 
 
 #: fields that hold identifiers
 _IDENTIFIERS = {"id", "attr", "arg", "name", "asname", "module", "names", "kwd_attrs", "rest"}
 
 
-def _said(node: object, words: Mapping[str, str]) -> str:
+def said(node: object, words: Mapping[str, str]) -> str:
     """A syntax tree as text, like ``ast.dump``, with other identifiers."""
     if isinstance(node, ast.AST):
         fields = (
-            f"{name}={_word(value, words) if name in _IDENTIFIERS else _said(value, words)}"
+            f"{name}={_word(value, words) if name in _IDENTIFIERS else said(value, words)}"
             for name, value in ast.iter_fields(node)
             if value is not None and value != []
         )
         return f"{type(node).__name__}({', '.join(fields)})"
     if isinstance(node, list):
-        return f"[{', '.join(_said(one, words) for one in node)}]"
+        return f"[{', '.join(said(one, words) for one in node)}]"
     return repr(node)
 
 
@@ -115,4 +115,4 @@ def _word(value: object, words: Mapping[str, str]) -> str:
         return repr(".".join(words.get(part, part) for part in value.split(".")))
     if isinstance(value, list) and value and isinstance(value[0], str):
         return repr([words.get(part, part) for part in value])
-    return _said(value, words)
+    return said(value, words)

@@ -66,6 +66,7 @@ class Dependencies:
         read: what a file of the configuration holds.
 
     Attributes:
+        request: the campaign.
         files: the files that count, with their digests.
         parts: what the digests in keys stand for; grows as keys are made.
         texts: what stands in the Python files.
@@ -84,7 +85,7 @@ class Dependencies:
         self.files, self.texts = state.files, state.texts
         self.parts: dict[str, Parts] = {}
         self._told = 0
-        self._request, self._baseline, self.names = request, baseline, state.names
+        self.request, self._baseline, self.names = request, baseline, state.names
         self._test_files = {self.file_of(test) for test in tests}
         self._places: dict[Any, str] = {}
         self._reached: dict[Any, Reached] = {}
@@ -108,7 +109,7 @@ class Dependencies:
 
     def reach_of(self, digests: Mapping[str, str], texts: Mapping[str, bytes]) -> Reach:
         """What tests can run of these Python files, everything else being as it is now."""
-        vocabulary = _without_source(to_data(self._request.vocabulary))
+        vocabulary = _without_source(to_data(self.request.vocabulary))
         everywhere = {*self.names, *_targets({**vocabulary, "operations": ()})}
         footprints = (end.footprint for end in self._baseline.ends.values())
         starts = any(one is not None and one.processes for one in footprints)
@@ -203,7 +204,7 @@ class Dependencies:
         return self._reached[key]
 
     def _operation_names(self, target: str) -> set[str]:
-        vocabulary = self._request.vocabulary
+        vocabulary = self.request.vocabulary
         return _targets(
             [_meaning(one) for name in _together(vocabulary, target) if (one := vocabulary.operation(name))]
         )
@@ -249,7 +250,7 @@ class Dependencies:
         """Which of these files are program and which are oracle; by what they were called."""
         found = {}
         for file, was in files.items():
-            role = _role(file, self._request)
+            role = role_of(file, self.request)
             if role:
                 found[f"role of {was}"] = role
         return found
@@ -303,7 +304,7 @@ def _settings(request: Request) -> dict[str, str]:
     }
 
 
-def _role(file: str, request: Request) -> str:
+def role_of(file: str, request: Request) -> str:
     """Whose calls stand in a file: ``program``, ``oracle``, or empty."""
     configuration = request.configuration
     for role, sources in (("program", configuration.program), ("oracle", configuration.oracle)):

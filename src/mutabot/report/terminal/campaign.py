@@ -140,7 +140,7 @@ def mutant_table(results: Results, width: int) -> Table:
         more = [_row(result.rounds, many)]
         if with_rates:
             more.insert(0, _kill_rate(result.kill_rate, narrow=narrow))
-        number = f"{mutant.number}{'*' if result.outdated else ''}"
+        number = f"{mutant.number}{'*' if result.outdated else '~' if result.presumed else ''}"
         add_row(table, number, facts, mutant.description, *more, narrow=narrow)
     return table
 

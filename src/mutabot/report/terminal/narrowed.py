@@ -26,7 +26,7 @@ def since_lines(results: Results) -> Iterator[RenderableType]:
     for why, count in since.not_judged.items():
         yield Text(f"{count} not judged, though no change can have altered them: {why}", overflow="fold")
     if since.presumed:
-        text = f"{since.presumed} only presumed to be as before: their own sites and tests have not changed"
+        text = f"{since.presumed} (~) only presumed to be as before: other program text has changed"
         yield Text(text, overflow="fold")
     if unjudged:
         yield Text("Scores are of those that were run or taken over, not of all mutants.", overflow="fold")
@@ -41,7 +41,8 @@ def budget_lines(results: Results) -> Iterator[RenderableType]:
     planned = sum(len(one.mutants) for one in budget.classes)
     yield heading(f"Time for {counted} of {plural(planned, 'outcome')}, what tells most first")
     for one in budget.classes:
-        yield Text(f"round {one.round + 1}, {one.name}: {one.counted} of {len(one.mutants)}")
+        if one.counted:
+            yield Text(f"round {one.round + 1}, {one.name}: {one.counted} of {len(one.mutants)}")
     for estimate in results.estimates:
         yield Text(_estimate_text(estimate), overflow="fold")
 
