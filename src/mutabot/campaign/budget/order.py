@@ -18,7 +18,7 @@ Pair = tuple[str, int]
 NEVER_SITE, NEVER = "never run before, one per site", "never run before, the others"
 SURVIVED, CHANGED = "survivors before", "at changed sites"
 REST_SITE, REST = "the rest, one per site", "the rest, the others"
-_ORDER = (NEVER_SITE, SURVIVED, CHANGED, REST_SITE, NEVER, REST)
+_ORDER = (NEVER_SITE, NEVER, SURVIVED, CHANGED, REST_SITE, REST)
 
 
 @dataclass(frozen=True, slots=True)

@@ -120,6 +120,8 @@ def _extents(before: ast.AST, now: ast.AST) -> Iterator[tuple[Extent, Extent]]:
 
 
 def _extent(node: ast.AST) -> Extent | None:
-    if not isinstance(node, ast.stmt | ast.expr | ast.arg | ast.keyword | ast.ExceptHandler | ast.pattern):
+    line = getattr(node, "lineno", None)
+    if line is None:
         return None
-    return node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0
+    end, column = getattr(node, "end_lineno", line), getattr(node, "end_col_offset", 0)
+    return int(line), int(getattr(node, "col_offset", 0)), int(end), int(column)

@@ -26,14 +26,12 @@ class Statement:
     nodes: tuple[ast.AST, ...]
     lines: tuple[int, int]
 
-    def counts(self, text: str) -> int:
+    def counts(self, text: str, *, calls: bool) -> int:
         """How often it holds an expression with this text, or a call of what has it."""
         found = (one for node in self.nodes for one in ast.walk(node))
-        return sum(
-            ast.unparse(one.func if isinstance(one, ast.Call) else one) == text
-            for one in found
-            if isinstance(one, ast.expr | ast.stmt)
-        )
+        if calls:
+            return sum(isinstance(one, ast.Call) and ast.unparse(one.func) == text for one in found)
+        return sum(isinstance(one, ast.expr | ast.stmt) and ast.unparse(one) == text for one in found)
 
 
 def statements(piece: Piece) -> list[Statement]:

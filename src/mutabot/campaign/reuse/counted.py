@@ -69,6 +69,9 @@ def own_files(request: Request) -> set[str]:
     own = {configuration.file, "pyproject.toml", *(PurePosixPath(name).as_posix() for name in named)}
     if request.selection is not None:
         own.add(_relative(request.selection, request.root))
+    if request.other_journal is not None:
+        name = _relative(request.other_journal, request.root)
+        own |= {name, f"{name}-wal", f"{name}-shm", f"{name}.lock"}
     return own
 
 

@@ -97,9 +97,9 @@ class Presumed:
         was = matched(before, now).get(here[-1]) if here else None
         if was is None:
             return None
-        shift = sum(one.counts(site.text) for one in before[:was]) - sum(
-            one.counts(site.text) for one in now[: here[-1]]
-        )
+        calls = bool(mutant.operation)
+        earlier = sum(one.counts(site.text, calls=calls) for one in before[:was])
+        shift = earlier - sum(one.counts(site.text, calls=calls) for one in now[: here[-1]])
         return replace(mutant, site=replace(site, occurrence=site.occurrence + shift)).id
 
     def _lines_from(self, tree: str, old: Reach) -> Lines:
