@@ -124,11 +124,11 @@ def test_outcomes_are_kept_aside_with_their_keys_until_a_later_one_takes_their_p
     with Journal.create(path, meta={}) as journal:
         assert journal.outcomes() == []
         assert journal.kept() == {
-            ("m", 0): Kept("a b c", is_sound=True),
-            ("m", 1): Kept("d e f", is_sound=True),
-            ("n", 0): Kept("a b c", is_sound=False),
+            ("m", 0): Kept("a b c", is_sound=True, verdict=Verdict.KILLED),
+            ("m", 1): Kept("d e f", is_sound=True, verdict=Verdict.KILLED),
+            ("n", 0): Kept("a b c", is_sound=False, verdict=Verdict.ERROR),
         }
-        journal.reuse([("m", 0)])
+        journal.take_over([journal.row("m", 0)])
         journal.add_outcome(Outcome("m", 1, Verdict.SURVIVED))
         assert journal.outcomes() == [KILLED, Outcome("m", 1, Verdict.SURVIVED)]
         assert journal.reused() == {("m", 0)}
@@ -161,7 +161,7 @@ def test_a_fresh_campaign_and_outcomes_without_a_key_keep_nothing(path: Path) ->
 def test_a_campaign_can_give_up_the_keys_of_what_it_found_itself(path: Path) -> None:
     begin(path, KILLED)
     with Journal.create(path, meta={}) as journal:
-        journal.reuse([("m", 0)])
+        journal.take_over([journal.row("m", 0)])
         journal.add_outcome(Outcome("m", 1, Verdict.SURVIVED), key="d e f")
         journal.forget_keys()
     with Journal.create(path, meta={}) as journal:

@@ -12,21 +12,26 @@ from mutabot.families import GRADED
 from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
+    BUDGET,
     CONFIRMATION,
     DRAWING,
     FLAKY,
     REPEATS,
+    SINCE,
     VERIFICATION,
     BaselineTest,
+    Budgeted,
     ControlEnd,
     Drawing,
     Flaky,
     Repeats,
+    Since,
     Verification,
 )
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
 from mutabot.model.selector import fits
 
+from .budgeted import Estimate, estimates_of
 from .divergence import explain, is_indistinguishable, quantity_of, rank, worst_of
 from .score import Group, KillRate, RoundScores, groups_of
 
@@ -45,6 +50,7 @@ class MutantResult:
         why: one line about how it ended.
         earlier: whether an earlier campaign found some of it.
         outdated: whether something has changed since that it depends on, as far as that is known.
+        presumed: whether an outcome is only presumed to be as it was before something changed elsewhere.
     """
 
     mutant: Mutant
@@ -53,6 +59,7 @@ class MutantResult:
     why: str
     earlier: bool = False
     outdated: bool = False
+    presumed: bool = False
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
@@ -120,6 +127,9 @@ class Results:
         attempt: why a later campaign ended before it ran anything; None if there was none.
         graded: the mutants of family ``graded``, by number. The magnitudes of a ladder are no population of
             faults, and most of them need not be run: no score and no list of survivors knows of them.
+        since: what was run of what has changed since a revision; None if that was not asked for.
+        budget: how limited time was used; None if it was not limited.
+        estimates: what the scores of all mutants would be, where the time was not enough for them.
     """
 
     meta: Mapping[str, Any]
@@ -139,6 +149,9 @@ class Results:
     drawn: tuple[Group, ...] = ()
     attempt: str | None = None
     graded: tuple[MutantResult, ...] = ()
+    since: Since | None = None
+    budget: Budgeted | None = None
+    estimates: tuple[Estimate, ...] = ()
 
     @property
     def everything(self) -> tuple[MutantResult, ...]:
@@ -223,19 +236,28 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     drawing = from_data(Drawing, meta[DRAWING]) if DRAWING in meta else None
     groups = groups_of(mutants, outcomes, rounds, drawing)
     drawn = groups if drawing is not None else ()
+    budget = from_data(Budgeted, meta[BUDGET]) if BUDGET in meta else None
+    is_cut = budget is not None and not budget.is_whole
+    estimates = estimates_of(budget, mutants, outcomes) if budget is not None and is_cut else ()
     old = _Earlier.of(journal, mutants, outcomes, rounds) if earlier else _Earlier()
     if old.outcomes:
         mutants = sorted([*mutants, *old.mutants], key=lambda mutant: mutant.number)
         outcomes = [*outcomes, *old.outcomes]
         groups = groups_of(mutants, outcomes, rounds, None)
     graded = {mutant.id for mutant in mutants if mutant.family == GRADED}
+    presumed = {name for name, _ in journal.presumed()}
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
     def result(mutant: Mutant) -> MutantResult:
         row = tuple(by_place.get((mutant.id, number)) for number in range(rounds))
         why = explain(mutant, [outcome for outcome in row if outcome is not None], vocabulary)
         found = MutantResult(mutant, row, quantity_of(mutant, vocabulary), why)
-        return replace(found, earlier=mutant.id in old.ids, outdated=mutant.id in old.outdated)
+        return replace(
+            found,
+            earlier=mutant.id in old.ids,
+            outdated=mutant.id in old.outdated,
+            presumed=mutant.id in presumed,
+        )
 
     return Results(
         meta=meta,
@@ -255,6 +277,9 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         drawing=drawing,
         drawn=drawn,
         attempt=_attempt(journal),
+        since=from_data(Since, meta[SINCE]) if SINCE in meta else None,
+        budget=budget,
+        estimates=estimates,
     )
 
 

@@ -3,8 +3,9 @@
 ``wilson`` is for one mutant: its rounds are independent draws. ``crossed`` is for a score: every cell of the
 table mutants × rounds shares its mutant with a row and its round with a column, so cells are not independent
 and a plain binomial interval would be far too narrow (rounds of one mutant mostly agree). ``sampled`` is for
-the score of a finite list of mutants of which only a random sample was run, in these very rounds. ``mean_of``
-is ``crossed`` for numbers that are no shares.
+the score of a finite list of mutants of which only a random sample was run, in these very rounds, and
+``stratified`` where more was run of some than of others. ``mean_of`` is ``crossed`` for numbers that are no
+shares.
 
 All are tested by simulation, see ``benchmarks/interval_coverage.py`` and docs/statistics.md.
 """
@@ -126,6 +127,54 @@ def sampled(table: Sequence[Sequence[float | None]], population: int) -> Interva
     independent = cells.smoothed * (1 - cells.smoothed) / variance
     independent *= (_NORMAL / student(cells.mutants - 1)) ** 2
     return _wilson(cells.score, min(independent, cells.mutants / left))
+
+
+def stratified(strata: Sequence[tuple[Sequence[float | None], int]]) -> tuple[float, Interval] | None:
+    """The score of several strata together, from a random sample of each, and its interval.
+
+    Every stratum is drawn from without replacement and weighs as much as it holds. The score is the ratio of
+    the estimated numbers of killed and valid ones, linearised; its variance is
+
+        V = Σ N² (1 − n/N) s² / n / (valid ones)²
+
+    (Cochran, "Sampling Techniques", 1977, chapters 5A and 6), the interval as in ``sampled``: Wilson's, with
+    Student's t of Satterthwaite's degrees of freedom, never narrower than if each valid one had been decided
+    by one throw. The spread of a stratum is estimated with a tenth of an imagined killed and of an imagined
+    surviving one, so that a few that are alike do not seem to say that all are.
+
+    Args:
+        strata: for each the cells that were drawn, as for ``crossed``, and how many there are; one at least
+            is drawn of each.
+
+    Returns:
+        The score with its interval, or None without a valid one.
+    """
+    strata = [(cells, size) for cells, size in strata if cells]
+    killed = math.fsum(size / len(cells) * math.fsum(one or 0.0 for one in cells) for cells, size in strata)
+    valid = math.fsum(size / len(cells) * sum(one is not None for one in cells) for cells, size in strata)
+    if not valid:
+        return None
+    score = killed / valid
+    variance = spread = 0.0
+    drawn = left = 0.0
+    for cells, size in strata:
+        share = 1 - len(cells) / size
+        count = sum(one is not None for one in cells)
+        drawn, left = drawn + count, left + share * count
+        if share > 0:
+            weight = len(cells) + 2 * _IMAGINED
+            apart = [0.0 if one is None else one - score for one in cells]
+            mean = math.fsum(apart) / len(cells)
+            squares = math.fsum((one - mean) ** 2 for one in apart)
+            squares += _IMAGINED * ((1 - score) ** 2 + score**2)
+            part = size**2 * share * squares / (weight - 1) / len(cells) / valid**2
+            variance, spread = variance + part, spread + part**2 / max(len(cells) - 1, 1)
+    if not left:
+        return score, Interval(score, score)
+    smoothed = (killed + _IMAGINED) / (valid + 2 * _IMAGINED)
+    independent = smoothed * (1 - smoothed) / variance
+    independent *= (_NORMAL / student(max(1.0, variance**2 / spread))) ** 2
+    return score, _wilson(score, min(independent, drawn**2 / left))
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,6 +45,10 @@ class Request:
         moments: at which of their calls mutants act, a mutant each; None for every call.
         whole_ladders: whether every magnitude of a ladder is run in every round.
         evidence: whether to record what the world does while tests run.
+        since: the revision of git from which on changes are looked at; None for no such comparison.
+        sites_only: whether to presume that changes elsewhere in the program alter no outcome.
+        other_journal: a journal, or the folder of a project, to take outcomes over from beside the own one.
+        budget: seconds that the campaign may take; None for no limit.
         pause: by what the campaign can be paused; None if it cannot.
     """
 
@@ -74,6 +78,10 @@ class Request:
     moments: tuple[Moment | None, ...] = (None,)
     whole_ladders: bool = False
     evidence: bool = False
+    since: str | None = None
+    sites_only: bool = False
+    other_journal: Path | None = None
+    budget: float | None = None
     pause: Pause | None = None
 
     @property

@@ -5,8 +5,8 @@ from __future__ import annotations
 import errno
 import platform
 import time
-from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from mutabot import __version__
 from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.program_text import family_of
+from mutabot.campaign.budget.budget import OUT_OF_TIME, run_within
 from mutabot.campaign.engines.choice import first_engine, run_mutants
 from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
@@ -26,9 +27,12 @@ from mutabot.campaign.plan.selection import numbered
 from mutabot.campaign.plan.told import drawing, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
-from mutabot.campaign.reuse.reuse import reuse
+from mutabot.campaign.reuse.reuse import Reused, reuse
 from mutabot.campaign.reuse.snapshot import Snapshot
+from mutabot.campaign.reuse.state import State
 from mutabot.campaign.search.search import run_ladders
+from mutabot.campaign.since.git import Revision
+from mutabot.campaign.since.since import Altered, only_altered, open_others
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Result
@@ -66,9 +70,9 @@ def run_campaign(request: Request, progress: Progress) -> Path:
                 at_it(request, progress) as opened,
                 recorded(request, progress) as evidence,
             ):
-                _run(request, opened, progress, journal, evidence)
+                is_whole = _run(request, opened, progress, journal, evidence)
             journal.set_meta("seconds", request.clock() - started)
-            journal.finish("complete")
+            journal.finish("complete" if is_whole else OUT_OF_TIME)
         except BaseException as error:
             with suppress(JournalError):  # on a full disk not even this can be written
                 journal.finish(_reason(error))
@@ -82,8 +86,10 @@ def _run(
     progress: Progress,
     journal: Journal,
     evidence: Evidence | None,
-) -> None:
+) -> bool:
+    """Returns whether all was run: a budget may end before."""
     started = request.clock()
+    revision = Revision.find(request.root, request.since) if request.since is not None else None
     before = Snapshot.take(request.root)
     with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress, evidence)
@@ -105,22 +111,42 @@ def _run(
     if edited:
         progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
         sink = Sink(journal)
-        _run_all(campaign, plan, sink)
-        look_again(campaign, plan.mutants, sink, request.clock() - started)
-        return
-    dependencies = Dependencies(request, baseline, _collected(results), before, after, watch.opened)
+        return _run_all(campaign, plan, sink, Reused(), started)
+    state = State.now(request, before, after, watch.opened)
+    dependencies = Dependencies(request, baseline, _collected(results), state)
+    journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
     note_outdated(journal, request, dependencies)
-    done = reuse(journal, dependencies, plan.mutants, request.rounds, progress)
+    with ExitStack() as stack:
+        others = [stack.enter_context(one) for one in open_others(request, progress)]
+        found = reuse(
+            journal, dependencies, plan.mutants, request.rounds, progress, others, presume=request.sites_only
+        )
+    if revision is not None:
+        altered = Altered.of(revision, campaign, _collected(results), dependencies, plan.mutants)
+        plan = only_altered(journal, altered, found, plan, request.rounds, progress)
     sink = Sink(journal, _key_of(journal, dependencies, plan))
     try:
-        _run_all(campaign, plan, sink, done)
-        look_again(campaign, plan.mutants, sink, request.clock() - started)
+        is_whole = _run_all(campaign, plan, sink, found, started)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
-    _tidy(request, journal, whole)
+    _tidy(request, journal, whole, found.presumed.values())
+    return is_whole
 
 
-def _run_all(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tuple[str, int]] = ()) -> None:
+def _run_all(campaign: Campaign, plan: Plan, sink: Sink, found: Reused, started: float) -> bool:
+    """All that is not known, as far as there is time for it; returns whether that is all."""
+    request = campaign.request
+    if request.budget is not None:
+        is_whole = run_within(campaign, plan.mutants, sink, found, started + request.budget)
+    else:
+        _run_mutants(campaign, plan, sink, found.done)
+        is_whole = True
+    if is_whole:
+        look_again(campaign, plan.mutants, sink, request.clock() - started)
+    return is_whole
+
+
+def _run_mutants(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tuple[str, int]] = ()) -> None:
     """Every mutant in all rounds, but of ladders what it takes to find their thresholds."""
     alone, ladders = apart(plan.mutants)
     if campaign.request.whole_ladders:
@@ -131,12 +157,15 @@ def _run_all(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tuple[
     run_ladders(campaign, ladders, sink, done, always)
 
 
-def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
-    """Forget mutants that the program has no longer; of other families and orders nothing is known now."""
+def _tidy(request: Request, journal: Journal, whole: Plan, origins: Iterable[str]) -> None:
+    """Forget mutants that the program has no longer; of other families and orders nothing is known now.
+
+    ``origins``: mutants on whose outcomes others are presumed.
+    """
     if request.order == 1:
         known = {mutant.id for mutant, _ in journal.known()}
         others = {mutant for mutant, _ in journal.kept() if family_of(mutant) not in request.families}
-        journal.tidy([*others, *known, *(mutant.id for mutant in whole.mutants)])
+        journal.tidy([*others, *known, *origins, *(mutant.id for mutant in whole.mutants)])
 
 
 def _collected(results: Sequence[Result]) -> set[str]:

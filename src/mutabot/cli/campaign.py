@@ -92,6 +92,10 @@ def run(
     jobs: options.Jobs = None,
     engine: options.Engine = "auto",
     fresh: options.Fresh = False,
+    since: options.Since = None,
+    sites_only: options.SitesOnly = False,
+    journal: options.OtherJournal = None,
+    budget: options.Budget = None,
     verify: options.Verify = 0,
     confirm: options.Confirm = False,
     repeats: options.Repeats = True,
@@ -105,12 +109,14 @@ def run(
     """Run the campaign, or go on with it: baseline, controls, mutants, scores."""
     if port is not None and not serve:
         raise UsageError("--port goes with --serve")
+    if sites_only and since is None:
+        raise UsageError("--sites-only goes with --since")
     request = request_of(
         context.obj, only=only, skip=skip, family=family, when=when, whole_ladders=whole_ladders,
         order=order, pairs=pairs,
         selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
         engine=engine, fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
-        evidence=True,
+        evidence=True, since=since, sites_only=sites_only, other_journal=journal, budget=budget,
     )  # fmt: skip
     with ExitStack() as stack:
         campaign = stack.enter_context(_served(request, port)).run if serve else partial(_run, request)

@@ -109,6 +109,36 @@ Picture = Annotated[
 ]
 Stored = Annotated[bool, typer.Option("--results", help="Run nothing; show what the last comparison found.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Run everything again, also outcomes that still hold.")]
+Since = Annotated[
+    str | None,
+    typer.Option(
+        "--since",
+        metavar="REF",
+        help="Run only what changes since this revision of git can have altered; take over the rest.",
+    ),
+]
+SitesOnly = Annotated[
+    bool,
+    typer.Option(
+        "--sites-only",
+        help="With --since: presume that mutants whose own statement, operation and tests are unchanged end "
+        "as before, also where other program text has changed.",
+    ),
+]
+OtherJournal = Annotated[
+    Path | None,
+    typer.Option(
+        "--journal", metavar="PATH", help="Take over what still holds from this journal as well, as of CI."
+    ),
+]
+Budget = Annotated[
+    str | None,
+    typer.Option(
+        "--budget",
+        metavar="TIME",
+        help="End within this time (90s, 10m, 1h30m), baseline included: run first what tells most.",
+    ),
+]
 Verify = Annotated[
     int,
     typer.Option(

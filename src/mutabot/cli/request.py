@@ -34,6 +34,7 @@ def request_of(
     """
     from mutabot.campaign.request import Request
     from mutabot.settings.configuration import load_configuration
+    from mutabot.settings.duration import seconds_of
     from mutabot.settings.sample import Sample
     from mutabot.vocabulary import load
 
@@ -70,6 +71,10 @@ def request_of(
         moments=_moments(given.get("when") or configuration.when),
         whole_ladders=bool(given.get("whole_ladders")),
         evidence=bool(given.get("evidence")) and configuration.evidence > 0,
+        since=given.get("since"),
+        sites_only=bool(given.get("sites_only")),
+        other_journal=given.get("other_journal"),
+        budget=None if given.get("budget") is None else seconds_of(given["budget"]),
     )
 
 

@@ -11,7 +11,9 @@ reports show those that a campaign of other mutants leaves alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import json
+import zlib
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +23,19 @@ from mutabot.model import LeftOut, Mutant, Outcome
 from .database import guarded
 from .lock import WriterLock
 from .reader import JournalReader
-from .schema import ADOPT, ATTEMPT_KEY, FINISHED_KEY, KNOWN, SCHEMA_VERSION, TABLES, VERSION_KEY
+from .records import Row
+from .schema import (
+    ADOPT,
+    ATTEMPT_KEY,
+    FINISHED_KEY,
+    KNOWN,
+    KNOWN_BEFORE,
+    PRESUMED,
+    SCHEMA_VERSION,
+    TABLES,
+    TEXT,
+    VERSION_KEY,
+)
 from .store import Store, dump
 from .succession import keep_copy, make_way
 
@@ -147,6 +161,13 @@ class Journal(JournalReader):
             for file, text in (sources or {}).items():
                 execute("INSERT INTO source VALUES (?, ?)", file, text)
 
+    def keep_planned(self, mutants: Collection[str]) -> None:
+        """Leave only these mutants in the plan."""
+        with self._store.transaction() as execute:
+            for (mutant,) in execute("SELECT id FROM mutant").fetchall():
+                if mutant not in mutants:
+                    execute("DELETE FROM mutant WHERE id = ?", mutant)
+
     # Outcomes
 
     def add_outcome(self, outcome: Outcome, *, key: str = "") -> None:
@@ -174,15 +195,22 @@ class Journal(JournalReader):
 
     # Earlier campaigns
 
-    def reuse(self, pairs: Iterable[tuple[str, int]]) -> None:
-        """Take over the kept outcomes of these mutants and rounds."""
+    def take_over(self, rows: Iterable[Row]) -> None:
+        """Add outcomes of earlier campaigns."""
         with self._store.transaction() as execute:
-            for pair in pairs:
+            for row in rows:
                 execute(
-                    'INSERT INTO outcome SELECT mutant, round, verdict, "by", data, key, 1 FROM kept '
-                    "WHERE mutant = ? AND round = ?",
-                    *pair,
-                )
+                    "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?, ?)",
+                    row.mutant, row.round, row.verdict, row.by, row.data, row.key,
+                    PRESUMED if row.presumed else KNOWN_BEFORE,
+                )  # fmt: skip
+
+    def add_texts(self, texts: Mapping[str, bytes]) -> None:
+        """Write down what stands in Python files, by the digest."""
+        with self._store.transaction() as execute:
+            execute(TEXT)
+            for digest, text in texts.items():
+                execute("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, zlib.compress(text))
 
     def forget(self, mutants: Iterable[str]) -> None:
         """Never reuse what earlier campaigns found about these mutants."""
@@ -210,3 +238,10 @@ class Journal(JournalReader):
             for (digest,) in execute("SELECT digest FROM parts").fetchall():
                 if digest not in needed:
                     execute("DELETE FROM parts WHERE digest = ?", digest)
+            execute(TEXT)
+            trees = {key.split()[3] for (key,) in keys if len(key.split()) > 3}
+            rows = (execute("SELECT data FROM parts WHERE digest = ?", tree).fetchone() for tree in trees)
+            texts = {digest for row in rows if row is not None for digest in json.loads(row[0]).values()}
+            for (digest,) in execute("SELECT digest FROM text").fetchall():
+                if digest not in texts:
+                    execute("DELETE FROM text WHERE digest = ?", digest)

@@ -5,16 +5,17 @@ from __future__ import annotations
 import errno
 import json
 import os
+import zlib
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 from mutabot.border.codec import from_data
 from mutabot.border.test_end import TestEnd
-from mutabot.model import LeftOut, Mutant, Outcome, Vocabulary
+from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
 
-from .records import BaselineTest, ControlEnd, Kept
-from .schema import ATTEMPT_KEY, FINISHED_KEY, LAST
+from .records import BaselineTest, ControlEnd, Kept, Row
+from .schema import ATTEMPT_KEY, FINISHED_KEY, LAST, PRESUMED
 from .store import Store
 
 
@@ -113,16 +114,49 @@ class JournalReader:
         """The mutants and rounds whose outcomes were taken over from an earlier campaign."""
         return set(self._store.rows(f"SELECT mutant, round FROM outcome WHERE reused AND rowid IN ({LAST})"))
 
+    def presumed(self) -> set[tuple[str, int]]:
+        """Those of them that are only presumed to be what they would be now."""
+        return set(
+            self._store.rows(
+                f"SELECT mutant, round FROM outcome WHERE reused = {PRESUMED} AND rowid IN ({LAST})"
+            )
+        )
+
     # Earlier campaigns
 
     def kept(self) -> dict[tuple[str, int], Kept]:
         """The last outcome of each mutant and round that earlier campaigns found, if it can be reused."""
+        return self._of_rows("SELECT mutant, round, verdict, data, key FROM kept")
+
+    def found(self) -> dict[tuple[str, int], Kept]:
+        """The same, with those that the last campaign itself found or knew."""
+        return self.kept() | self._of_rows(
+            f"SELECT mutant, round, verdict, data, key FROM outcome "
+            f"WHERE rowid IN ({LAST}) AND reused != {PRESUMED}"
+        )
+
+    def row(self, mutant: str, round: int) -> Row:
+        """One of those that were ``found``."""
+        for table, condition in (("outcome", f"AND reused != {PRESUMED} ORDER BY rowid DESC"), ("kept", "")):
+            rows = self._store.rows(
+                f'SELECT verdict, "by", data, key FROM {table} '
+                f"WHERE mutant = ? AND round = ? AND key != '' {condition} LIMIT 1",
+                mutant, round,
+            )  # fmt: skip
+            if rows:
+                return Row(mutant, round, *rows[0])
+        raise KeyError((mutant, round))
+
+    def _of_rows(self, question: str) -> dict[tuple[str, int], Kept]:
         rows = self._store.rows(
-            "SELECT mutant, round, key, verdict NOT IN ('error', 'unstable') AND data NOT LIKE ? FROM kept "
-            "WHERE key != ''",
+            "SELECT mutant, round, key, verdict NOT IN ('error', 'unstable') AND data NOT LIKE ?, verdict "
+            f"FROM ({question}) WHERE key != ''",
             f"%{os.strerror(errno.ENOSPC)}%",
         )
-        return {(mutant, round): Kept(key, bool(sound)) for mutant, round, key, sound in rows}
+        return {
+            (mutant, round): Kept(key, bool(sound), Verdict(verdict))
+            for mutant, round, key, sound, verdict in rows
+        }
 
     def kept_outcomes(self) -> list[Outcome]:
         """All that earlier campaigns found, also what cannot be reused."""
@@ -139,3 +173,10 @@ class JournalReader:
         """What a digest in a key stands for, or None if that is not known any more."""
         rows = self._store.rows("SELECT data FROM parts WHERE digest = ?", digest)
         return dict(json.loads(rows[0][0])) if rows else None
+
+    def text(self, digest: str) -> bytes | None:
+        """What stood in a Python file with this digest, or None if that is not known any more."""
+        if not self._store.rows("SELECT 1 FROM sqlite_master WHERE name = 'text'"):
+            return None
+        rows = self._store.rows("SELECT data FROM text WHERE digest = ?", digest)
+        return zlib.decompress(rows[0][0]) if rows else None

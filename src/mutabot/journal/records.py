@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from mutabot.border.test_end import TestEnd
-from mutabot.model import Outcome
+from mutabot.model import Outcome, Verdict
 from mutabot.model.outcome import same_end
 
 #: keys of the journal's meta
 DRAWING = "drawing"
 VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
 REPEATS = "repeats"
+SINCE, BUDGET = "since", "budget"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 
@@ -57,10 +58,40 @@ class Kept:
     Attributes:
         key: what it depends on.
         is_sound: whether it says anything about the mutant, and not about the tool or the machine.
+        verdict: the verdict.
     """
 
     key: str
     is_sound: bool
+    verdict: Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """An outcome on its way from one campaign to another.
+
+    Attributes:
+        mutant, round, verdict, by: as in the outcome.
+        data: the outcome as JSON.
+        key: what it depends on.
+        presumed: whether it is only presumed to be what it would be now.
+    """
+
+    mutant: str
+    round: int
+    verdict: str
+    by: str | None
+    data: str
+    key: str
+    presumed: bool = False
+
+    def with_data(self, data: str) -> Row:
+        """The same with other data."""
+        return replace(self, data=data)
+
+    def with_key(self, key: str) -> Row:
+        """The same with another key."""
+        return replace(self, key=key)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +146,61 @@ class Drawing:
     def stratum(self, family: str, role: str) -> Stratum | None:
         """That of a family in a role."""
         return next((one for one in self.strata if (one.family, one.role) == (family, role)), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Since:
+    """What a campaign ran of what has changed since a revision; counts are of mutants in rounds.
+
+    Attributes:
+        ref, commit: the revision as it was named, and its commit.
+        run: how many were run, by the reason.
+        taken_over: how many were taken over.
+        not_judged: how many were neither, by the reason.
+        presumed: how many were only presumed to be as they were.
+    """
+
+    ref: str
+    commit: str
+    run: Mapping[str, int] = field(default_factory=dict)
+    taken_over: int = 0
+    not_judged: Mapping[str, int] = field(default_factory=dict)
+    presumed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class BudgetedClass:
+    """Outcomes that a campaign in limited time takes to tell alike much.
+
+    Attributes:
+        name: what they have in common.
+        round: 0-based round.
+        mutants: numbers of the mutants, in the random order in which they were to be run.
+        counted: how many of these, from the first on, were run in batches that ended in time. Others may
+            have ended as well, but rather the quick ones.
+    """
+
+    name: str
+    round: int
+    mutants: tuple[int, ...]
+    counted: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Budgeted:
+    """How a campaign used its limited time.
+
+    Attributes:
+        seconds: the time it was given.
+        done: number of the mutant and round of outcomes that were known before.
+        classes: all others, in the order in which they were to be run.
+        is_whole: whether everything was run; None while that is not known.
+    """
+
+    seconds: float
+    done: tuple[tuple[int, int], ...] = ()
+    classes: tuple[BudgetedClass, ...] = ()
+    is_whole: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)

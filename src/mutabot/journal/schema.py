@@ -29,12 +29,17 @@ LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
 KNOWN = (
     "CREATE TABLE IF NOT EXISTS known (id TEXT PRIMARY KEY, data TEXT NOT NULL, outdated INTEGER NOT NULL)"
 )
-#: from one campaign to the next
+#: came later as well: what stood in the Python files, compressed, by digest
+TEXT = "CREATE TABLE IF NOT EXISTS text (digest TEXT PRIMARY KEY, data BLOB NOT NULL)"
+#: what ``reused`` says of an outcome: found by this campaign, known from another, or only presumed
+FOUND, KNOWN_BEFORE, PRESUMED = 0, 1, 2
+#: from one campaign to the next; what was only presumed is not known
 ADOPT = f"""
 {KNOWN};
 INSERT OR REPLACE INTO known SELECT id, data, 1 FROM mutant;
 INSERT OR REPLACE INTO kept
-    SELECT mutant, round, verdict, "by", data, key FROM outcome WHERE rowid IN ({LAST});
+    SELECT mutant, round, verdict, "by", data, key FROM outcome
+    WHERE rowid IN ({LAST}) AND reused != {PRESUMED};
 DELETE FROM meta;
 DELETE FROM test;
 DELETE FROM mutant;

@@ -83,10 +83,28 @@ def results_data(results: Results) -> dict[str, Any]:
             for one in results.tests
         ],
         "sample": drawing_data(results.drawing),
+        "since": to_data(results.since),
+        "budget": budget_data(results),
         "flaky": list(results.flaky.tests),
         "verification": _verification(results.verification),
         "confirmation": dict(results.confirmation) if results.confirmation is not None else None,
         "repeats": repeats_data(results.repeats),
+    }
+
+
+def budget_data(results: Results) -> dict[str, Any] | None:
+    """How limited time was used, and what that says about all mutants."""
+    budget = results.budget
+    if budget is None:
+        return None
+    return {
+        "seconds": budget.seconds,
+        "is_whole": budget.is_whole,
+        "classes": [
+            {"name": one.name, "round": one.round + 1, "population": len(one.mutants), "counted": one.counted}
+            for one in budget.classes
+        ],
+        "estimates": [to_data(one) for one in results.estimates],
     }
 
 
@@ -135,6 +153,7 @@ def result_data(result: MutantResult) -> dict[str, Any]:
         "why": result.why,
         "earlier": result.earlier,
         "outdated": result.outdated,
+        "presumed": result.presumed,
     }
 
 

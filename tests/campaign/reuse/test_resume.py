@@ -57,6 +57,7 @@ RIGHT = """
     def test_right():
         assert mission.right(Arm()) > 0
 """
+ASSERTS_MORE: Callable[[str], str] = lambda text: text + "    assert True\n"  # noqa: E731
 BENCHMARK = Path(__file__).parents[3] / "benchmarks" / "kill_and_resume.py"
 Pair = tuple[str, int]
 
@@ -162,32 +163,60 @@ def test_a_fresh_campaign_runs_everything(quick: Project) -> None:
     assert quick.note == ""
 
 
-def test_a_changed_program_or_data_file_runs_everything_again(quick: Project) -> None:
+def test_a_changed_function_runs_what_can_reach_it_again_and_a_data_file_everything(quick: Project) -> None:
     first = quick.run()
-    quick.edit("mission.py")
+    quick.edit("mission.py", lambda text: text.replace("arm.move_by(0.2)", "arm.move_by(0.1)"))
+    left = of("left", first)
+    assert quick.run() == left
+    kept = len(first) - len(left)
+    assert quick.note == (
+        f"reused {kept} of {len(first)} outcomes; {len(left)} run again: left() in mission.py changed"
+    )
+    quick.edit("robot.py", lambda text: text.replace("self.x = x", "self.x = 0.0"))
     assert quick.run() == first
-    assert quick.note == f"reused 0 of {len(first)} outcomes; {len(first)} run again: mission.py changed"
+    assert quick.note.endswith("run again: Arm.__init__() in robot.py changed")
     quick.edit("scene.json", lambda text: "[]")
-    (quick.folder / "new.py").write_text("")
+    (quick.folder / "new.py").write_text("def right():\n    pass\n")
     assert quick.run() == first
-    assert quick.note.endswith("run again: new.py is new, scene.json changed")
+    assert "run again: right() in new.py is new, scene.json changed" in quick.note
+    assert "run again: scene.json changed" in quick.note
+
+
+def test_comments_and_layout_run_nothing_again(project: Project) -> None:
+    first = project.run()
+    with Journal.open(project.journal) as journal:
+        places = {one.mutant: one.place for one in journal.outcomes()}
+    project.edit("mission.py", lambda text: "# a comment\n" + text.replace("(arm)", "(\n    arm,\n)"))
+    project.edit("tests/test_mission.py", lambda text: "\n\n# another\n" + text)
+    assert project.run() == set()
+    assert project.note.startswith(f"reused all {len(first)} outcomes")
+    with Journal.open(project.journal) as journal:
+        now = {one.mutant: one.place for one in journal.outcomes()}
+    project.run(fresh=True)
+    with Journal.open(project.journal) as journal:
+        assert {one.mutant: one.place for one in journal.outcomes()} == now
+    assert now != places
 
 
 def test_a_changed_test_file_runs_the_mutants_again_that_it_judges(project: Project) -> None:
     first = project.run()
     right = of("right", first)
-    project.edit("tests/test_right.py")
+    project.edit("tests/test_right.py", ASSERTS_MORE)
     assert project.run() == right
     kept = len(first) - len(right)
     assert project.note == (
-        f"reused {kept} of {len(first)} outcomes; {len(right)} run again: tests/test_right.py changed"
+        f"reused {kept} of {len(first)} outcomes; {len(right)} run again: test_right() in tests/test_right.py"
+        " changed"
     )
 
 
-def test_a_test_file_counts_for_those_that_mention_it_and_conftest_for_all(quick: Project) -> None:
-    quick.edit("tests/test_right.py", lambda text: text + "from test_mission import Arm\n")
+def test_a_test_counts_for_those_that_mention_it_and_conftest_for_all(quick: Project) -> None:
+    quick.edit(
+        "tests/test_right.py",
+        lambda text: text + "    import test_mission\n    assert test_mission.test_left\n",
+    )
     first = quick.run()
-    quick.edit("tests/test_mission.py")
+    quick.edit("tests/test_mission.py", ASSERTS_MORE)
     assert quick.run() == first
     (quick.folder / "tests" / "conftest.py").write_text("")
     assert quick.run() == first
@@ -272,7 +301,7 @@ def test_a_narrow_run_shows_its_mutants_beside_all_others(quick: Project, fresh:
 
 def test_results_of_earlier_runs_are_marked_where_something_has_changed(quick: Project) -> None:
     quick.run()
-    quick.edit("tests/test_mission.py")
+    quick.edit("tests/test_mission.py", ASSERTS_MORE)
     narrow = quick.run(only=("1",))
     outdated = {one.mutant.id for one in quick.all_results().mutants if one.outdated}
     earlier = {one.mutant.id for one in quick.all_results().earlier}
@@ -293,7 +322,7 @@ def test_mutants_of_another_family_stay_until_the_program_has_them_no_longer(qui
     assert not any(one.outdated for one in shown.mutants)
     numbers = [one.mutant.number for one in shown.mutants]
     assert len(numbers) == len(set(numbers))
-    quick.edit("mission.py")
+    quick.edit("robot.py", lambda text: text.replace("self.x = x", "'docstring'; self.x = x"))
     quick.run(families=("classical",))
     assert {one.mutant.id for one in quick.all_results().mutants if one.outdated} == robots
     assert {mutant for mutant, _ in quick.run(families=("robot", "classical"))} == robots
@@ -309,7 +338,7 @@ def test_mutants_that_the_program_has_no_longer_are_not_shown(project: Project) 
     shown = project.all_results()
     assert {one.mutant.operation for one in shown.mutants} == {"robot:Arm.move_by"}
     assert len(shown.mutants) == 6
-    assert sum(one.outdated for one in shown.mutants) == 5
+    assert sum(one.outdated for one in shown.mutants) == 3
 
 
 def test_an_interrupted_campaign_shows_what_was_there_before(

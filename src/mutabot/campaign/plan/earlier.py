@@ -77,6 +77,6 @@ def _is_outdated(
         if any(single.family not in request.families for single in mutant.singles):
             if not dependencies.still_hold(outcome.key, journal.parts(outcome.key.split()[1]) or {}):
                 return True
-        elif outcome.key not in dependencies.keys(mutant, round):
+        elif not dependencies.holds(outcome.key, mutant, round):
             return True
     return False

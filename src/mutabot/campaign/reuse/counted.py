@@ -42,11 +42,7 @@ def counted(
         written: those that the baseline touched.
         opened: those that anybody opened meanwhile; None if that is not known.
     """
-    configuration = request.configuration
-    named = (configuration.selection or "", *configuration.vocabulary)
-    own = {configuration.file, "pyproject.toml", *(PurePosixPath(name).as_posix() for name in named)}
-    if request.selection is not None:
-        own.add(_relative(request.selection, request.root))
+    own = own_files(request)
     others = {
         name: digest
         for name, digest in digests.items()
@@ -61,6 +57,24 @@ def counted(
     return found
 
 
+def is_note(name: str) -> bool:
+    """Whether a file is of the kind that people and tools leave everywhere."""
+    return PurePosixPath(name).suffix.lower() in _NOTES
+
+
+def own_files(request: Request) -> set[str]:
+    """The files that the configuration consists of; they count by what they say."""
+    configuration = request.configuration
+    named = (configuration.selection or "", *configuration.vocabulary)
+    own = {configuration.file, "pyproject.toml", *(PurePosixPath(name).as_posix() for name in named)}
+    if request.selection is not None:
+        own.add(_relative(request.selection, request.root))
+    if request.other_journal is not None:
+        name = _relative(request.other_journal, request.root)
+        own |= {name, f"{name}-wal", f"{name}-shm", f"{name}.lock"}
+    return own
+
+
 def _ignored(root: Path, names: Iterable[str], opened: Set[str]) -> set[str]:
     """Notes that nothing has to do with."""
     names = list(names)
@@ -68,7 +82,7 @@ def _ignored(root: Path, names: Iterable[str], opened: Set[str]) -> set[str]:
     notes = {
         name
         for name in names
-        if PurePosixPath(name).suffix.lower() in _NOTES
+        if is_note(name)
         and _kind(name) not in alike
         and not (root / name).is_symlink()  # it is opened elsewhere
     }

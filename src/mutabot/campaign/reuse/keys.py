@@ -1,8 +1,10 @@
 """What an outcome depends on, by content: what is as it was need not be run again.
 
-An outcome has a *key* of three digests: of what all outcomes share (files, settings, versions), of what
-those at its place share (test files that judge it, entries of the vocabulary), and of the mutant's own. The
-first two stand for *parts*, names with a digest or a plain value each, which tell what has changed.
+An outcome has a *key* of four digests: of what all outcomes share (settings, versions, files that are no
+program text), of what those at its place share (the tests that judge it, all that these can reach, entries of
+the vocabulary), of the mutant's own, and of the Python files when it was found. The last one does not count:
+it tells where lines have gone since, and what has changed. All but the third stand for *parts*, names with a
+digest or a plain value each.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ import json
 import platform
 import sys
 import tomllib
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping
 from importlib.metadata import distributions
 from itertools import islice
 from pathlib import Path
@@ -22,12 +24,17 @@ import mutabot
 from mutabot.border.codec import to_data
 from mutabot.border.idle import Idle
 from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.pieces.mentions import names_in
+from mutabot.campaign.pieces.project import Project
+from mutabot.campaign.pieces.reach import Reach, Reached
+from mutabot.campaign.pieces.renaming import Renaming
 from mutabot.campaign.request import Request
+from mutabot.families import OF_TEXT
 from mutabot.model import Mutant, Vocabulary
+from mutabot.operators import operator
 
-from .counted import counted
-from .snapshot import _HASH, Snapshot, _digest_of
-from .suite_files import _TestFiles
+from .snapshot import _HASH, _digest_of
+from .state import State, read
 
 #: what something is made of: names, and a digest or a plain value for each
 Parts = Mapping[str, str]
@@ -35,12 +42,18 @@ Parts = Mapping[str, str]
 #: installed packages that have no say in how a test ends
 _TOOLS = {"black", "hatchling", "isort", "mypy", "pip", "pre-commit", "ruff", "setuptools", "uv", "wheel"}
 _CONFIGURATIONS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "setup.cfg", "conftest.py")
-_REACHING = "which tests reach it"
+#: parts of a place that are not looked at by name
+JUDGES, REACHED, ASIDE = "which tests reach it", "what its tests can reach", "which tests are set aside"
 
 
 def _digest(data: Any) -> str:
     text = json.dumps(data, sort_keys=True, default=str)
     return hashlib.blake2b(text.encode(), digest_size=12).hexdigest()
+
+
+def says_same(key: str, other: str) -> bool:
+    """Whether two keys stand for the same, whatever the files are in which that stands."""
+    return key.split()[:3] == other.split()[:3]
 
 
 class Dependencies:
@@ -49,12 +62,16 @@ class Dependencies:
     Args:
         request, baseline: the campaign.
         tests: all tests that the baseline collected.
-        before, after: the project's files before and after the baseline.
-        opened: the files that were opened meanwhile; None if that is not known.
+        state: the project's files.
+        read: what a file of the configuration holds.
 
     Attributes:
+        request: the campaign.
         files: the files that count, with their digests.
         parts: what the digests in keys stand for; grows as keys are made.
+        texts: what stands in the Python files.
+        tree: the digest of the Python files together.
+        reach: what tests can run.
     """
 
     def __init__(
@@ -62,44 +79,83 @@ class Dependencies:
         request: Request,
         baseline: Baseline,
         tests: Iterable[str],
-        before: Snapshot,
-        after: Snapshot,
-        opened: Set[str] | None = None,
+        state: State,
+        read: Callable[[Path], bytes | None] = read,
     ) -> None:
-        self.files = counted(
-            request,
-            {name: file.digest for name, file in after.files.items()},
-            after.touched_since(before),
-            opened,
-        )
+        self.files, self.texts = state.files, state.texts
         self.parts: dict[str, Parts] = {}
         self._told = 0
-        self._baseline = baseline
-        self._test_files = _TestFiles.of(request, self.files, tests)
-        self._places: dict[tuple[int, tuple[str, ...], tuple[str, ...]], str] = {}
-        common = {
-            **{name: digest for name, digest in self.files.items() if name not in self._test_files.closures},
-            **_pytest_parts(request),
+        self.request, self._baseline, self.names = request, baseline, state.names
+        self._test_files = {self.file_of(test) for test in tests}
+        self._places: dict[Any, str] = {}
+        self._reached: dict[Any, Reached] = {}
+        code = {name: digest for name, digest in self.files.items() if name in self.texts}
+        self.reach = self.reach_of(code, self.texts)
+        self.tree = self._stored(code)
+        self.common = {
+            **{name: digest for name, digest in self.files.items() if name not in self.texts},
+            **self.reach.project.around,
+            **_pytest_parts(request, read),
             **_settings(request),
+            **self._roles({name: name for name in self.files if name not in self.texts}),
             **_vocabulary_parts(request.vocabulary),
             **_versions(),
         }
-        self._common = self._stored(common)
+        self._common = self._stored(self.common)
         self._operations = {
             operation.target: _operation_parts(request.vocabulary, operation.target)
             for operation in request.vocabulary.operations
         }
+
+    def reach_of(self, digests: Mapping[str, str], texts: Mapping[str, bytes]) -> Reach:
+        """What tests can run of these Python files, everything else being as it is now."""
+        vocabulary = _without_source(to_data(self.request.vocabulary))
+        everywhere = {*self.names, *_targets({**vocabulary, "operations": ()})}
+        footprints = (end.footprint for end in self._baseline.ends.values())
+        starts = any(one is not None and one.processes for one in footprints)
+        return Reach(Project(digests, texts, self._test_files), everywhere, starts_processes=starts)
+
+    def file_of(self, test: str) -> str:
+        """The test's file relative to the project's root; pytest's root may be a folder above."""
+        name = test.partition("::")[0]
+        while name not in self.files and "/" in name:
+            name = name.partition("/")[2]
+        return name
 
     def keys(self, mutant: Mutant, round: int) -> tuple[str, ...]:
         """Keys of outcomes that are still valid, the first being that of an outcome found now.
 
         The second is that of tests that had turned out to pass only together with all others.
         """
-        selections = (self._baseline.judges(round, mutant), tuple(self._baseline.tests[round]))
         own = _digest([self._own(single, round) for single in mutant.singles])
         return tuple(
-            f"{self._common} {self._of_place(round, tests, self._operations_of(mutant))} {own}"
-            for tests in dict.fromkeys(selections)
+            f"{self._common} {self._of_place(mutant, round, tests)} {own} {self.tree}"
+            for tests in self.judges(mutant, round)
+        )
+
+    def judges(self, mutant: Mutant, round: int) -> tuple[tuple[str, ...], ...]:
+        """The tests that judge a mutant, and those that would if they passed only with all others."""
+        selections = (self._baseline.judges(round, mutant), tuple(self._baseline.tests[round]))
+        return tuple(dict.fromkeys(selections))
+
+    def holds(self, key: str, mutant: Mutant, round: int) -> bool:
+        """Whether an outcome with this key would come out the same now."""
+        return any(says_same(key, now) for now in self.keys(mutant, round))
+
+    def holds_renamed(
+        self, key: str, mutant: Mutant, round: int, renaming: Renaming, parts: Callable[[str], Parts | None]
+    ) -> bool:
+        """The same, where things were called otherwise; ``parts``: what digests in that key stand for."""
+        was = key.split()
+        common, of_place = parts(was[0]), parts(was[1])
+        if common is None or of_place is None or _draws(mutant):
+            return False
+        own = {renaming.path(name): renaming.path(value) for name, value in self.common.items()}
+        if common != own or was[2] != self.keys(mutant, round)[0].split()[2]:
+            return False
+        return any(
+            of_place == self._place_parts(mutant, round, tests, renaming)
+            for tests in self.judges(mutant, round)
         )
 
     def still_hold(self, key: str, of_place: Parts) -> bool:
@@ -107,13 +163,15 @@ class Dependencies:
 
         For mutants of which nothing is known now, because their families are not asked for.
         """
-        if key.split(maxsplit=1)[0] != self._common:
+        words = key.split()
+        if words[0] != self._common or words[3:] != [self.tree]:
             return False
-        now: dict[str, str] = dict(self.files)
+        now: dict[str, str] = {}
         for parts in self._operations.values():
             now.update(parts)
+        unknown = {JUDGES, REACHED, ASIDE}
         return bool(of_place) and all(
-            now.get(name) == value for name, value in of_place.items() if name != _REACHING
+            now.get(name) == value for name, value in of_place.items() if name not in unknown
         )
 
     def _own(self, mutant: Mutant, round: int) -> list[Any]:
@@ -129,30 +187,86 @@ class Dependencies:
         self._told = len(self.parts)
         return new
 
+    def reached(self, mutant: Mutant, tests: tuple[str, ...], reach: Reach | None = None) -> Reached:
+        """All that these tests can run as this mutant; ``reach``: in another state of the files."""
+        reach = reach or self.reach
+        places = tuple((one.site.span.file, one.site.span.function) for one in mutant.singles)
+        operations = self._operations_of(mutant)
+        names = frozenset().union(*(self._names_of(single) for single in mutant.singles))
+        key = (id(reach), tests, places, operations, names)
+        if key not in self._reached:
+            found = set(reach.of_tests(tests, self.file_of))
+            for file, function in places:
+                found |= reach.at(file, function)
+            targets = {name for one in operations for name in self._operation_names(one)}
+            found |= reach.closure((), {*names, *targets})
+            self._reached[key] = frozenset(found)
+        return self._reached[key]
+
+    def _operation_names(self, target: str) -> set[str]:
+        vocabulary = self.request.vocabulary
+        return _targets(
+            [_meaning(one) for name in _together(vocabulary, target) if (one := vocabulary.operation(name))]
+        )
+
+    def _names_of(self, mutant: Mutant) -> frozenset[str]:
+        """Names that the text of a mutant mentions, beyond those of the original."""
+        planted = self._baseline.program.planted.get(mutant.id)
+        if planted is None:
+            return frozenset()
+        return frozenset(names_in(planted.place.alternatives[planted.choice.index].template))
+
     def _operations_of(self, mutant: Mutant) -> tuple[str, ...]:
         """The operations whose meaning counts: to a mutant of the program text, any might refuse."""
         named = tuple(single.operation for single in mutant.singles)
         return named if all(named) else tuple(self._operations)
 
-    def _of_place(self, round: int, tests: tuple[str, ...], operations: tuple[str, ...]) -> str:
-        found = self._places.get((round, tests, operations))
+    def _of_place(self, mutant: Mutant, round: int, tests: tuple[str, ...]) -> str:
+        aside = tuple(self._baseline.missing_judges(round, mutant)) if self._baseline.unstable else ()
+        key = (tests, self.reached(mutant, tests), self._operations_of(mutant), aside)
+        found = self._places.get(key)
         if found is None:
-            parts = {
-                **self._test_files.parts(tests),
-                **{
-                    name: digest
-                    for operation in operations
-                    for name, digest in self._operations.get(operation, {}).items()
-                },
-                _REACHING: _HASH + _digest(sorted(tests)),
-            }
-            found = self._places[round, tests, operations] = self._stored(parts)
+            found = self._places[key] = self._stored(self._place_parts(mutant, round, tests))
+        return found
+
+    def _place_parts(
+        self, mutant: Mutant, round: int, tests: tuple[str, ...], renaming: Renaming | None = None
+    ) -> dict[str, str]:
+        reached = self.reached(mutant, tests)
+        aside = self._baseline.missing_judges(round, mutant)
+        return {
+            **{
+                name: digest
+                for operation in self._operations_of(mutant)
+                for name, digest in self._operations.get(operation, {}).items()
+            },
+            **self._roles(self.reach.files(reached, renaming or Renaming())),
+            JUDGES: _HASH + _digest(sorted(tests)),
+            **({ASIDE: _HASH + _digest(sorted(aside))} if aside else {}),
+            REACHED: _HASH + self.reach.digest(reached, renaming),
+        }
+
+    def _roles(self, files: Mapping[str, str]) -> dict[str, str]:
+        """Which of these files are program and which are oracle; by what they were called."""
+        found = {}
+        for file, was in files.items():
+            role = role_of(file, self.request)
+            if role:
+                found[f"role of {was}"] = role
         return found
 
     def _stored(self, parts: Parts) -> str:
         digest = _digest(parts)
         self.parts[digest] = parts
         return digest
+
+
+def _draws(mutant: Mutant) -> bool:
+    """Whether a mutant draws numbers, which follow from its id."""
+    return any(
+        one.moment is not None or (one.family not in OF_TEXT and operator(one.operator).draws)
+        for one in mutant.singles
+    )
 
 
 def changes(old: Parts, new: Parts) -> list[str]:
@@ -181,8 +295,6 @@ def _settings(request: Request) -> dict[str, str]:
     configuration = request.configuration
     return {
         "seed": str(request.seed),
-        "program": ", ".join(configuration.program),
-        "oracle": ", ".join(configuration.oracle) or "none",
         "oracle_nodes": ", ".join(configuration.oracle_nodes) or "none",
         "timeout_factor": str(configuration.timeout_factor),
         "timeout_seconds": str(configuration.timeout_seconds),
@@ -192,26 +304,35 @@ def _settings(request: Request) -> dict[str, str]:
     }
 
 
-def _pytest_parts(request: Request) -> dict[str, str]:
+def role_of(file: str, request: Request) -> str:
+    """Whose calls stand in a file: ``program``, ``oracle``, or empty."""
+    configuration = request.configuration
+    for role, sources in (("program", configuration.program), ("oracle", configuration.oracle)):
+        if any(source in (".", file) or file.startswith(f"{source}/") for source in sources):
+            return role
+    return ""
+
+
+def _pytest_parts(request: Request, read: Callable[[Path], bytes | None]) -> dict[str, str]:
     """Pytest's arguments, and configuration that it finds in folders above the project."""
     parts = {"pytest's arguments": " ".join(request.arguments)}
     for depth, folder in enumerate((request.root, *request.root.parents)):
         for name in _CONFIGURATIONS:
-            path = folder / name
-            if not path.is_file():
+            text = read(folder / name)
+            if text is None:
                 continue
             shown = "../" * depth + name
             if name == "pyproject.toml":
-                parts[f"tool.pytest in {shown}"] = _HASH + _digest(_pytest_table(path))
+                parts[f"tool.pytest in {shown}"] = _HASH + _digest(_pytest_table(text))
             elif depth:
-                parts[shown] = _digest_of(path) or _HASH
+                parts[shown] = _HASH + hashlib.blake2b(text, digest_size=12).hexdigest()
     return parts
 
 
-def _pytest_table(path: Path) -> Any:
+def _pytest_table(text: bytes) -> Any:
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        data = tomllib.loads(text.decode("utf-8"))
+    except ValueError:
         return None
     tool = data.get("tool")
     return tool.get("pytest") if isinstance(tool, dict) else None
@@ -226,15 +347,35 @@ def _vocabulary_parts(vocabulary: Vocabulary) -> dict[str, str]:
 
 def _operation_parts(vocabulary: Vocabulary, target: str) -> dict[str, str]:
     """The entry of an operation, and those of the operations that its mutants need."""
-    parts: dict[str, str] = {}
+    return {
+        f"{operation.target} in the vocabulary": _HASH + _digest(_meaning(operation))
+        for name in _together(vocabulary, target)
+        if (operation := vocabulary.operation(name)) is not None
+    }
+
+
+def _together(vocabulary: Vocabulary, target: str) -> list[str]:
+    """An operation, and those that its mutants need."""
+    found: dict[str, None] = {}
     waiting = [target]
     while waiting:
         operation = vocabulary.operation(waiting.pop())
-        name = f"{operation.target} in the vocabulary" if operation is not None else ""
-        if operation is not None and name not in parts:
-            parts[name] = _HASH + _digest(_meaning(operation))
+        if operation is not None and operation.target not in found:
+            found[operation.target] = None
             waiting += [*operation.currents, *operation.opposites]
-    return parts
+    return list(found)
+
+
+def _targets(data: Any) -> set[str]:
+    """The names in what stands for something of the program: ``robot:Arm.move_by``, ``self.time``."""
+    if isinstance(data, str):
+        is_target = (":" in data or "." in data) and " " not in data and "/" not in data
+        return names_in(data) if is_target else set()
+    if isinstance(data, Mapping):
+        data = [*data.keys(), *data.values()]
+    if isinstance(data, list | tuple):
+        return {name for one in data for name in _targets(one)}
+    return set()
 
 
 def _meaning(value: Any) -> Any:

@@ -3,83 +3,161 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from mutabot.campaign.request import Progress
 from mutabot.journal.journal import Journal
-from mutabot.model import Mutant
+from mutabot.journal.reader import JournalReader
+from mutabot.journal.records import Kept
+from mutabot.model import Mutant, Verdict
 
-from .keys import Dependencies, changes
+from .keys import Dependencies
+from .presumed import Presumed
+from .reasons import Reasons
+from .taken_over import TakenOver
 
-#: names and reasons that a note gives before it says how many more there are
+#: reasons that a note gives before it says how many more there are
 _SHOWN = 3
+#: why an outcome is not taken over although it holds
+GONE = "a line that they name is gone"
+Pair = tuple[str, int]
+
+
+@dataclass(slots=True)
+class Reused:
+    """What became of outcomes that earlier campaigns found.
+
+    Attributes:
+        done: mutants, by id, and rounds whose outcomes are taken over.
+        why: of the others that there are outcomes of, why these do not hold.
+        unsound: of which there are outcomes that say nothing.
+        first: of which there are none.
+        before: what the others were that do not hold.
+        presumed: which of ``done`` are only presumed, with the ids under which they were found.
+        sites: mutants at which something else stands than when they were run.
+    """
+
+    done: set[Pair] = field(default_factory=set)
+    why: dict[Pair, str] = field(default_factory=dict)
+    unsound: set[Pair] = field(default_factory=set)
+    first: list[Pair] = field(default_factory=list)
+    before: dict[Pair, Verdict] = field(default_factory=dict)
+    presumed: dict[Pair, str] = field(default_factory=dict)
+    sites: set[str] = field(default_factory=set)
 
 
 def reuse(
-    journal: Journal, dependencies: Dependencies, mutants: Sequence[Mutant], rounds: int, progress: Progress
-) -> set[tuple[str, int]]:
-    """Take over the outcomes that still hold, and say why the others do not; their ids and rounds."""
-    kept = journal.kept()
-    if not kept:
-        return set()
-    why = _Reasons(journal, dependencies)
-    reasons: Counter[str] = Counter()
-    done = set()
+    journal: Journal,
+    dependencies: Dependencies,
+    mutants: Sequence[Mutant],
+    rounds: int,
+    progress: Progress,
+    others: Sequence[JournalReader] = (),
+    *,
+    presume: bool = False,
+) -> Reused:
+    """Take over the outcomes that still hold, and say why the others do not.
+
+    Args:
+        others: journals of other campaigns of this project, to be looked into beside its own.
+        presume: whether to take over also what is only presumed to be as it was.
+    """
+    sources = [(one, one.found()) for one in (journal, *others)]
+    found = Reused()
+    if not any(kept for _, kept in sources):
+        found.first = [(mutant.id, round) for round in range(rounds) for mutant in mutants]
+        return found
+    reasons = [Reasons(one, dependencies) for one in (journal, *others)]
+    taken = TakenOver(dependencies)
     for round in range(rounds):
         for mutant in mutants:
-            outcome = kept.get((mutant.id, round))
-            keys = dependencies.keys(mutant, round)
-            if outcome is None:
-                reasons[""] += 1
-            elif outcome.key not in keys:
-                reasons[why.of(outcome.key, keys[0])] += 1
-            elif not outcome.is_sound:
-                reasons["they ended in an error or unstable"] += 1
-            else:
-                done.add((mutant.id, round))
+            _take(found, taken, sources, reasons, dependencies, mutant, round)
+    if presume:
+        _presume(found, taken, [Presumed(*source, dependencies) for source in sources], mutants, rounds)
     journal.add_parts(dependencies.new_parts())
-    journal.reuse(done)
-    progress.note(_text(len(done), rounds * len(mutants), reasons))
-    return done
+    journal.take_over(taken.rows)
+    progress.note(text_of(found))
+    return found
 
 
-class _Reasons:
-    """Why a key is not equal to another."""
+def _take(
+    found: Reused,
+    taken: TakenOver,
+    sources: Sequence[tuple[JournalReader, Mapping[Pair, Kept]]],
+    reasons: Sequence[Reasons],
+    dependencies: Dependencies,
+    mutant: Mutant,
+    round: int,
+) -> None:
+    """One outcome from the first source in which it holds; else why it does not in the first that has it."""
+    pair = (mutant.id, round)
+    why: str | None = None
+    for (source, kept), explained in zip(sources, reasons, strict=True):
+        outcome = kept.get(pair)
+        holds = outcome is not None and dependencies.holds(outcome.key, mutant, round)
+        if outcome is not None and holds and not outcome.is_sound:
+            found.unsound.add(pair)
+        elif outcome is not None and holds:
+            if taken.take(source, pair, outcome.key, dependencies.keys(mutant, round)):
+                found.done.add(pair)
+            why = why or GONE
+        elif taken.take_renamed(source, kept, mutant, round):
+            found.done.add(pair)
+        elif outcome is not None and why is None:
+            why = explained.of(outcome.key, mutant, round)
+            found.before[pair] = outcome.verdict
+            if explained.is_site_changed(outcome.key, mutant):
+                found.sites.add(mutant.id)
+        if pair in found.done:
+            found.unsound.discard(pair)
+            return
+    if why is not None:
+        found.why[pair] = why
+    elif pair not in found.unsound:
+        found.first.append(pair)
 
-    def __init__(self, journal: Journal, dependencies: Dependencies) -> None:
-        self._journal, self._dependencies = journal, dependencies
-        self._known: dict[tuple[str, str], list[str]] = {}
 
-    def of(self, old: str, new: str) -> str:
-        """In words."""
-        names: list[str] = []
-        *old_parts, old_own = old.split()
-        *new_parts, new_own = new.split()
-        for pair in zip(old_parts, new_parts, strict=True):
-            if pair[0] != pair[1]:
-                names += self._changes(*pair)
-        if old_own != new_own:
-            names.append("the calls return something else")
-        more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-        return ", ".join(names[:_SHOWN]) + more
-
-    def _changes(self, old: str, new: str) -> list[str]:
-        if (old, new) not in self._known:
-            parts = self._journal.parts(old)
-            found = changes(parts, self._dependencies.parts[new]) if parts is not None else []
-            self._known[old, new] = found or ["what they depend on changed"]
-        return self._known[old, new]
+def _presume(
+    found: Reused, taken: TakenOver, sources: Sequence[Presumed], mutants: Sequence[Mutant], rounds: int
+) -> None:
+    """Take over what no source holds, as far as it can be presumed."""
+    for pair, mutant in [((mutant.id, round), mutant) for round in range(rounds) for mutant in mutants]:
+        if pair in found.done or pair in found.unsound:
+            continue
+        rows = (source.row(mutant, pair[1]) for source in sources)
+        row = next((one for one in rows if one is not None), None)
+        if row is not None:
+            taken.rows.append(row[0])
+            found.presumed[pair] = row[1]
+            found.why.pop(pair, None)
+            found.first = [one for one in found.first if one != pair]
+    found.done.update(found.presumed)
 
 
-def _text(reused: int, planned: int, reasons: Counter[str]) -> str:
+def text_of(found: Reused) -> str:
+    """What was taken over, and why the rest was not, in words."""
+    reused = len(found.done) - len(found.presumed)
+    planned = len(found.done) + len(found.why) + len(found.unsound - found.why.keys()) + len(found.first)
     if reused == planned:
         return f"reused all {planned} outcomes: nothing that they depend on has changed"
-    first = reasons.pop("", 0)
     parts = [f"reused {reused} of {planned} outcomes"]
-    parts += [f"{count} run again: {why}" for why, count in reasons.most_common(_SHOWN)]
-    rest = sum(count for _, count in reasons.most_common()[_SHOWN:])
-    if rest:
-        parts.append(f"{rest} run again for other reasons")
+    if found.presumed:
+        parts.append(f"{len(found.presumed)} presumed to be as they were")
+    parts += reasons_in_words(found.why.values())
+    unsound = len(found.unsound - found.why.keys())
+    if unsound:
+        parts.append(f"{unsound} run again: they ended in an error or unstable")
+    first = len(found.first)
     if first:
-        parts.append(f"{first} not run before" if reused or reasons else f"{first} run for the first time")
+        is_all = not (reused or found.why or unsound)
+        parts.append(f"{first} run for the first time" if is_all else f"{first} not run before")
     return "; ".join(parts)
+
+
+def reasons_in_words(why: Iterable[str]) -> list[str]:
+    """How many are run again, by the reason."""
+    counts = Counter(why)
+    parts = [f"{count} run again: {reason}" for reason, count in counts.most_common(_SHOWN)]
+    rest = sum(count for _, count in counts.most_common()[_SHOWN:])
+    return [*parts, *([f"{rest} run again for other reasons"] if rest else [])]

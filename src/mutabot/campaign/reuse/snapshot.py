@@ -87,13 +87,20 @@ class Snapshot:
         return file.digest if file is not None else None
 
 
+def counts_by_name(name: str) -> bool:
+    """Whether a file of this name, relative to the root, could matter."""
+    *folders, last = PurePosixPath(name).parts
+    is_inside = all(_is_name_of_project(folder) for folder in folders)
+    return is_inside and not (last.endswith(_SUFFIXES) or last in _FOR_TOOLS or _FOR_PEOPLE.fullmatch(last))
+
+
 def _walk(root: Path) -> Iterator[tuple[str, Path, tuple[int, ...]]]:
     """The regular files that could matter, with what tells whether they were touched."""
     for folder, folders, names in os.walk(root):
         here = Path(folder)
         folders[:] = sorted(name for name in folders if _is_folder_of_project(here / name))
         for name in sorted(names):
-            if name.endswith(_SUFFIXES) or name in _FOR_TOOLS or _FOR_PEOPLE.fullmatch(name):
+            if not counts_by_name(name):
                 continue
             path = here / name
             try:
@@ -106,10 +113,11 @@ def _walk(root: Path) -> Iterator[tuple[str, Path, tuple[int, ...]]]:
 
 
 def _is_folder_of_project(folder: Path) -> bool:
-    name = folder.name
-    if name.startswith(".") or name in _FOLDERS or name.endswith(_SUFFIXES):
-        return False
-    return not any((folder / mark).exists() for mark in _MARKS)
+    return _is_name_of_project(folder.name) and not any((folder / mark).exists() for mark in _MARKS)
+
+
+def _is_name_of_project(name: str) -> bool:
+    return not (name.startswith(".") or name in _FOLDERS or name.endswith(_SUFFIXES))
 
 
 def _digest_of(path: Path) -> str | None:

@@ -9,9 +9,13 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
+
+
+class OutOfTimeError(Exception):
+    """The time of a campaign is up."""
 
 
 class _Keeper:
@@ -20,10 +24,11 @@ class _Keeper:
     Attributes:
         may_raise: whether an interruption is safe right now.
         is_kept: whether one waits for that.
+        is_late: whether the end of the time waits for that.
     """
 
     def __init__(self) -> None:
-        self.may_raise = self.is_kept = False
+        self.may_raise = self.is_kept = self.is_late = False
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         if self.may_raise or self.is_kept:
@@ -31,10 +36,19 @@ class _Keeper:
         self.is_kept = True
 
     def let_go(self) -> None:
-        """Raise KeyboardInterrupt if one is kept."""
+        """Raise KeyboardInterrupt if one is kept, and OutOfTimeError if the time is up."""
         if self.is_kept:
             self.is_kept = False
             raise KeyboardInterrupt
+        if self.is_late:
+            self.is_late = False
+            raise OutOfTimeError
+
+    def be_late(self) -> None:
+        """The time is up."""
+        if self.may_raise:
+            raise OutOfTimeError
+        self.is_late = True
 
 
 @contextmanager
@@ -55,6 +69,38 @@ def interruptions_kept() -> Iterator[None]:
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     keeper.let_go()
+
+
+@contextmanager
+def limited(until: float, clock: Callable[[], float]) -> Iterator[None]:
+    """Inside, OutOfTimeError is raised at the next wait once the time is up.
+
+    Only inside ``interruptions_kept``, in whose threads and circumstances it does nothing either.
+
+    Args:
+        until: when that is, by the clock.
+        clock: seconds, which may stand still for a while.
+    """
+    keeper = signal.getsignal(signal.SIGINT)
+    if not isinstance(keeper, _Keeper):
+        yield
+        return
+
+    def look(number: int, frame: FrameType | None) -> None:
+        left = until - clock()
+        if left > 0:
+            signal.setitimer(signal.ITIMER_REAL, left)
+        else:
+            keeper.be_late()
+
+    before = signal.signal(signal.SIGALRM, look)
+    signal.setitimer(signal.ITIMER_REAL, max(until - clock(), 1e-3))
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+        keeper.is_late = False
 
 
 @contextmanager

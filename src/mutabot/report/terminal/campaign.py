@@ -31,6 +31,7 @@ from .console import (
 from .errors import error_lines
 from .marks import legend, mark_of, marks_in
 from .mutant.looked import unlooked_lines
+from .narrowed import budget_lines, since_lines
 from .repeats import repeat_lines
 
 #: verdicts outside the score that a user should look at, in this order
@@ -70,6 +71,8 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
         if results.rounds > 1:
             yield Text(_INTERVALS, style="dim")
         yield from sample_lines(results)
+    yield from since_lines(results)
+    yield from budget_lines(results)
     yield from survivor_lines(results, width)
     yield from unlooked_lines(results)
     yield from better_lines(results)
@@ -137,7 +140,7 @@ def mutant_table(results: Results, width: int) -> Table:
         more = [_row(result.rounds, many)]
         if with_rates:
             more.insert(0, _kill_rate(result.kill_rate, narrow=narrow))
-        number = f"{mutant.number}{'*' if result.outdated else ''}"
+        number = f"{mutant.number}{'*' if result.outdated else '~' if result.presumed else ''}"
         add_row(table, number, facts, mutant.description, *more, narrow=narrow)
     return table
 

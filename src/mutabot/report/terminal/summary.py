@@ -24,6 +24,7 @@ from .campaign import (
 from .console import between, heading, make_table, percent
 from .errors import error_lines
 from .mutant.looked import unlooked_lines
+from .narrowed import budget_lines, since_lines
 
 #: survivors that are shown
 _SURVIVORS = 10
@@ -43,6 +44,8 @@ def _parts(results: Results, width: int) -> Iterator[RenderableType]:
     if results.done:
         yield _scores(results, with_interval=width >= RATES)
         yield from sample_lines(results)
+    yield from since_lines(results)
+    yield from budget_lines(results)
     yield from survivor_lines(results, width, at_most=_SURVIVORS)
     yield from unlooked_lines(results)
     yield from better_lines(results)

@@ -1,0 +1,118 @@
+"""The pieces of a Python file: each function, class and constant by itself, and the rest of the module.
+
+What a piece says is its syntax tree, without positions, comments and layout, and what the names in it stand
+for: two pieces that say the same do the same.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from .mentions import Mentions
+
+
+class Kind(StrEnum):
+    """What a piece is."""
+
+    FUNCTION = "function"
+    CLASS = "class"
+    CONSTANT = "constant"
+    #: what runs whenever the module is imported
+    MODULE = "module"
+    #: what stands under ``if __name__ == "__main__"``
+    MAIN = "main"
+    #: a name of another module that this one only passes on
+    PASSED = "passed"
+    #: a file that cannot be taken apart
+    FILE = "file"
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One piece of a file.
+
+    Attributes:
+        file: its path relative to the project.
+        name: its qualified name in the module; empty for the rest of the module.
+        kind: what it is.
+        nodes: the statements that it consists of.
+        mentions: the names that it mentions.
+        is_root: whether it is reached by whoever imports the module, mentioned or not.
+        bases: of a class, the last names of its bases.
+        methods: of a class, the names of its methods.
+        text: of a file that cannot be taken apart, its digest.
+    """
+
+    file: str
+    name: str
+    kind: Kind
+    nodes: tuple[ast.AST, ...] = field(default=(), compare=False, hash=False)
+    mentions: Mentions = field(default_factory=Mentions, compare=False, hash=False)
+    is_root: bool = False
+    bases: tuple[str, ...] = ()
+    methods: tuple[str, ...] = ()
+    text: str = ""
+
+    @property
+    def last(self) -> str:
+        """The last part of its name, by which others mention it."""
+        return self.name.rpartition(".")[2]
+
+    @property
+    def shown(self) -> str:
+        """In words: ``place() in sorting.py``."""
+        match self.kind:
+            case Kind.FUNCTION:
+                return f"{self.name}() in {self.file}"
+            case Kind.CLASS | Kind.CONSTANT | Kind.PASSED:
+                return f"{self.name} in {self.file}"
+            case Kind.MODULE:
+                return f"module level of {self.file}"
+            case Kind.MAIN:
+                return f"the main block of {self.file}"
+            case Kind.FILE:
+                return self.file
+
+    def digest(
+        self, bound: Iterable[tuple[str, tuple[str, ...]]], words: Mapping[str, str] | None = None
+    ) -> str:
+        """What it says, as a digest.
+
+        Args:
+            bound: names in it that stand for something elsewhere, and for what.
+            words: identifiers that are to be read as others; None to read them as they are.
+        """
+        if self.kind is Kind.FILE:
+            return self.text
+        whole = [said(node, words or {}) for node in self.nodes]
+        return hashlib.blake2b(repr((whole, sorted(bound))).encode(), digest_size=12).hexdigest()
+
+
+#: fields that hold identifiers
+_IDENTIFIERS = {"id", "attr", "arg", "name", "asname", "module", "names", "kwd_attrs", "rest"}
+
+
+def said(node: object, words: Mapping[str, str]) -> str:
+    """A syntax tree as text, like ``ast.dump``, with other identifiers."""
+    if isinstance(node, ast.AST):
+        fields = (
+            f"{name}={_word(value, words) if name in _IDENTIFIERS else said(value, words)}"
+            for name, value in ast.iter_fields(node)
+            if value is not None and value != []
+        )
+        return f"{type(node).__name__}({', '.join(fields)})"
+    if isinstance(node, list):
+        return f"[{', '.join(said(one, words) for one in node)}]"
+    return repr(node)
+
+
+def _word(value: object, words: Mapping[str, str]) -> str:
+    if isinstance(value, str):
+        return repr(".".join(words.get(part, part) for part in value.split(".")))
+    if isinstance(value, list) and value and isinstance(value[0], str):
+        return repr([words.get(part, part) for part in value])
+    return said(value, words)

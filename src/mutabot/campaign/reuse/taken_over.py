@@ -1,0 +1,93 @@
+"""Taking outcomes over: with the lines that they name as they are now."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+
+from mutabot.campaign.pieces.lines import Lines
+from mutabot.campaign.pieces.renaming import Renaming
+from mutabot.journal.reader import JournalReader
+from mutabot.journal.records import Kept, Row
+from mutabot.model import Mutant
+
+from .keys import Dependencies, says_same
+from .trees import Trees, as_called
+
+Pair = tuple[str, int]
+
+
+class TakenOver:
+    """Outcomes on their way from one journal to another.
+
+    Attributes:
+        rows: those that can be taken over.
+    """
+
+    def __init__(self, dependencies: Dependencies) -> None:
+        self.rows: list[Row] = []
+        self._dependencies = dependencies
+        self._trees = Trees(dependencies)
+        self._lines: dict[str, Lines | None] = {}
+        self._seen: dict[int, list[str]] = {}
+
+    def take(self, source: JournalReader, pair: Pair, key: str, now: tuple[str, ...]) -> bool:
+        """Take one over; returns False if it names a line that nobody can find."""
+        row = source.row(*pair)
+        tree = key.rsplit(maxsplit=1)[-1]
+        if tree != self._dependencies.tree:
+            lines = self._lines_from(source, tree)
+            data = lines.moved(row.data) if lines is not None else None
+            if data is None:
+                return False
+            row = row.with_data(data)
+        self.rows.append(row.with_key(next(one for one in now if says_same(one, key))))
+        return True
+
+    def take_renamed(
+        self, source: JournalReader, kept: Mapping[Pair, Kept], mutant: Mutant, round: int
+    ) -> bool:
+        """Take one over that was found where things had other names; returns False if there is none."""
+        for tree in self._trees_in(kept):
+            renaming = self._trees.renaming(source, tree)
+            if not renaming:
+                continue
+            was = as_called(mutant, renaming).id
+            outcome = kept.get((was, round))
+            if outcome is None or not outcome.key.endswith(f" {tree}") or not outcome.is_sound:
+                continue
+            if not self._dependencies.holds_renamed(outcome.key, mutant, round, renaming, source.parts):
+                continue
+            data = self._renamed(source, tree, (was, round), mutant.id, renaming)
+            if data is not None:
+                row = source.row(was, round)
+                key = self._dependencies.keys(mutant, round)[0]
+                self.rows.append(replace(row, mutant=mutant.id, data=data, key=key))
+                return True
+        return False
+
+    def _renamed(
+        self, source: JournalReader, tree: str, pair: Pair, mutant: str, renaming: Renaming
+    ) -> str | None:
+        """The data of an outcome with what it names as that is called now; None if it tells of more."""
+        data = {**json.loads(source.row(*pair).data), "mutant": ""}
+        lines = self._lines_from(source, tree)
+        moved = lines.moved(json.dumps(data, ensure_ascii=False)) if lines is not None else None
+        if moved is None or renaming.tells_of(moved):
+            return None
+        return json.dumps({**json.loads(moved), "mutant": mutant}, ensure_ascii=False)
+
+    def _trees_in(self, kept: Mapping[Pair, Kept]) -> list[str]:
+        if id(kept) not in self._seen:
+            words = (one.key.split() for one in kept.values())
+            self._seen[id(kept)] = list(dict.fromkeys(one[3] for one in words if len(one) > 3))
+        return self._seen[id(kept)]
+
+    def _lines_from(self, source: JournalReader, tree: str) -> Lines | None:
+        if tree not in self._lines:
+            old = self._trees.reach(source, tree)
+            new = self._dependencies.reach.project
+            renaming = self._trees.renaming(source, tree)
+            self._lines[tree] = Lines(old.project, new, renaming) if old is not None else None
+        return self._lines[tree]

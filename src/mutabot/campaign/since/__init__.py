@@ -1,0 +1,1 @@
+"""What has changed since a revision, and which mutants that can have altered."""

@@ -1,0 +1,32 @@
+"""How long something may take, as a user writes it: ``90s``, ``10m``, ``1h30m``."""
+
+from __future__ import annotations
+
+import re
+
+from mutabot.errors import UsageError
+
+_PART = re.compile(r"(\d+(?:\.\d+)?)\s*(h|min|m|s)")
+_SECONDS = {"h": 3600.0, "min": 60.0, "m": 60.0, "s": 1.0}
+
+
+def seconds_of(text: str) -> float:
+    """What ``90s``, ``10m`` or ``1h 30m`` says, in seconds. Raises UsageError for anything else."""
+    plain = text.strip().lower()
+    parts = _PART.findall(plain)
+    if not parts or _PART.sub("", plain).strip():
+        raise UsageError(f"{text!r} is no length of time; write 90s, 10m or 1h30m")
+    found = sum(float(number) * _SECONDS[unit] for number, unit in parts)
+    if found <= 0:
+        raise UsageError(f"in {text!r} nothing can be run; write 90s, 10m or 1h30m")
+    return found
+
+
+def in_words(seconds: float) -> str:
+    """``10 min``, ``1 h 30 min``, ``90 s``."""
+    if seconds < 120 and seconds % 60:
+        return f"{seconds:g} s"
+    minutes, left = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    parts = [(hours, "h"), (minutes, "min"), (left, "s")]
+    return " ".join(f"{number} {unit}" for number, unit in parts if number)

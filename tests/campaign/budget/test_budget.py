@@ -1,0 +1,166 @@
+"""A campaign in limited time: what comes first, an end in time, and what it says about all mutants."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.analysis.results import read_results
+from mutabot.campaign.budget.batches import Batches, run_in_batches
+from mutabot.campaign.budget.order import in_order
+from mutabot.campaign.run import run_campaign
+from mutabot.campaign.workers.interruption import (
+    OutOfTimeError,
+    interruptible,
+    interruptions_kept,
+    limited,
+)
+from mutabot.journal.journal import Journal
+from mutabot.model import Mutant, Role, Site, Span, Verdict
+from tests.campaign.project import Quiet, request_for, write_project
+
+MISSION = """
+    import time
+
+    def go(arm):
+        for length in (0.1, 0.2, 0.05):
+            arm.move_by(length)
+        time.sleep(0.05)
+        arm.move_by(0.1)
+        return arm.position()
+"""
+TESTS = """
+    from robot import Arm
+    import mission
+
+    def test_goes():
+        assert mission.go(Arm()) > 0.4
+"""
+
+
+def mutant(number: int, line: int, operator: str = "skip") -> Mutant:
+    site = Site(Span("a.py", line, 0, line, 5, "go"), "call", line, Role.PROGRAM)
+    return Mutant(number, "robot", operator, site, "a:b", None, None, "", "")
+
+
+MUTANTS = [mutant(1, 1), mutant(2, 1, "repeat"), mutant(3, 2), mutant(4, 2, "repeat"), mutant(5, 3)]
+
+
+def test_what_was_never_run_comes_first_then_survivors_changed_sites_and_the_rest() -> None:
+    before = {
+        (MUTANTS[1].id, 0): Verdict.SURVIVED, (MUTANTS[2].id, 0): Verdict.KILLED,
+        (MUTANTS[3].id, 0): Verdict.KILLED, (MUTANTS[4].id, 0): Verdict.REFUSED,
+    }  # fmt: skip
+    classes = in_order(MUTANTS, 1, [(MUTANTS[4].id, 0)], 1, before, {MUTANTS[2].id})
+    ordered = [(one.name.partition(",")[0], [item.number for item, _ in one.trials]) for one in classes]
+    assert ordered == [
+        ("never run before", [1]),
+        ("survivors before", [2]),
+        ("at changed sites", [3]),
+        ("the rest", [4]),
+    ]
+
+
+def test_every_outcome_is_in_one_class_and_each_site_has_one_in_the_first() -> None:
+    classes = in_order(MUTANTS, 2, [], 1, {}, set())
+    pairs = [(item.id, round) for one in classes for item, round in one.trials]
+    assert sorted(pairs) == sorted((item.id, round) for item in MUTANTS for round in range(2))
+    assert len({item.site for item, _ in classes[0].trials}) == len(classes[0].trials) == 3
+    assert [one.round for one in classes] == sorted(one.round for one in classes)
+
+
+def test_a_longer_time_runs_what_a_shorter_one_runs_and_more() -> None:
+    class Even(Batches):
+        """Batches of two."""
+
+        def __init__(self, left: float) -> None:
+            self._left = left
+
+        @property
+        def left(self) -> float:
+            return self._left
+
+        def size(self, trials: Any) -> int:
+            return min(2, len(trials)) if self._left >= 1 else 0
+
+        def took(self, trials: Any, seconds: float) -> None:
+            self._left -= 1
+
+    def run(left: float) -> tuple[list[int], bool]:
+        ran: list[int] = []
+        whole = run_in_batches(
+            Even(left), [(one, 0) for one in MUTANTS], lambda some: ran.extend(one.number for one, _ in some),
+            lambda count: None,
+        )  # fmt: skip
+        return ran, whole
+
+    assert run(1) == ([1, 2], False)
+    assert run(2) == ([1, 2, 3, 4], False)
+    assert run(3) == ([1, 2, 3, 4, 5], True)
+
+
+def test_the_end_of_the_time_waits_until_it_is_safe() -> None:
+    reached = False
+    with interruptions_kept(), limited(time.monotonic() + 0.01, time.monotonic):
+        until = time.monotonic() + 0.1
+        while time.monotonic() < until:
+            pass
+        reached = True
+        with pytest.raises(OutOfTimeError), interruptible():
+            time.sleep(5)
+    assert reached
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    return write_project(tmp_path, MISSION, TESTS)
+
+
+def campaign(folder: Path, **changes: Any) -> Any:
+    path = run_campaign(request_for(folder, **changes), Quiet())
+    with Journal.open(path) as journal:
+        return read_results(journal)
+
+
+def test_a_spent_budget_leaves_the_rest_to_the_next_run(project: Path) -> None:
+    results = campaign(project, budget=0.05)
+    assert results.state == "out of time"
+    assert results.done < results.planned
+    assert results.budget is not None
+    assert not results.budget.is_whole
+    assert sum(one.unknown for one in results.estimates) == results.planned - sum(
+        one.population for one in results.estimates
+    )
+    whole = campaign(project)
+    assert (whole.state, whole.done, whole.budget) == ("complete", whole.planned, None)
+
+
+def test_a_budget_that_is_enough_gives_what_a_campaign_without_one_gives(project: Path) -> None:
+    results = campaign(project, budget=600.0)
+    assert results.state == "complete"
+    assert results.budget is not None
+    assert results.budget.is_whole
+    assert results.estimates == ()
+    fresh = campaign(project, fresh=True)
+    assert [[one.verdict for one in result.outcomes] for result in results.mutants] == [
+        [one.verdict for one in result.outcomes] for result in fresh.mutants
+    ]
+
+
+def test_what_is_under_way_when_the_time_is_up_gets_no_verdict(
+    project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (project / "mission.py").write_text(
+        (project / "mission.py").read_text().replace("sleep(0.05)", "sleep(1.0)")
+    )
+    monkeypatch.setattr(Batches, "size", lambda self, trials: len(trials))
+    results = campaign(project, budget=3.5)
+    assert results.done < results.planned
+    assert results.state == "out of time"
+    assert not any(one.verdict in (Verdict.ERROR, Verdict.TIMEOUT) for one in (
+        outcome for result in results.mutants for outcome in result.outcomes
+    ))  # fmt: skip
+    assert all(one.counted == 0 for one in results.budget.classes)

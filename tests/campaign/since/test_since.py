@@ -1,0 +1,247 @@
+"""``--since``: what changes since a revision can have altered is run, and nothing else."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.analysis.results import read_results
+from mutabot.campaign.run import run_campaign
+from mutabot.campaign.since.git import Revision
+from mutabot.errors import UsageError
+from mutabot.journal.journal import Journal
+from tests.campaign.project import Quiet, fingerprint, request_for, write_project
+
+MISSION = """
+    def left(arm):
+        arm.move_by(0.2)
+        arm.move_by(0.1)
+
+    def right(arm):
+        arm.move_by(0.3)
+        return arm.position()
+"""
+LEFT = """
+    from robot import Arm
+    import mission
+
+    def test_left():
+        arm = Arm()
+        mission.left(arm)
+        assert arm.x > 0
+"""
+RIGHT = """
+    from robot import Arm
+    import mission
+
+    def test_right():
+        end = mission.right(Arm())
+        assert end > 0
+"""
+BENCHMARK = Path(__file__).parents[3] / "benchmarks" / "since_edits.py"
+Pair = tuple[str, int]
+
+
+def git(folder: Path, *command: str) -> None:
+    identity = ["-c", "user.name=tests", "-c", "user.email=tests@localhost"]
+    subprocess.run(["git", *identity, *command], cwd=folder, check=True, capture_output=True)
+
+
+class Project:
+    """A project in a repository."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = write_project(folder, MISSION, LEFT, more={"tests/test_right.py": RIGHT})
+        git(folder, "init", "-q")
+        (folder / ".gitignore").write_text(".mutabot\n__pycache__\n.pytest_cache\n")
+        git(folder, "add", "-A")
+        git(folder, "commit", "-qm", "before")
+        self.progress = Quiet()
+
+    @property
+    def journal(self) -> Path:
+        return self.folder / ".mutabot" / "journal.sqlite"
+
+    def edit(self, name: str, change: Callable[[str], str]) -> None:
+        path = self.folder / name
+        path.write_text(change(path.read_text()))
+
+    def run(self, **changes: Any) -> set[Pair]:
+        """Run a campaign: the mutants and rounds that it really ran."""
+        self.progress = Quiet()
+        run_campaign(request_for(self.folder, **changes), self.progress)
+        with Journal.open(self.journal) as journal:
+            return {(one.mutant, one.round) for one in journal.outcomes()} - journal.reused()
+
+    def notes(self) -> str:
+        return "\n".join(self.progress.lines)
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Project:
+    return Project(tmp_path)
+
+
+def of(function: str, pairs: set[Pair]) -> set[Pair]:
+    return {pair for pair in pairs if f":{function}:" in pair[0]}
+
+
+def test_since_takes_over_what_no_change_can_have_altered(project: Project) -> None:
+    first = project.run()
+    project.edit("mission.py", lambda text: "# a comment\n" + text)
+    assert project.run(since="HEAD") == set()
+    assert f"0 to run, {len(first)} taken over" in project.notes()
+    project.edit("mission.py", lambda text: text.replace("0.3", "0.4"))
+    before = fingerprint(project.folder)
+    assert project.run(since="HEAD") == of("right", first)
+    assert f"{len(of('right', first))} to run: right() in mission.py changed" in project.notes()
+    assert fingerprint(project.folder) == before
+
+
+def test_without_a_journal_only_altered_mutants_are_run_and_that_is_said(project: Project) -> None:
+    project.edit("mission.py", lambda text: text.replace("0.3", "0.4"))
+    ran = project.run(since="HEAD")
+    assert ran == of("right", ran)
+    assert ran
+    assert (
+        "not judged, though no change can have altered them: no journal holds an outcome" in project.notes()
+    )
+    with Journal.open(project.journal) as journal:
+        results = read_results(journal)
+    assert results.since is not None
+    assert sum(results.since.run.values()) == len(ran)
+    assert sum(results.since.not_judged.values()) > 0
+    assert results.done == results.planned == len(ran)
+
+
+def test_uncommitted_and_untracked_files_and_the_vocabulary_count(project: Project) -> None:
+    first = project.run()
+    project.edit("robot.toml", lambda text: text.replace("noise = 0.5", "noise = 0.4"))
+    assert project.run(since="HEAD") == {pair for pair in first if "position" in pair[0]}
+    git(project.folder, "checkout", "robot.toml")
+    (project.folder / "tests" / "conftest.py").write_text("x = 1\n")
+    assert project.run(since="HEAD") == first
+    assert "tests/conftest.py is new" in project.notes()
+
+
+def test_a_journal_of_elsewhere_is_taken_over_as_far_as_it_holds(project: Project, tmp_path: Path) -> None:
+    first = project.run()
+    stored = tmp_path / "stored.sqlite"
+    shutil.copy(project.journal, stored)
+    shutil.rmtree(project.folder / ".mutabot")
+    project.edit("mission.py", lambda text: text.replace("0.3", "0.4"))
+    assert project.run(since="HEAD", other_journal=stored) == of("right", first)
+    shutil.rmtree(project.folder / ".mutabot")
+    assert project.run(since="HEAD", other_journal=stored, seed=5) == of("right", first)
+    assert "seed is 5, was 1" in project.notes()  # and what is not altered is not judged
+
+
+def test_a_missing_journal_is_told_with_since_and_an_error_without(project: Project) -> None:
+    nowhere = project.folder / "nowhere.sqlite"
+    project.edit("mission.py", lambda text: text.replace("0.3", "0.4"))
+    project.run(since="HEAD", other_journal=nowhere)
+    assert "nothing is taken over from it" in project.notes()
+    with pytest.raises(UsageError, match="--journal"):
+        project.run(other_journal=nowhere)
+
+
+def test_moved_and_renamed_code_keeps_its_outcomes(project: Project) -> None:
+    first = project.run()
+    git(project.folder, "mv", "mission.py", "errand.py")
+    for name in ("tests/test_mission.py", "tests/test_right.py", "mutabot.toml"):
+        project.edit(
+            name,
+            lambda text: (
+                text.replace("import mission", "import errand")
+                .replace("mission.left", "errand.left")
+                .replace("mission.right", "errand.right")
+                .replace('"mission.py"', '"errand.py"')
+            ),
+        )
+    ran = project.run(since="HEAD")
+    assert {mutant for mutant, _ in ran} == {
+        mutant.replace("mission.py", "errand.py") for mutant, _ in first if mutant.endswith(":noise")
+    }  # which draws its numbers by its name
+
+
+def test_sites_only_presumes_what_other_statements_could_alter_and_never_takes_it_for_known(
+    project: Project,
+) -> None:
+    first = project.run()
+    project.edit("mission.py", lambda text: text.replace("move_by(0.1)", "move_by(0.15)"))
+    edited = {pair for pair in first if ":left:arm.move_by#2" in pair[0]}
+    assert project.run(since="HEAD", sites_only=True) == edited
+    presumed = of("left", first) - edited
+    with Journal.open(project.journal) as journal:
+        assert journal.presumed() == presumed
+        results = read_results(journal)
+    assert {one.mutant.id for one in results.mutants if one.presumed} == {name for name, _ in presumed}
+    assert results.since is not None
+    assert results.since.presumed == len(presumed)
+    assert project.run(since="HEAD", sites_only=True) == set()
+    assert project.run(since="HEAD") == presumed
+    with Journal.open(project.journal) as journal:
+        assert not journal.presumed()
+
+
+def test_sites_only_knows_statements_by_what_they_say(project: Project) -> None:
+    first = project.run()
+    project.edit(
+        "mission.py",
+        lambda text: text.replace("    arm.move_by(0.2)", "    arm.move_by(0.05)\n    arm.move_by(0.2)"),
+    )
+    new = project.run(since="HEAD", sites_only=True)
+    assert {name.split(":")[2] for name, _ in new} == {"arm.move_by#1"}
+    assert len(of("left", first)) + len(new) == 3 * len(new)
+
+
+@pytest.mark.parametrize(
+    ("ref", "said"), [("nowhere", "git knows no such revision"), ("--all", "no name of a revision")]
+)
+def test_an_unknown_revision_is_an_error_before_anything_runs(project: Project, ref: str, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        project.run(since=ref)
+    assert not [line for line in project.progress.lines if "baseline" in line]
+
+
+def test_what_is_no_repository_and_what_is_shallow_say_what_to_do(project: Project, tmp_path: Path) -> None:
+    outside = tmp_path / "outside"
+    shutil.copytree(project.folder, outside, ignore=shutil.ignore_patterns(".git"))
+    project.edit("mission.py", lambda text: text + "\n")
+    git(project.folder, "commit", "-qam", "after")
+    git(tmp_path, "clone", "-q", "--depth", "1", f"file://{project.folder}", str(tmp_path / "shallow"))
+    with pytest.raises(UsageError, match="fetch-depth: 0"):
+        Revision.find(tmp_path / "shallow", "HEAD~1")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path))
+        with pytest.raises(UsageError, match="is in no repository of git"):
+            Revision.find(outside, "HEAD")
+        patch.setenv("PATH", "")
+        with pytest.raises(UsageError, match="needs git"):
+            Revision.find(project.folder, "HEAD")
+
+
+def edits(*options: str) -> dict[str, Any]:
+    done = subprocess.run([sys.executable, BENCHMARK, *options], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return dict(json.loads(done.stdout[done.stdout.index("\n{") :]))
+
+
+def test_since_gives_the_outcomes_of_a_whole_campaign_after_a_few_edits() -> None:
+    found = edits("--edits", "2", "--projects", "errands", "--kinds", "program,renamed", "--rounds", "1")
+    assert found["outcomes"] > 0
+    assert found["wrong"] == []
+
+
+@pytest.mark.whole
+def test_since_gives_the_outcomes_of_a_whole_campaign_after_forty_edits() -> None:
+    found = edits("--edits", "40", "--seed", "14")
+    assert sum(found["edits"].values()) == 40
+    assert found["wrong"] == []
