@@ -16,12 +16,14 @@ from mutabot.journal.records import (
     DRAWING,
     FLAKY,
     REPEATS,
+    SHARD,
     VERIFICATION,
     BaselineTest,
     ControlEnd,
     Drawing,
     Flaky,
     Repeats,
+    ShardOf,
     Verification,
 )
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
@@ -102,7 +104,7 @@ class Results:
 
     Attributes:
         meta: what the campaign said about itself.
-        state: ``complete``, ``interrupted``, ``running``, ``killed`` or why it stopped.
+        state: ``complete``, ``interrupted``, ``running``, ``killed`` or why it stopped; of a shard, which.
         rounds: number of rounds.
         mutants: every planned mutant by number, but for graded ones.
         groups: scores per family and role.
@@ -120,6 +122,7 @@ class Results:
         attempt: why a later campaign ended before it ran anything; None if there was none.
         graded: the mutants of family ``graded``, by number. The magnitudes of a ladder are no population of
             faults, and most of them need not be run: no score and no list of survivors knows of them.
+        shard: which part of its plan the campaign has run; None for all of it.
     """
 
     meta: Mapping[str, Any]
@@ -139,6 +142,7 @@ class Results:
     drawn: tuple[Group, ...] = ()
     attempt: str | None = None
     graded: tuple[MutantResult, ...] = ()
+    shard: ShardOf | None = None
 
     @property
     def everything(self) -> tuple[MutantResult, ...]:
@@ -221,6 +225,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
     vocabulary = journal.vocabulary
     drawing = from_data(Drawing, meta[DRAWING]) if DRAWING in meta else None
+    shard = from_data(ShardOf, meta[SHARD]) if SHARD in meta else None
     groups = groups_of(mutants, outcomes, rounds, drawing)
     drawn = groups if drawing is not None else ()
     old = _Earlier.of(journal, mutants, outcomes, rounds) if earlier else _Earlier()
@@ -239,7 +244,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
 
     return Results(
         meta=meta,
-        state=_state(journal),
+        state=_state(journal, shard),
         rounds=rounds,
         mutants=tuple(result(mutant) for mutant in mutants if mutant.id not in graded),
         graded=tuple(result(mutant) for mutant in mutants if mutant.id in graded),
@@ -255,6 +260,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         drawing=drawing,
         drawn=drawn,
         attempt=_attempt(journal),
+        shard=shard,
     )
 
 
@@ -281,7 +287,8 @@ class _Earlier:
         cls, journal: JournalReader, planned: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int
     ) -> _Earlier:
         done = {(outcome.mutant, outcome.round) for outcome in outcomes}
-        order = journal.meta().get("order") or 1
+        meta = journal.meta()
+        order = meta.get("order") or 1
         known = {
             mutant.id: (mutant, outdated)
             for mutant, outdated in journal.known()
@@ -297,8 +304,9 @@ class _Earlier:
         ]
         ids = {outcome.mutant for outcome in found}
         mutants = tuple(mutant for mutant, _ in known.values() if mutant.id in ids)
-        # what was planned and would still hold has been taken over, unless everything is to be run again
-        planned_may_hold = bool(journal.meta().get("fresh"))
+        # what was planned and would still hold has been taken over, unless everything is to be run again, or
+        # another shard is to look at it
+        planned_may_hold = bool(meta.get("fresh")) or SHARD in meta
         outdated = {name for name in ids if (known[name][1] if name in known else not planned_may_hold)}
         return cls(mutants, tuple(found), frozenset(outdated))
 
@@ -317,8 +325,9 @@ def _attempt(journal: JournalReader) -> str | None:
     return "running" if is_written(journal.path) else "killed"
 
 
-def _state(journal: JournalReader) -> str:
-    finished = journal.finished
-    if finished is not None:
-        return finished
-    return "running" if is_written(journal.path) else "killed"
+def _state(journal: JournalReader, shard: ShardOf | None) -> str:
+    state = journal.finished or ("running" if is_written(journal.path) else "killed")
+    if shard is None or shard.of == 1:
+        return state
+    # a part of a campaign is never complete, whatever has become of it
+    return shard.words if state == "complete" else f"{shard.words}, {state}"

@@ -35,6 +35,7 @@ def request_of(
     from mutabot.campaign.request import Request
     from mutabot.settings.configuration import load_configuration
     from mutabot.settings.sample import Sample
+    from mutabot.settings.shard import Shard
     from mutabot.vocabulary import load
 
     if engine not in ENGINES:
@@ -69,6 +70,7 @@ def request_of(
         no_oracle=bool(given.get("no_oracle")),
         moments=_moments(given.get("when") or configuration.when),
         whole_ladders=bool(given.get("whole_ladders")),
+        shard=Shard.parse(given["shard"]) if given.get("shard") is not None else None,
         evidence=bool(given.get("evidence")) and configuration.evidence > 0,
     )
 

@@ -13,6 +13,7 @@ from mutabot.model.outcome import same_end
 DRAWING = "drawing"
 VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
 REPEATS = "repeats"
+SHARD = "shard"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 
@@ -115,6 +116,28 @@ class Drawing:
     def stratum(self, family: str, role: str) -> Stratum | None:
         """That of a family in a role."""
         return next((one for one in self.strata if (one.family, one.role) == (family, role)), None)
+
+
+@dataclass(frozen=True, slots=True)
+class ShardOf:
+    """Which part of its plan a campaign has run.
+
+    Attributes:
+        number: 1-based number of the shard.
+        of: how many shards there are.
+        mutants: the numbers of its mutants; the plan holds all.
+        depends: all that outcomes depend on, by name; None if files changed during the baseline.
+    """
+
+    number: int
+    of: int
+    mutants: tuple[int, ...]
+    depends: Mapping[str, str] | None = None
+
+    @property
+    def words(self) -> str:
+        """``shard 2 of 8``."""
+        return f"shard {self.number} of {self.of}"
 
 
 @dataclass(frozen=True, slots=True)

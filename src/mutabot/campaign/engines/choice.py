@@ -49,7 +49,7 @@ def repetitions_for(request: Request) -> int:
 def run_mutants(
     campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, done: Collection[tuple[str, int]] = ()
 ) -> None:
-    """Run controls and mutants in all rounds; every outcome is in the journal as soon as it is known.
+    """Run controls and mutants in all rounds; every outcome is in the journal within a second.
 
     ``done`` are the ids and rounds that need not be run.
 
@@ -61,7 +61,7 @@ def run_mutants(
 
 
 def run_trials(campaign: Campaign, trials: Sequence[Trial], sink: Sink) -> list[Outcome]:
-    """Run these mutants in these rounds, with their controls; every outcome is in the journal at once.
+    """Run these mutants in these rounds, with their controls; every outcome is in the journal within a second.
 
     Raises ControlError for a control that ends wrongly.
     """

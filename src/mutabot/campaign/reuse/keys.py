@@ -85,9 +85,19 @@ class Dependencies:
             **_versions(),
         }
         self._common = self._stored(common)
+        self._shared = common
         self._operations = {
             operation.target: _operation_parts(request.vocabulary, operation.target)
             for operation in request.vocabulary.operations
+        }
+
+    @property
+    def everything(self) -> Parts:
+        """All that any outcome depends on, but for what a mutant does."""
+        return {
+            **self.files,
+            **self._shared,
+            **{k: v for one in self._operations.values() for k, v in one.items()},
         }
 
     def keys(self, mutant: Mutant, round: int) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ def run_ladders(
     done: Collection[tuple[str, int]] = (),
     always: Mapping[str, Collection[float]] | None = None,
 ) -> None:
-    """Find the thresholds; every outcome is in the journal as soon as it is known.
+    """Find the thresholds; every outcome is in the journal within a second.
 
     ``done`` are the ids and rounds whose outcomes the journal holds already. ``always`` gives magnitudes that
     are run in every round, by ladder.
