@@ -17,6 +17,8 @@ from .recording import Block, Kind, Recording, Track
 LENGTH, ANGLE, SHARE = 0.001, 0.5, 0.01
 #: what the name of an orientation ends with
 TURNED = " turned"
+#: by so much may one moment be told otherwise twice, s
+_SAME = 1e-6
 #: how much closer than in the original an approach must be to be told, m
 _CLOSER = 0.005
 
@@ -32,6 +34,11 @@ class Path:
 
     track: Track
     times: Sequence[float]
+
+    @cached_property
+    def least(self) -> dict[Block, tuple[float, float]]:
+        """Its least distances from blocks, m, and when, as far as anybody has asked."""
+        return {}
 
     @cached_property
     def rows(self) -> list[tuple[float, ...]]:
@@ -58,7 +65,7 @@ class Path:
 
     def at(self, time: float) -> int:
         """The number of the row that holds at a time: the last one before or at it, else the first."""
-        return max(0, bisect_right(self.when, time + 1e-6) - 1)
+        return max(0, bisect_right(self.when, time + _SAME) - 1)
 
 
 def paths_of(recording: Recording) -> dict[str, Path]:
@@ -147,9 +154,26 @@ def _turned(one: Sequence[float], other: Sequence[float]) -> float:
 def _gaps(measure: _Measure, before: Path, after: Path) -> Iterator[tuple[float, float]]:
     """Time and difference, at all moments of either; what has ended stays as it was."""
     between, rows, others = measure.between, before.rows, after.rows
-    for time in sorted({*before.when, *after.when}):
-        one, other = rows[before.at(time)], others[after.at(time)]
+    for time, here, there in _together(before.when, after.when):
+        one, other = rows[here], others[there]
         yield time, 0.0 if one == other else between(one, other)
+
+
+def _together(one: Sequence[float], other: Sequence[float]) -> list[tuple[float, int, int]]:
+    """All moments of either, with the numbers of the rows that hold then, as ``Path.at`` has them."""
+    if one == other:
+        return [(time, number, number) for number, time in enumerate(one)]
+    found = []
+    here = there = 0
+    last, end = len(one) - 1, len(other) - 1
+    for time in sorted({*one, *other}):
+        until = time + _SAME
+        while here < last and one[here + 1] <= until:
+            here += 1
+        while there < end and other[there + 1] <= until:
+            there += 1
+        found.append((time, here, there))
+    return found
 
 
 def _apart(measure: _Measure, before: Path, after: Path, tolerance: float, until: float) -> Apart | None:
@@ -165,7 +189,7 @@ def _apart(measure: _Measure, before: Path, after: Path, tolerance: float, until
 def _aside(measure: _Measure, before: Path, after: Path) -> float | None:
     """How far something went where it never is in the original."""
     if measure.is_position:
-        return max(aside(one, before.outline) for one in after.outline)
+        return aside(after.outline, before.outline)
     if before.track.kind is not Kind.VALUE:
         return None
     usual = [row[0] for row in before.rows]
@@ -175,11 +199,20 @@ def _aside(measure: _Measure, before: Path, after: Path) -> float | None:
 
 def _least(path: Path, block: Block) -> tuple[float, float]:
     """The least distance of a path from a block, m, and when."""
-    size = path.track.size or (0.0, 0.0, 0.0)
-    half = [0.5 * (one + other) for one, other in zip(size, block.size, strict=True)]
-    found = (
-        (sum(max(0.0, abs(x - c) - h) ** 2 for x, c, h in zip(point, block.centre, half, strict=True)), time)
-        for point, time in zip(path.points, path.when, strict=True)
-    )
-    square, time = min(found)
-    return float(square**0.5), time
+    known = path.least.get(block)
+    if known is None:
+        known = path.least[block] = _sought(path, block)
+    return known
+
+
+def _sought(path: Path, block: Block) -> tuple[float, float]:
+    size, (x, y, z) = path.track.size or (0.0, 0.0, 0.0), block.centre
+    dx, dy, dz = (0.5 * (one + other) for one, other in zip(size, block.size, strict=True))
+    least, when = inf, 0.0
+    for (px, py, pz), time in zip(path.points, path.when, strict=True):
+        # written out: this is asked of every moment of every mutant
+        gx, gy, gz = abs(px - x) - dx, abs(py - y) - dy, abs(pz - z) - dz
+        square = (gx * gx if gx > 0 else 0.0) + (gy * gy if gy > 0 else 0.0) + (gz * gz if gz > 0 else 0.0)
+        if square < least:
+            least, when = square, time
+    return float(least**0.5), when

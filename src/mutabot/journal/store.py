@@ -131,7 +131,7 @@ class Store:
         self.write("INSERT OR REPLACE INTO meta VALUES (?, ?)", key, dump(value))
 
     def write(self, statement: str, *values: Any) -> None:
-        """Carry out one statement, and commit it at once with all that waits; within ``transaction`` with it."""
+        """Carry out one statement, at once with all that waits; within ``transaction``, as a part of it."""
         with guarded(self.path):
             if self._is_whole:
                 self.connection.execute(statement, values)

@@ -80,7 +80,12 @@ class _Search:
                     new.append((mutant, round))
                 else:
                     self._take(ladder, step, outcome)
-            ended = {(one.mutant, one.round): one for one in run_trials(self.campaign, new, self.sink)}
+            ended: dict[tuple[str, int], Outcome] = {}
+
+            def take(one: Outcome, ended: dict[tuple[str, int], Outcome] = ended) -> None:
+                ended[one.mutant, one.round] = one
+
+            run_trials(self.campaign, new, self.sink, take)
             for ladder, step, round in trials:
                 outcome = ended.get((ladder.mutants[step].id, round))
                 if outcome is not None:

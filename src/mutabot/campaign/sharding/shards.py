@@ -14,8 +14,8 @@ from mutabot.journal.records import SHARD, ShardOf
 from mutabot.model import Mutant
 from mutabot.settings.shard import Shard
 
-#: what a mutant costs beside its tests, what an operation costs, in simulated seconds, for on each machine the
-#: clock on the wall shows something else; and how many magnitudes a ladder runs, about
+#: what a mutant costs beside its tests, and what an operation costs, in simulated seconds: the clock on the
+#: wall shows something else on each machine; and how many magnitudes a ladder runs, about
 _START, _OPERATION, _SEARCH = 0.1, 0.01, 4
 
 
