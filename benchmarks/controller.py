@@ -303,6 +303,7 @@ def main() -> int:
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         found = measure(given, Path(name).resolve())
+    found["engine"] = given.engine
     found["share"] = round(found["cpu_ms"] / 1e3 / (found["worker_seconds"] / WORKERS), 3)
     wrong = []
     if found["share"] >= SHARE:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Iterator
 
 from .recordings import Recordings
-from .schema import KNOWN, LAST
-from .store import Store
+from .schema import KNOWN, LAST, TABLES
+from .store import Execute, Store
 
 #: what all shards have alike: plan, baseline and sources
 _OF_PLAN = {
@@ -15,6 +16,8 @@ _OF_PLAN = {
     "left_out": "SELECT * FROM left_out ORDER BY rowid",
     "source": "SELECT * FROM source",
 }
+#: the tables that are taken over as below says, or not at all
+_FIRST = set(re.findall(r"CREATE TABLE (?:IF NOT EXISTS )?(\w+)", f"{TABLES}{KNOWN}"))
 _OUTCOMES = f'SELECT mutant, round, verdict, "by", data, key, reused FROM outcome WHERE rowid IN ({LAST})'
 #: the first that comes counts
 _OF_EACH = (
@@ -49,9 +52,18 @@ def take_outcomes(store: Store, other: Store) -> None:
     """What another journal has found, and knows of earlier campaigns, as far as that is not there already."""
     with store.transaction() as execute:
         execute(KNOWN)
-        for question, statement in _OF_EACH:
+        for question, statement in (*_OF_EACH, *_later(execute, other)):
             for row in other.each(question):
                 execute(statement, *row)
+
+
+def _later(execute: Execute, other: Store) -> Iterator[tuple[str, str]]:
+    """Tables that came after the first version, whatever they hold: what is there under a key stays."""
+    for name, made in other.rows("SELECT name, sql FROM sqlite_master WHERE type = 'table'"):
+        if name not in _FIRST and made:
+            execute(made.replace("CREATE TABLE", "CREATE TABLE IF NOT EXISTS", 1))
+            columns = len(other.rows(f"SELECT name FROM pragma_table_info('{name}')"))
+            yield f"SELECT * FROM {name}", f"INSERT OR IGNORE INTO {name} VALUES ({', '.join('?' * columns)})"
 
 
 def take_recordings(target: Recordings, others: Iterable[Recordings], mutants: Iterable[str]) -> None:

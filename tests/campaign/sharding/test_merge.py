@@ -152,6 +152,17 @@ def test_a_merged_journal_may_lie_where_a_shard_did(campaigns: Path, tmp_path: P
     found.close()
 
 
+def test_tables_that_come_with_later_versions_are_taken_over(campaigns: Path, tmp_path: Path) -> None:
+    for name in ("1", "2"):
+        shutil.copytree(campaigns / name, tmp_path / name)
+        with sqlite3.connect(tmp_path / name / "journal.sqlite") as connection:
+            connection.execute("CREATE TABLE later (name TEXT PRIMARY KEY, data BLOB)")
+            connection.execute("INSERT INTO later VALUES ('both', 1), (?, 2)", (name,))
+    merge([tmp_path / "1", tmp_path / "2"], tmp_path / "m.sqlite", root=tmp_path, room=ROOM)
+    with sqlite3.connect(tmp_path / "m.sqlite") as connection:
+        assert dict(connection.execute("SELECT * FROM later")) == {"both": 1, "1": 2, "2": 2}
+
+
 def test_the_same_shard_twice_is_refused(campaigns: Path, tmp_path: Path) -> None:
     with pytest.raises(MergeError, match="shard 1 of 2 is there twice"):
         merge([campaigns / "1", campaigns / "1"], tmp_path / "m.sqlite", root=tmp_path, room=ROOM)

@@ -77,15 +77,14 @@ class Dependencies:
         self._baseline = baseline
         self._test_files = _TestFiles.of(request, self.files, tests)
         self._places: dict[tuple[int, tuple[str, ...], tuple[str, ...]], str] = {}
-        common = {
+        self.common = {
             **{name: digest for name, digest in self.files.items() if name not in self._test_files.closures},
             **_pytest_parts(request),
             **_settings(request),
             **_vocabulary_parts(request.vocabulary),
             **_versions(),
         }
-        self._common = self._stored(common)
-        self._shared = common
+        self._common = self._stored(self.common)
         self._operations = {
             operation.target: _operation_parts(request.vocabulary, operation.target)
             for operation in request.vocabulary.operations
@@ -96,7 +95,7 @@ class Dependencies:
         """All that any outcome depends on, but for what a mutant does."""
         return {
             **self.files,
-            **self._shared,
+            **self.common,
             **{k: v for one in self._operations.values() for k, v in one.items()},
         }
 
