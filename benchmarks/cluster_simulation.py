@@ -2,8 +2,8 @@
 
     python benchmarks/cluster_simulation.py measure REPLAY.sqlite BRANCH.sqlite CONTROLLER.json …
                                                       store the costs of real campaigns in docs/data
-    python benchmarks/cluster_simulation.py           simulate, and print JSON (tools/make_scaling_page.py
-                                                      makes docs/scaling.md of it)
+    python benchmarks/cluster_simulation.py           simulate, and store what came of it there
+    python tools/make_scaling_page.py                 make docs/scaling.md and its picture of that
 
 The program is many copies of the measured one: each copy has its tests, and its mutants are judged by these
 alone. Units, their order and their parts are those of the executor on a cluster: replay has a unit for each
@@ -19,6 +19,7 @@ or shorter a unit takes than expected from equal runs that were measured, and fa
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import math
 import random
@@ -167,7 +168,7 @@ def _cut(costs: Costs, drawn: Sequence[float], way: Way, workers: int) -> Iterat
     count = math.ceil(way.parts * workers / ROUNDS) if workers > 1 and way.parts else 1
     count = max(1, min(count, len(drawn) // LEAST))
     bounds = [round(len(drawn) * number / count) for number in range(count + 1)]
-    for first, last in zip(bounds, bounds[1:], strict=False):
+    for first, last in itertools.pairwise(bounds):
         # the tests of all copies of the program that have mutants in it
         copies = math.ceil(last / costs.mutants) - first // costs.mutants
         yield Unit(copies * costs.suite, sum(drawn[first:last]), last - first)
@@ -239,7 +240,7 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
     """All numbers of the page."""
     found: dict[str, Any] = {"mutants": mutants, "rounds": ROUNDS}
     for engine in ("replay", "branch"):
-        alone = simulate(costs, Way(engine), 1, mutants).ended
+        alone = simulate(costs, Way(engine, spread=False, failures=False), 1, mutants).ended
         rows = []
         for number in workers:
             run = simulate(costs, Way(engine), number, mutants)
@@ -267,7 +268,7 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
         "16 parts": Way("branch", parts=16),
         "64 parts": Way("branch", parts=64),
     }
-    alone = simulate(costs, Way("branch"), 1, mutants).ended
+    alone = simulate(costs, Way("branch", spread=False, failures=False), 1, mutants).ended
     found["sizes"] = []
     for name, way in ways.items():
         run = simulate(costs, way, 100, mutants)
@@ -332,7 +333,11 @@ def main() -> int:
         found = measure(replay, branch, controllers, given.how)
         DATA.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         return 0
-    print(json.dumps(study(Costs.load(), given.mutants), indent=1))
+    found = study(Costs.load(), given.mutants)
+    if given.mutants == MUTANTS:
+        data = json.loads(DATA.read_text(encoding="utf-8"))
+        DATA.write_text(json.dumps({**data, "found": found}, indent=1) + "\n", encoding="utf-8")
+    print(json.dumps(found, indent=1))
     return 0
 
 
