@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import acos, degrees, dist, inf, isnan
@@ -43,15 +43,22 @@ class Path:
     @cached_property
     def rows(self) -> list[tuple[float, ...]]:
         """The numbers of each moment at which it was there."""
-        width, values = self.track.kind.width, self.track.values
-        rows = (tuple(values[number * width : (number + 1) * width]) for number in range(len(self.times)))
-        return [row for row in rows if not isnan(row[0])]
+        width = self.track.kind.width
+        rows = list(zip(*[iter(self.track.values)] * width, strict=True))[: len(self.times)]
+        return [row for row in rows if not isnan(row[0])] if self._is_away else rows
 
     @cached_property
-    def when(self) -> list[float]:
-        """The moments at which it was there."""
+    def when(self) -> Sequence[float]:
+        """The moments at which it was there: the recording's own, if it always was."""
+        if not self._is_away:
+            return self.times
         width, values = self.track.kind.width, self.track.values
         return [time for number, time in enumerate(self.times) if not isnan(values[number * width])]
+
+    @cached_property
+    def _is_away(self) -> bool:
+        """Whether there are moments at which it was not there."""
+        return any(map(isnan, self.track.values[:: self.track.kind.width]))
 
     @cached_property
     def points(self) -> list[Point]:
@@ -87,13 +94,17 @@ def differences(
         until: s from when on nothing is compared.
     """
     found = []
+    together = _Together()
     for name in original.keys() & mutant.keys():
         before, after = original[name], mutant[name]
         if before.track.kind is not after.track.kind:
             continue
-        for measure in _measures(before):
+        moments = together.of(before, after)
+        rows = [one for one in _differing(before, after, moments) if one[0] <= until]
+        last = next((time for time, _, _ in reversed(moments) if time <= until), -inf)
+        for measure in _measures(before) if rows else ():
             tolerance = max(measure.tolerance, 2.0 * (noise or {}).get(measure.name, 0.0))
-            one = _apart(measure, before, after, tolerance, until)
+            one = _apart(measure, before, after, rows, tolerance, last)
             if one is not None:
                 found.append(one)
     return sorted(found, key=lambda one: (-one.worst, one.name))
@@ -101,11 +112,14 @@ def differences(
 
 def noise_of(one: dict[str, Path], other: dict[str, Path]) -> dict[str, float]:
     """By how much each thing is apart in two equal runs."""
-    return {
-        measure.name: max((gap for _, gap in _gaps(measure, one[name], other[name])), default=0.0)
-        for name in one.keys() & other.keys()
-        for measure in _measures(one[name])
-    }
+    found = {}
+    together = _Together()
+    for name in one.keys() & other.keys():
+        rows = _differing(one[name], other[name], together.of(one[name], other[name]))
+        for measure in _measures(one[name]):
+            gaps = (measure.between(before, after) for _, before, after in rows)
+            found[measure.name] = max(gaps, default=0.0)
+    return found
 
 
 def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Sequence[Block]) -> list[Near]:
@@ -113,6 +127,8 @@ def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Seque
     found = []
     for name in original.keys() & mutant.keys():
         if original[name].track.kind is Kind.VALUE:
+            continue
+        if original[name].rows == mutant[name].rows:
             continue
         for block in blocks:
             least, at = _least(mutant[name], block)
@@ -151,15 +167,35 @@ def _turned(one: Sequence[float], other: Sequence[float]) -> float:
     return degrees(2.0 * acos(min(1.0, dot)))
 
 
-def _gaps(measure: _Measure, before: Path, after: Path) -> Iterator[tuple[float, float]]:
-    """Time and difference, at all moments of either; what has ended stays as it was."""
-    between, rows, others = measure.between, before.rows, after.rows
-    for time, here, there in _together(before.when, after.when):
-        one, other = rows[here], others[there]
-        yield time, 0.0 if one == other else between(one, other)
+#: a moment, and the numbers of the rows that hold then
+_Moment = tuple[float, int, int]
+#: a moment at which things are not the same, and how they are
+_Differing = tuple[float, tuple[float, ...], tuple[float, ...]]
 
 
-def _together(one: Sequence[float], other: Sequence[float]) -> list[tuple[float, int, int]]:
+class _Together:
+    """Moments of two recordings: things that are always there share them."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[int, int], list[_Moment]] = {}
+
+    def of(self, before: Path, after: Path) -> list[_Moment]:
+        """Those of two paths, which both live as long as this."""
+        key = id(before.when), id(after.when)
+        if key not in self._known:
+            self._known[key] = _together(before.when, after.when)
+        return self._known[key]
+
+
+def _differing(before: Path, after: Path, moments: Iterable[_Moment]) -> list[_Differing]:
+    """What is not the same, at all moments of either; what has ended stays as it was."""
+    rows, others = before.rows, after.rows
+    return [
+        (time, one, other) for time, here, there in moments if (one := rows[here]) != (other := others[there])
+    ]
+
+
+def _together(one: Sequence[float], other: Sequence[float]) -> list[_Moment]:
     """All moments of either, with the numbers of the rows that hold then, as ``Path.at`` has them."""
     if one == other:
         return [(time, number, number) for number, time in enumerate(one)]
@@ -176,14 +212,23 @@ def _together(one: Sequence[float], other: Sequence[float]) -> list[tuple[float,
     return found
 
 
-def _apart(measure: _Measure, before: Path, after: Path, tolerance: float, until: float) -> Apart | None:
-    gaps = [(time, gap) for time, gap in _gaps(measure, before, after) if time <= until]
+def _apart(
+    measure: _Measure,
+    before: Path,
+    after: Path,
+    rows: Iterable[_Differing],
+    tolerance: float,
+    last: float,
+) -> Apart | None:
+    """How far apart things were, if by more than the tolerance; ``last`` is the last moment of all."""
+    gaps = [(time, measure.between(one, other)) for time, one, other in rows]
     first = next((time for time, gap in gaps if gap > tolerance), None)
     if first is None:
         return None
     at, largest = max(gaps, key=lambda one: one[1])
+    final = gaps[-1][1] if gaps[-1][0] == last else 0.0
     beside = _aside(measure, before, after)
-    return Apart(measure.name, measure.unit, first, largest, at, gaps[-1][1], beside, tolerance)
+    return Apart(measure.name, measure.unit, first, largest, at, final, beside, tolerance)
 
 
 def _aside(measure: _Measure, before: Path, after: Path) -> float | None:
