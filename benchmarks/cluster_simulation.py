@@ -37,9 +37,9 @@ from mutabot.journal.records import DRAWING
 
 DATA = Path(__file__).parents[1] / "docs" / "data" / "scaling.json"
 MUTANTS, ROUNDS = 100_000, 10
-WORKERS = (1, 3, 10, 30, 100, 300, 1000)
+WORKERS = (1, 10, 100, 300, 1000)
 #: as the engines cut a trunk: parts for each worker, and mutants of a part at least
-PARTS, LEAST = 2, 10
+PARTS, LEAST = 16, 10
 #: measured with distributed 2026.8.0 on two cores, s: what a unit costs beside its session on the worker, in
 #: the library, and of the scheduler and its client; what a worker takes to begin; what a bundle of 5 MB takes
 SHELL, LIBRARY, SCHEDULED, BEGIN, BUNDLE = 0.023, 0.005, 0.003, 4.0, 0.2
@@ -230,6 +230,13 @@ def _factor(costs: Costs, way: Way, unit: Unit, chance: random.Random) -> float:
     return 1.0 + (chance.choice(costs.spread) - 1.0) / math.sqrt(unit.outcomes)
 
 
+def alone(costs: Costs, engine: str, mutants: int = MUTANTS) -> float:
+    """Seconds of one worker without chance: what all others are compared with."""
+    units = units_of(costs, Way(engine), 1, mutants)
+    own = len(units) * (SHELL + LIBRARY + SCHEDULED) + sum(unit.seconds for unit in units)
+    return BEGIN + BUNDLE + own + costs.controller[engine] * sum(unit.outcomes for unit in units)
+
+
 def baseline_seconds(costs: Costs, places: int, runs: int, mutants: int = MUTANTS) -> float:
     """What the baseline takes on one machine with so many places, before anything is given away."""
     suite = mutants / costs.mutants * costs.suite
@@ -240,7 +247,7 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
     """All numbers of the page."""
     found: dict[str, Any] = {"mutants": mutants, "rounds": ROUNDS}
     for engine in ("replay", "branch"):
-        alone = simulate(costs, Way(engine, spread=False, failures=False), 1, mutants).ended
+        one = alone(costs, engine, mutants)
         rows = []
         for number in workers:
             run = simulate(costs, Way(engine), number, mutants)
@@ -249,8 +256,8 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
             rows.append({
                 "workers": number,
                 "hours": round(run.ended / 3600, 3),
-                "speed_up": round(alone / run.ended, 2),
-                "efficiency": round(alone / run.ended / number, 4),
+                "speed_up": round(one / run.ended, 2),
+                "efficiency": round(one / run.ended / number, 4),
                 "units": run.units,
                 "controller": round(run.controller / run.ended, 4),
                 "shares": run.shares() | {
@@ -260,22 +267,22 @@ def study(costs: Costs, mutants: int = MUTANTS, workers: Sequence[int] = WORKERS
             })  # fmt: skip
         found[engine] = rows
     ways = {
-        "one trunk a round, not cut": Way("branch", parts=0),
+        "not cut: one for each round": Way("branch", parts=0),
         "1 part for each worker": Way("branch", parts=1),
-        "2 parts, in any order": Way("branch", longest_first=False),
-        "2 parts, longest first": Way("branch"),
+        "2 parts": Way("branch", parts=2),
         "4 parts": Way("branch", parts=4),
         "16 parts": Way("branch", parts=16),
+        "16 parts, in any order": Way("branch", parts=16, longest_first=False),
         "64 parts": Way("branch", parts=64),
     }
-    alone = simulate(costs, Way("branch", spread=False, failures=False), 1, mutants).ended
+    one = alone(costs, "branch", mutants)
     found["sizes"] = []
     for name, way in ways.items():
         run = simulate(costs, way, 100, mutants)
         found["sizes"].append({
             "name": name,
             "units": run.units,
-            "efficiency": round(alone / run.ended / 100, 4),
+            "efficiency": round(one / run.ended / 100, 4),
             "shares": run.shares(),
         })  # fmt: skip
     found["baseline"] = [

@@ -55,7 +55,9 @@ def curves(found: Mapping[str, Any]) -> Iterator[str]:
         for x, y in points:
             yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.4" fill="{colour}"/>'
     for number, (engine, colour) in enumerate(ENGINES.items()):
-        yield line([(left + 14, top + 16 + 20 * number), (left + 40, top + 16 + 20 * number)], colour, width=2.2)
+        yield line(
+            [(left + 14, top + 16 + 20 * number), (left + 40, top + 16 + 20 * number)], colour, width=2.2
+        )
         yield text(left + 46, top + 20 + 20 * number, engine, 12)
     yield text(left + 14, top + 62, "dashed: none lost", 12, colour=FAINT)
 
@@ -95,9 +97,7 @@ def text(
     return f'<text {place} fill="{colour}"{weight}>{escape(words)}</text>'
 
 
-def line(
-    points: Sequence[tuple[float, float]], colour: str, *, width: float = 1.0, dashes: str = ""
-) -> str:
+def line(points: Sequence[tuple[float, float]], colour: str, *, width: float = 1.0, dashes: str = "") -> str:
     """Straight lines from point to point."""
     path = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
     dashed = f' stroke-dasharray="{dashes}"' if dashes else ""
@@ -155,8 +155,9 @@ Replay's are as small as can be: a mutant in a round. A trunk is cut. With 100 w
 
 {_size_table(found)}
 
-The executor cuts two parts for each worker, none with fewer than ten mutants, mutants of the same tests together, and gives the longest
-away first, by the times of the baseline. Smaller parts end more evenly, and run tests of the original more often.
+The executor cuts 16 parts for each worker, none with fewer than ten mutants, mutants of the same tests together, and gives the longest
+away first, by the times of the baseline. Smaller parts end more evenly, lose less with a worker that dies, and keep the controller
+busy more evenly; they run tests of the original more often.
 
 ## The baseline
 
@@ -220,7 +221,15 @@ def _size_table(found: Mapping[str, Any]) -> str:
         )
         for one in found["sizes"]
     ]  # fmt: skip
-    heads = ("trunks", "units", "efficiency", "original's runs", "controller", "idle at the end", "dead workers")
+    heads = (
+        "trunk of a round",
+        "units",
+        "efficiency",
+        "original's runs",
+        "controller",
+        "idle at the end",
+        "dead workers",
+    )
     return table(heads, rows)
 
 

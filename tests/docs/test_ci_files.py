@@ -108,9 +108,7 @@ class Site:
         assert done.returncode == 0, f"{script}\n{done.stdout}\n{done.stderr}"
 
 
-def steps_of_github(
-    site: Site, job: dict[str, Any], folder: Path, *, base: str = "", **matrix: str
-) -> None:
+def steps_of_github(site: Site, job: dict[str, Any], folder: Path, *, base: str = "", **matrix: str) -> None:
     """Run the steps of a job; what other actions do is done here by copying files."""
     store, said = site.home / "stored", site.home / "summary.md"
 
@@ -158,7 +156,6 @@ def test_the_workflow_runs_in_parts_and_goes_on_from_its_journal(tmp_path: Path)
     steps_of_github(site, jobs["shard"], again, shard="1")
     with Journal.open(again / ".mutabot" / "journal.sqlite") as journal:
         assert len(journal.reused()) == len(journal.outcomes()) > 0
-
 
     if not {"--since", "--journal", "--budget"} <= options_of("run"):
         pytest.skip("--since and --budget come with another change")
