@@ -34,6 +34,73 @@ LOST = {
 BARS = (10, 100, 300, 1000)
 
 
+TEXT = """\
+# What do many machines gain?
+
+<!-- Written by tools/make_scaling_page.py from docs/data/scaling.json. Do not edit. -->
+
+A campaign of {mutants} mutants × {rounds} rounds on 1 to 1,000 workers, simulated event by event with costs
+that were measured: nobody has run one yet. At 100 workers the efficiency is {replay} with replay and
+{branch} with branch; efficiency is the time on one worker, divided by that on so many and by their number.
+
+![Speed-up curves, and bars of what time is lost to](img/scaling.svg)
+
+{curve}
+
+*Shipping* is what a unit costs beside its session: a folder, a job, an answer. *The controller* judges
+answers one after the other; while one waits, its worker has nothing to do. *The original's own runs* are
+what a trunk runs of each test before and beside its branches: each part of a trunk runs its tests again,
+and a worker alone does so once. *Stragglers* is how much longer workers are idle at the end than if equal
+units took equal times and no worker died; *the last unit* is the rest of that. One worker that dies in the
+middle of a trunk that is not cut loses half a round, hence the first row of branch.
+
+The controller is the next limit: it is one process, and what it takes for an outcome, {replay_ms} ms or
+{branch_ms} ms, decides how many workers it keeps busy. Of mutants that take longer than these, a few seconds
+with replay and a quarter of a second with branch, it keeps busy as many more.
+
+## How large should a unit be?
+
+Replay's are as small as can be: a mutant in a round. A trunk is cut. With 100 workers:
+
+{sizes}
+
+The executor cuts 16 parts for each worker, none with fewer than ten mutants, mutants of the same tests
+together, and gives the longest away first, by the times of the baseline. Smaller parts end more evenly,
+lose less with a worker that dies, and keep the controller busy more evenly; they run tests of the original
+more often.
+
+## The baseline
+
+It runs on the controller's machine before anything is given away, as many tests side by side as that has
+`jobs`, and is not in the numbers above. Of a program of this size it takes, two runs in each of ten rounds,
+{baselines}. Beside a hundred workers, whose hours stand above, that counts: take it where there are many
+cores, or run fewer rounds.
+
+## What was measured, and what is assumed
+
+- The program is {copies} copies of [examples/pick_and_place](../examples/pick_and_place/README.md), whose
+  {own} mutants of family `robot` its suite of {suite} s judges: each copy has its own tests.
+- {sessions} sessions of replay took {session_range} s, {branches} branches {branch_range} s; a mutant's
+  cost is drawn from these.
+- Equal runs of a test took {quickest} to {slowest} times their mean, on a machine with other work; each
+  unit is as much longer or shorter than expected, one of n mutants by 1/√n of that.
+- The controller took {replay_ms} ms for an outcome of replay and {branch_ms} ms for one of branch,
+  recordings included (`python benchmarks/controller.py`), and 3 ms for a unit; a unit cost 28 ms on a
+  worker beside its session, a worker 4 s to begin and 0.2 s for the project.
+- Assumed: a worker dies once in 24 hours of work, is missed after 5 s, and its unit runs again as a whole;
+  all workers are equally fast.
+
+Measured by
+
+```text
+{made_by}
+```
+
+and simulated by `python benchmarks/cluster_simulation.py`, which stores what came of it in
+`docs/data/scaling.json`; the page is made of that by `python tools/make_scaling_page.py`.
+"""
+
+
 def curves(found: Mapping[str, Any]) -> Iterator[str]:
     """The speed-up of both engines, both axes logarithmic."""
     left, top, side = 62.0, 60.0, 290.0
@@ -128,65 +195,27 @@ def percent(share: float) -> str:
 def page(data: Mapping[str, Any]) -> str:
     """The text of the page."""
     found, costs = data["found"], data["costs"]
-    at_hundred = {engine: row_of(found, engine, 100) for engine in ENGINES}
-    controller = {engine: 1e3 * costs["controller"][engine] for engine in ENGINES}
-    return f"""\
-# What do many machines gain?
-
-<!-- Written by tools/make_scaling_page.py from docs/data/scaling.json. Do not edit. -->
-
-A campaign of {found["mutants"]:,} mutants × {found["rounds"]} rounds on 1 to 1,000 workers, simulated event by event
-with costs that were measured: nobody has run one yet. At 100 workers the efficiency is
-{at_hundred["replay"]["efficiency"]:.2f} with replay and {at_hundred["branch"]["efficiency"]:.2f} with branch; efficiency is the time
-on one worker, divided by that on so many and by their number.
-
-![Speed-up curves, and bars of what time is lost to](img/scaling.svg)
-
-{_curve_table(found)}
-
-*Shipping* is what a unit costs beside its session: a folder, a job, an answer. *The controller* judges answers one after the other; while
-one waits, its worker has nothing to do. *The original's own runs* are what a trunk runs of each test before and beside its
-branches: each part of a trunk runs its tests again, and a worker alone does so once. *Stragglers* is how much longer workers
-are idle at the end than if equal units took equal times and no worker died; *the last unit* is the rest of that.
-
-## How large should a unit be?
-
-Replay's are as small as can be: a mutant in a round. A trunk is cut. With 100 workers:
-
-{_size_table(found)}
-
-The executor cuts 16 parts for each worker, none with fewer than ten mutants, mutants of the same tests together, and gives the longest
-away first, by the times of the baseline. Smaller parts end more evenly, lose less with a worker that dies, and keep the controller
-busy more evenly; they run tests of the original more often.
-
-## The baseline
-
-It runs on the controller's machine before anything is given away, as many tests side by side as that has `jobs`, and is not in the
-numbers above. Of a program of this size it takes, two runs in each of ten rounds, {_baselines(found)}: from some hundred workers on
-that is longer than the mutants take. Take it where there are many cores, or run fewer rounds.
-
-## What was measured, and what is assumed
-
-- The program is {found["mutants"] / costs["mutants"]:,.0f} copies of [examples/pick_and_place](../examples/pick_and_place/README.md), whose
-  {costs["mutants"]} mutants of family `robot` its suite of {costs["suite"]:.1f} s judges: each copy has its own tests.
-- {len(costs["replay"])} sessions of replay took {_range(costs["replay"])} s, {len(costs["branch"])} branches {_range(costs["branch"])} s; a mutant's cost is
-  drawn from these.
-- Equal runs of a test took {min(costs["spread"]):.2f} to {max(costs["spread"]):.2f} times their mean, on a machine with other work; each unit is
-  as much longer or shorter than expected, one of n mutants by 1/√n of that.
-- The controller took {controller["replay"]:.1f} ms for an outcome of replay and {controller["branch"]:.1f} ms for one of branch, recordings included
-  (`python benchmarks/controller.py`), and 3 ms for a unit; a unit cost 28 ms on a worker beside its session, a worker 4 s to begin and
-  0.2 s for the project.
-- Assumed: a worker dies once in 24 hours of work, is missed after 5 s, and its unit runs again as a whole; all workers are equally fast.
-
-Measured by
-
-```text
-{data["made_by"]}
-```
-
-and simulated by `python benchmarks/cluster_simulation.py`, which stores what came of it in `docs/data/scaling.json`; the page is made of
-that by `python tools/make_scaling_page.py`.
-"""
+    return TEXT.format(
+        mutants=f"{found['mutants']:,}",
+        rounds=found["rounds"],
+        replay=f"{row_of(found, 'replay', 100)['efficiency']:.2f}",
+        branch=f"{row_of(found, 'branch', 100)['efficiency']:.2f}",
+        curve=_curve_table(found),
+        sizes=_size_table(found),
+        baselines=_baselines(found),
+        copies=f"{found['mutants'] / costs['mutants']:,.0f}",
+        own=costs["mutants"],
+        suite=f"{costs['suite']:.1f}",
+        sessions=len(costs["replay"]),
+        session_range=_range(costs["replay"]),
+        branches=len(costs["branch"]),
+        branch_range=_range(costs["branch"]),
+        quickest=f"{min(costs['spread']):.2f}",
+        slowest=f"{max(costs['spread']):.2f}",
+        replay_ms=f"{1e3 * costs['controller']['replay']:.1f}",
+        branch_ms=f"{1e3 * costs['controller']['branch']:.1f}",
+        made_by=data["made_by"],
+    )
 
 
 def row_of(found: Mapping[str, Any], engine: str, workers: int) -> Mapping[str, Any]:

@@ -13,12 +13,12 @@ from typing import Any
 
 import pytest
 import typer.main
+from tests.campaign.project import write_project
 
 import pages
 from mutabot.analysis.results import read_results
 from mutabot.cli.app import app
 from mutabot.journal.journal import Journal
-from tests.campaign.project import write_project
 
 yaml: Any = pytest.importorskip("yaml")
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from mutabot.settings.configuration import Configuration
 
 _Journals = Annotated[
-    list[Path], typer.Argument(metavar="JOURNAL…", help="The shards' journals, or folders that hold one.")
+    list[Path], typer.Argument(metavar="JOURNAL", help="The shards' journals, or folders that hold one.")
 ]
 _Output = Annotated[
     Path | None,
