@@ -2,7 +2,8 @@
 
     MutabotError
     ├── UsageError                  wrong command line, nothing to do with the user's files    (exit 2)
-    │   └── SelectionError          an id or a pattern that selects nothing
+    │   ├── SelectionError          an id or a pattern that selects nothing
+    │   └── MergeError              journals that are not the shards of one campaign
     ├── ConfigurationError          a configuration or vocabulary file that cannot be used     (exit 2)
     │   ├── VocabularyError         a mistake in a vocabulary
     │   └── UnknownNameError        a name that does not exist, with the nearest that does
@@ -51,6 +52,10 @@ class SelectionError(UsageError):
     def __init__(self, message: str, *, unknown: Iterable[str] = ()) -> None:
         super().__init__(message)
         self.unknown = tuple(unknown)
+
+
+class MergeError(UsageError):
+    """Journals cannot be put together: they are not the shards of one campaign."""
 
 
 class ConfigurationError(MutabotError):

@@ -26,8 +26,8 @@ class ExitCode(IntEnum):
     NOTHING_KNOWN = 3, "the tests fail on the original, there are no mutants, or none of them was valid"
     UNRELIABLE = (
         4,
-        "a control ended wrongly, more errors than `error_limit` allows, too much is unstable, or `--verify` "
-        "found a disagreement",
+        "a control ended wrongly, more errors than `error_limit` allows, too much is unstable, `--verify` "
+        "found a disagreement, or `mutabot merge` lacks a shard",
     )
     TOO_MANY_TIMEOUTS = 5, "more time-outs than `timeout_limit` allows"
     INTERNAL_ERROR = 70, "an internal error; `.mutabot/crash.txt` has the details"

@@ -19,7 +19,7 @@ def test_what_is_left_out_lies_within_the_tolerance(points: list[Point], toleran
     kept = simple(points, tolerance)
     assert kept[0] == points[0]
     assert kept[-1] == points[-1]
-    assert all(aside(point, kept) <= tolerance + 1e-9 for point in points)
+    assert aside(points, kept) <= tolerance + 1e-9
 
 
 def test_a_straight_line_is_two_points() -> None:
@@ -31,10 +31,16 @@ def test_a_straight_line_is_two_points() -> None:
     [((0.5, 0.2, 0.0), 0.2), ((-1.0, 0.0, 0.0), 1.0), ((1.0, 0.0, 3.0), 3.0), ((0.25, 0.0, 0.0), 0.0)],
 )
 def test_the_distance_from_a_line_is_that_of_its_nearest_point(point: Point, distance: float) -> None:
-    assert aside(point, [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)]) == pytest.approx(distance)
+    assert aside([point], [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)]) == pytest.approx(distance)
 
 
 @settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(POINTS, some.tuples(*[some.floats(-2.0, 2.0)] * 3))
 def test_a_path_is_no_farther_than_any_of_its_points(points: list[Point], point: Point) -> None:
-    assert aside(point, points) <= min(dist(point, one) for one in points) + 1e-9
+    assert aside([point], points) <= min(dist(point, one) for one in points) + 1e-9
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(POINTS, POINTS)
+def test_several_points_are_as_far_as_the_farthest(points: list[Point], path: list[Point]) -> None:
+    assert aside(points, path) == max(aside([point], path) for point in points)

@@ -172,7 +172,10 @@ def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
     outcomes = [one for mutant in found["mutants"] for one in mutant["rounds"]]
     all_looked = [looked for one in outcomes for looked in one.get("looked", ())]
     diverged = [one for outcome in outcomes for one in outcome.get("diverged", ())]
-    parts = [found, *found["mutants"], *found["groups"], *found["rounds"], *found["left_out"]]
+    shard = {"number": 2, "of": 8, "mutants": [1]}
+    parts = [data(tmp_path / "shard", shard=shard)["shard"]]
+    assert parts == [shard]
+    parts += [found, *found["mutants"], *found["groups"], *found["rounds"], *found["left_out"]]
     parts += [
         *found["controls"],
         found["sample"],

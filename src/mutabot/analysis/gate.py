@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from mutabot.exit_codes import ExitCode
 from mutabot.families import GRADED
+from mutabot.journal.records import ShardOf
 from mutabot.model import Outcome, Verdict
 from mutabot.model.graded.demand import Demand
 
@@ -46,8 +47,10 @@ def decide(
     tests among the tests, and of unstable outcomes among all; ``max_errors`` the greatest share of errors
     among all outcomes: mutants of which nothing is known. Graded mutants have no score, but their errors and
     unstable outcomes count; ``demands`` say which of them must be noticed. A disagreement that ``--verify``
-    found always fails.
+    found always fails. Of a shard nothing else is judged.
     """
+    if results.shard is not None and results.shard.of > 1:
+        return _of_shard(results, results.shard)
     total = results.all.total
     unstable = (
         *_too_many(results, Verdict.ERROR, "errors", max_errors, "error_limit"),
@@ -65,6 +68,15 @@ def decide(
     low = tuple(_too_low(results, min_score)) if min_score is not None else ()
     low += tuple(_too_loose(results, demands))
     return Decision(ExitCode.SCORE_TOO_LOW, low) if low else Decision(ExitCode.FINE)
+
+
+def _of_shard(results: Results, shard: ShardOf) -> Decision:
+    """Shares and scores of a part say little about the whole; a disagreement is one wherever it is found."""
+    wrong = _disagreements(results)
+    if wrong:
+        return Decision(ExitCode.UNRELIABLE, wrong)
+    told = f"{shard.words}: limits and scores are judged by `mutabot merge`, with all shards"
+    return Decision(ExitCode.FINE, (told,))
 
 
 def _disagreements(results: Results) -> tuple[str, ...]:

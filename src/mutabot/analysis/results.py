@@ -17,6 +17,7 @@ from mutabot.journal.records import (
     DRAWING,
     FLAKY,
     REPEATS,
+    SHARD,
     SINCE,
     VERIFICATION,
     BaselineTest,
@@ -25,6 +26,7 @@ from mutabot.journal.records import (
     Drawing,
     Flaky,
     Repeats,
+    ShardOf,
     Since,
     Verification,
 )
@@ -109,7 +111,7 @@ class Results:
 
     Attributes:
         meta: what the campaign said about itself.
-        state: ``complete``, ``interrupted``, ``running``, ``killed`` or why it stopped.
+        state: ``complete``, ``interrupted``, ``running``, ``killed`` or why it stopped; of a shard, which.
         rounds: number of rounds.
         mutants: every planned mutant by number, but for graded ones.
         groups: scores per family and role.
@@ -130,6 +132,7 @@ class Results:
         since: what was run of what has changed since a revision; None if that was not asked for.
         budget: how limited time was used; None if it was not limited.
         estimates: what the scores of all mutants would be, where the time was not enough for them.
+        shard: which part of its plan the campaign has run; None for all of it.
     """
 
     meta: Mapping[str, Any]
@@ -152,6 +155,7 @@ class Results:
     since: Since | None = None
     budget: Budgeted | None = None
     estimates: tuple[Estimate, ...] = ()
+    shard: ShardOf | None = None
 
     @property
     def everything(self) -> tuple[MutantResult, ...]:
@@ -234,6 +238,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
     vocabulary = journal.vocabulary
     drawing = from_data(Drawing, meta[DRAWING]) if DRAWING in meta else None
+    shard = from_data(ShardOf, meta[SHARD]) if SHARD in meta else None
     groups = groups_of(mutants, outcomes, rounds, drawing)
     drawn = groups if drawing is not None else ()
     budget = from_data(Budgeted, meta[BUDGET]) if BUDGET in meta else None
@@ -261,7 +266,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
 
     return Results(
         meta=meta,
-        state=_state(journal),
+        state=_state(journal, shard),
         rounds=rounds,
         mutants=tuple(result(mutant) for mutant in mutants if mutant.id not in graded),
         graded=tuple(result(mutant) for mutant in mutants if mutant.id in graded),
@@ -280,6 +285,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         since=from_data(Since, meta[SINCE]) if SINCE in meta else None,
         budget=budget,
         estimates=estimates,
+        shard=shard,
     )
 
 
@@ -306,7 +312,8 @@ class _Earlier:
         cls, journal: JournalReader, planned: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int
     ) -> _Earlier:
         done = {(outcome.mutant, outcome.round) for outcome in outcomes}
-        order = journal.meta().get("order") or 1
+        meta = journal.meta()
+        order = meta.get("order") or 1
         known = {
             mutant.id: (mutant, outdated)
             for mutant, outdated in journal.known()
@@ -322,8 +329,9 @@ class _Earlier:
         ]
         ids = {outcome.mutant for outcome in found}
         mutants = tuple(mutant for mutant, _ in known.values() if mutant.id in ids)
-        # what was planned and would still hold has been taken over, unless everything is to be run again
-        planned_may_hold = bool(journal.meta().get("fresh"))
+        # what was planned and would still hold has been taken over, unless everything is to be run again, or
+        # another shard is to look at it
+        planned_may_hold = bool(meta.get("fresh")) or SHARD in meta
         outdated = {name for name in ids if (known[name][1] if name in known else not planned_may_hold)}
         return cls(mutants, tuple(found), frozenset(outdated))
 
@@ -342,8 +350,9 @@ def _attempt(journal: JournalReader) -> str | None:
     return "running" if is_written(journal.path) else "killed"
 
 
-def _state(journal: JournalReader) -> str:
-    finished = journal.finished
-    if finished is not None:
-        return finished
-    return "running" if is_written(journal.path) else "killed"
+def _state(journal: JournalReader, shard: ShardOf | None) -> str:
+    state = journal.finished or ("running" if is_written(journal.path) else "killed")
+    if shard is None or shard.of == 1:
+        return state
+    # a part of a campaign is never complete, whatever has become of it
+    return shard.words if state == "complete" else f"{shard.words}, {state}"

@@ -21,11 +21,12 @@ _PLAIN = {str, int, float, bool, type(None)}
 
 def to_data(value: Any) -> Any:
     """JSON-like data for a dataclass, enum, container or plain value. Fields equal to None are left out."""
-    if type(value) in _PLAIN:
+    kind: Any = type(value)
+    if kind in _PLAIN:
         return value
-    if is_dataclass(value) and not isinstance(value, type):
-        pairs = ((field.name, getattr(value, field.name)) for field in fields(value))
-        return {name: to_data(item) for name, item in pairs if item is not None}
+    names = _names(kind)
+    if names is not None:
+        return {name: to_data(item) for name in names if (item := getattr(value, name)) is not None}
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, Mapping):
@@ -33,6 +34,12 @@ def to_data(value: Any) -> Any:
     if isinstance(value, tuple | list):
         return [to_data(item) for item in value]
     return value
+
+
+@cache
+def _names(kind: type[Any]) -> tuple[str, ...] | None:
+    """The fields of a dataclass; None for any other type."""
+    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else None
 
 
 def from_data(kind: type[T], data: Any) -> T:

@@ -59,7 +59,7 @@ class Evidence:
         self.recordings.forget(ORIGINAL, round)
         for end in ends:
             if end.recording is not None:
-                self._add(ORIGINAL, round, end, Rank.ORIGINAL)
+                self.recordings.add(ORIGINAL, round, end.test, Rank.ORIGINAL, bytes_of(end.recording))
                 self.problems.update(dict.fromkeys(_seen(end).recording.problems))
 
     def add_again(self, round: int, end: TestEnd) -> None:
@@ -80,16 +80,14 @@ class Evidence:
             original = self._original(round, end.test)
             if original is None or end.recording is None:
                 continue
-            noise = self._noise.get((round, end.test))
-            one = diverged(end.test, original, _seen(end), noise, is_cut=end.outcome == "failed")
+            noise, data = self._noise.get((round, end.test)), bytes_of(end.recording)
+            seen = Seen(from_bytes(data))
+            one = diverged(end.test, original, seen, noise, is_cut=end.outcome == "failed")
             if one is not None:
-                self._add(mutant, round, end, Rank.SURVIVOR if survived else Rank.OTHER)
+                rank = Rank.SURVIVOR if survived else Rank.OTHER
+                self.recordings.add(mutant, round, end.test, rank, data)
                 found.append(one)
         return tuple(sorted(found, key=lambda one: -one.worst))
-
-    def _add(self, mutant: str, round: int, end: TestEnd, rank: Rank) -> None:
-        assert end.recording is not None
-        self.recordings.add(mutant, round, end.test, rank, bytes_of(end.recording))
 
     def _read_original(self, round: int, test: str) -> Seen | None:
         data = self.recordings.data(ORIGINAL, round, test)

@@ -15,6 +15,7 @@ from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
 from mutabot.settings.configuration import Configuration
 from mutabot.settings.sample import Sample
+from mutabot.settings.shard import Shard
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,7 @@ class Request:
         journal: name of the journal's file in mutabot's folder.
         moments: at which of their calls mutants act, a mutant each; None for every call.
         whole_ladders: whether every magnitude of a ladder is run in every round.
+        shard: the part of the plan to run; None for all of it.
         evidence: whether to record what the world does while tests run.
         since: the revision of git from which on changes are looked at; None for no such comparison.
         sites_only: whether to presume that changes elsewhere in the program alter no outcome.
@@ -77,6 +79,7 @@ class Request:
     journal: str = JOURNAL
     moments: tuple[Moment | None, ...] = (None,)
     whole_ladders: bool = False
+    shard: Shard | None = None
     evidence: bool = False
     since: str | None = None
     sites_only: bool = False

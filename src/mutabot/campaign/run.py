@@ -31,6 +31,7 @@ from mutabot.campaign.reuse.reuse import Reused, reuse
 from mutabot.campaign.reuse.snapshot import Snapshot
 from mutabot.campaign.reuse.state import State
 from mutabot.campaign.search.search import run_ladders
+from mutabot.campaign.sharding.shards import part_of, write_shard
 from mutabot.campaign.since.git import Revision
 from mutabot.campaign.since.since import Altered, only_altered, open_others
 from mutabot.campaign.workers.executor import Executor
@@ -54,8 +55,8 @@ _VERSIONS = ("pytest", "wrapt", "mujoco", "mink", "ruckig", "numpy", "pytest-bdd
 def run_campaign(request: Request, progress: Progress) -> Path:
     """Run a whole campaign and return the path of its journal.
 
-    Outcomes of earlier campaigns that still hold are taken over. New ones are in the journal as soon as
-    they are known; an interrupted campaign leaves what it has.
+    Outcomes of earlier campaigns that still hold are taken over. New ones are in the journal within
+    a second; an interrupted campaign leaves what it has.
 
     Raises ConfigurationError, BaselineError, NothingToDoError, ControlError, JournalError.
     """
@@ -96,7 +97,11 @@ def _run(
     baseline = campaign.baseline
     whole = plan_of(request, baseline)
     plan = selected(campaign, whole)
+    part = part_of(plan, request.shard, baseline)
     _write_beginning(journal, request, results, plan, whole)
+    write_shard(journal, request.shard, part)
+    if request.fresh:
+        journal.forget(mutant.id for mutant in part.mutants)
     if evidence is not None:
         evidence.begin(
             [(one.task.key.round, one.task.key.repetition, one.ends) for one in results], whole.mutants
@@ -104,6 +109,8 @@ def _run(
     journal.set_meta(OPERATORS, summaries(plan.mutants))
     journal.set_meta(DRAWS, drawing(plan.mutants))
     journal.set_meta(REACHING, to_data(reaching(baseline, plan.mutants)))
+    if request.shard is not None:
+        progress.note(f"{request.shard.words}: {len(part.mutants)} of {len(plan.mutants)} mutants")
     _note_unstable(baseline, progress)
     refuse_flaky(request, baseline)
     after = Snapshot.take(request.root, before)
@@ -111,22 +118,23 @@ def _run(
     if edited:
         progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
         sink = Sink(journal)
-        return _run_all(campaign, plan, sink, Reused(), started)
+        return _run_all(campaign, part, sink, Reused(), started)
     state = State.now(request, before, after, watch.opened)
     dependencies = Dependencies(request, baseline, _collected(results), state)
     journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
+    write_shard(journal, request.shard, part, dependencies)
     note_outdated(journal, request, dependencies)
     with ExitStack() as stack:
         others = [stack.enter_context(one) for one in open_others(request, progress)]
         found = reuse(
-            journal, dependencies, plan.mutants, request.rounds, progress, others, presume=request.sites_only
+            journal, dependencies, part.mutants, request.rounds, progress, others, presume=request.sites_only
         )
     if revision is not None:
-        altered = Altered.of(revision, campaign, _collected(results), dependencies, plan.mutants)
-        plan = only_altered(journal, altered, found, plan, request.rounds, progress)
+        altered = Altered.of(revision, campaign, _collected(results), dependencies, part.mutants)
+        part = only_altered(journal, altered, found, part, request.rounds, progress)
     sink = Sink(journal, _key_of(journal, dependencies, plan))
     try:
-        is_whole = _run_all(campaign, plan, sink, found, started)
+        is_whole = _run_all(campaign, part, sink, found, started)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
     _tidy(request, journal, whole, found.presumed.values())
@@ -211,7 +219,7 @@ def _disk_told(request: Request) -> Iterator[None]:
             raise
         home = request.journal_path.parent
         text = (
-            f"{error.filename or home} cannot be written: {error.strerror}; what was reported before is kept"
+            f"{error.filename or home} cannot be written: {error.strerror}; what was written before is kept"
         )
         raise JournalError(text, path=str(request.journal_path)) from error
 
@@ -221,7 +229,7 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
     with at_it(request, progress) as opened:
         campaign, _ = begin(request, opened, progress)
     plan = selected(campaign, plan_of(request, campaign.baseline))
-    return plan.mutants, plan.left_out
+    return part_of(plan, request.shard, campaign.baseline).mutants, plan.left_out
 
 
 def _write_beginning(
@@ -243,8 +251,6 @@ def _write_beginning(
     }
     journal.set_plan(plan.mutants, plan.left_out, sources=sources)
     journal.set_known((mutant, True) for mutant in carried)
-    if request.fresh:
-        journal.forget(mutant.id for mutant in plan.mutants)
     if plan.drawing is not None:
         journal.set_meta(DRAWING, to_data(plan.drawing))
 

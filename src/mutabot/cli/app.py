@@ -19,6 +19,7 @@ from mutabot.exit_codes import ExitCode
 from . import campaign, init, replay, report, results, suggest, thresholds
 from .comparing import compare
 from .lists import operators
+from .merging import merge
 from .options import Version
 
 _SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
@@ -49,6 +50,7 @@ app.command(rich_help_panel=_SETUP)(campaign.check)
 app.command("list", rich_help_panel=_SETUP)(campaign.list_)
 app.command(rich_help_panel=_SETUP)(operators.operators)
 app.command(rich_help_panel=_RUN)(campaign.run)
+app.command(rich_help_panel=_RUN)(merge.merge)
 app.command(rich_help_panel=_RUN)(compare.compare)
 app.command(rich_help_panel=_RUN)(replay.replay)
 app.command(rich_help_panel=_RUN)(suggest.suggest)

@@ -15,12 +15,10 @@ import typer
 from mutabot.errors import UsageError
 
 from . import options
-from .output import echo, exit_as, print_json, progress_shown, show_results, tell
+from .output import decided, echo, exit_as, print_json, progress_shown, show_results, tell
 from .request import request_of
 
 if TYPE_CHECKING:
-    from mutabot.analysis.gate import Decision
-    from mutabot.analysis.results import Results
     from mutabot.campaign.request import Progress, Request
     from mutabot.serving.live import Live
 
@@ -54,6 +52,7 @@ def list_(
     one_per_site: options.OnePerSite = False,
     rounds: options.Rounds = None,
     seed: options.Seed = None,
+    shard: options.Part = None,
     jobs: options.Jobs = None,
     all: options.All = False,
     json: options.Json = False,
@@ -66,6 +65,7 @@ def list_(
     request = request_of(
         context.obj, only=only, skip=skip, family=family, when=when, order=order, pairs=pairs,
         selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
+        shard=shard,
     )  # fmt: skip
     with progress_shown() as progress:
         mutants, left_out = plan_only(request, progress)
@@ -89,6 +89,7 @@ def run(
     one_per_site: options.OnePerSite = False,
     rounds: options.Rounds = None,
     seed: options.Seed = None,
+    shard: options.Part = None,
     jobs: options.Jobs = None,
     engine: options.Engine = "auto",
     fresh: options.Fresh = False,
@@ -117,13 +118,14 @@ def run(
         selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
         engine=engine, fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
         evidence=True, since=since, sites_only=sites_only, other_journal=journal, budget=budget,
+        shard=shard,
     )  # fmt: skip
     with ExitStack() as stack:
         campaign = stack.enter_context(_served(request, port)).run if serve else partial(_run, request)
         with progress_shown() as progress:
             journal_path = campaign(progress)
         results = show_results(journal_path, json=json, summary=not table)
-        exit_as(_decision(request, results, min_score))
+        exit_as(decided(request.configuration, results, min_score))
 
 
 def _run(request: Request, progress: Progress) -> Path:
@@ -139,17 +141,3 @@ def _served(request: Request, port: int | None) -> Live:
     live = Live(request, port or 0, lambda text: tell([f"mutabot: {text}"]))
     tell([f"mutabot: live at {live.address}"])
     return live
-
-
-def _decision(request: Request, results: Results, min_score: float | None) -> Decision:
-    from mutabot.analysis.gate import decide
-
-    limit = min_score if min_score is not None else request.configuration.min_score
-    return decide(
-        results,
-        min_score=None if limit is None else limit / 100,
-        max_timeouts=request.configuration.timeout_limit,
-        max_unstable=request.configuration.unstable_limit,
-        max_errors=request.configuration.error_limit,
-        demands=request.configuration.demands,
-    )

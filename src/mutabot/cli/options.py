@@ -107,6 +107,10 @@ NoOracle = Annotated[
 Picture = Annotated[
     Path | None, typer.Option("--picture", metavar="FILE", help="Draw the ends as bars: FILE.svg.")
 ]
+Part = Annotated[
+    str | None,
+    typer.Option("--shard", metavar="N/M", help="Run only part N of M; `mutabot merge` puts them together."),
+]
 Stored = Annotated[bool, typer.Option("--results", help="Run nothing; show what the last comparison found.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Run everything again, also outcomes that still hold.")]
 Since = Annotated[

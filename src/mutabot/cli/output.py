@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from mutabot.analysis.gate import Decision
     from mutabot.analysis.results import Results
     from mutabot.report.terminal.progress import Bar, Lines
+    from mutabot.settings.configuration import Configuration
 
 
 def echo(text: str) -> None:
@@ -73,6 +74,25 @@ def show_results(
     else:
         print_results(make_console(), found, everything=everything)
     return found
+
+
+def decided(configuration: Configuration, results: Results, min_score: float | None) -> Decision:
+    """Results held against the limits of the configuration.
+
+    Args:
+        min_score: in percent, in the place of the configured one.
+    """
+    from mutabot.analysis.gate import decide
+
+    limit = min_score if min_score is not None else configuration.min_score
+    return decide(
+        results,
+        min_score=None if limit is None else limit / 100,
+        max_timeouts=configuration.timeout_limit,
+        max_unstable=configuration.unstable_limit,
+        max_errors=configuration.error_limit,
+        demands=configuration.demands,
+    )
 
 
 def exit_as(decision: Decision) -> None:

@@ -36,6 +36,7 @@ def request_of(
     from mutabot.settings.configuration import load_configuration
     from mutabot.settings.duration import seconds_of
     from mutabot.settings.sample import Sample
+    from mutabot.settings.shard import Shard
     from mutabot.vocabulary import load
 
     if engine not in ENGINES:
@@ -70,6 +71,7 @@ def request_of(
         no_oracle=bool(given.get("no_oracle")),
         moments=_moments(given.get("when") or configuration.when),
         whole_ladders=bool(given.get("whole_ladders")),
+        shard=Shard.parse(given["shard"]) if given.get("shard") is not None else None,
         evidence=bool(given.get("evidence")) and configuration.evidence > 0,
         since=given.get("since"),
         sites_only=bool(given.get("sites_only")),

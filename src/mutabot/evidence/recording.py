@@ -176,12 +176,12 @@ def from_bytes(data: bytes) -> Recording:
 
 def to_text(recording: Recording) -> str:
     """The recording as a line of ASCII, for the pipe to the controller."""
-    return base64.b85encode(to_bytes(recording)).decode()
+    return base64.b64encode(to_bytes(recording)).decode()
 
 
 def bytes_of(text: str) -> bytes:
     """What ``to_bytes`` would have made of the recording that ``to_text`` made this text of."""
-    return base64.b85decode(text)
+    return base64.b64decode(text)
 
 
 def _head(recording: Recording) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import acos, degrees, dist, inf, isnan
@@ -17,6 +17,8 @@ from .recording import Block, Kind, Recording, Track
 LENGTH, ANGLE, SHARE = 0.001, 0.5, 0.01
 #: what the name of an orientation ends with
 TURNED = " turned"
+#: by so much may one moment be told otherwise twice, s
+_SAME = 1e-6
 #: how much closer than in the original an approach must be to be told, m
 _CLOSER = 0.005
 
@@ -34,17 +36,29 @@ class Path:
     times: Sequence[float]
 
     @cached_property
-    def rows(self) -> list[tuple[float, ...]]:
-        """The numbers of each moment at which it was there."""
-        width, values = self.track.kind.width, self.track.values
-        rows = (tuple(values[number * width : (number + 1) * width]) for number in range(len(self.times)))
-        return [row for row in rows if not isnan(row[0])]
+    def least(self) -> dict[Block, tuple[float, float]]:
+        """Its least distances from blocks, m, and when, as far as anybody has asked."""
+        return {}
 
     @cached_property
-    def when(self) -> list[float]:
-        """The moments at which it was there."""
+    def rows(self) -> list[tuple[float, ...]]:
+        """The numbers of each moment at which it was there."""
+        width = self.track.kind.width
+        rows = list(zip(*[iter(self.track.values)] * width, strict=True))[: len(self.times)]
+        return [row for row in rows if not isnan(row[0])] if self._is_away else rows
+
+    @cached_property
+    def when(self) -> Sequence[float]:
+        """The moments at which it was there: the recording's own, if it always was."""
+        if not self._is_away:
+            return self.times
         width, values = self.track.kind.width, self.track.values
         return [time for number, time in enumerate(self.times) if not isnan(values[number * width])]
+
+    @cached_property
+    def _is_away(self) -> bool:
+        """Whether there are moments at which it was not there."""
+        return any(map(isnan, self.track.values[:: self.track.kind.width]))
 
     @cached_property
     def points(self) -> list[Point]:
@@ -58,7 +72,7 @@ class Path:
 
     def at(self, time: float) -> int:
         """The number of the row that holds at a time: the last one before or at it, else the first."""
-        return max(0, bisect_right(self.when, time + 1e-6) - 1)
+        return max(0, bisect_right(self.when, time + _SAME) - 1)
 
 
 def paths_of(recording: Recording) -> dict[str, Path]:
@@ -80,13 +94,17 @@ def differences(
         until: s from when on nothing is compared.
     """
     found = []
+    together = _Together()
     for name in original.keys() & mutant.keys():
         before, after = original[name], mutant[name]
         if before.track.kind is not after.track.kind:
             continue
-        for measure in _measures(before):
+        moments = together.of(before, after)
+        rows = [one for one in _differing(before, after, moments) if one[0] <= until]
+        last = next((time for time, _, _ in reversed(moments) if time <= until), -inf)
+        for measure in _measures(before) if rows else ():
             tolerance = max(measure.tolerance, 2.0 * (noise or {}).get(measure.name, 0.0))
-            one = _apart(measure, before, after, tolerance, until)
+            one = _apart(measure, before, after, rows, tolerance, last)
             if one is not None:
                 found.append(one)
     return sorted(found, key=lambda one: (-one.worst, one.name))
@@ -94,11 +112,14 @@ def differences(
 
 def noise_of(one: dict[str, Path], other: dict[str, Path]) -> dict[str, float]:
     """By how much each thing is apart in two equal runs."""
-    return {
-        measure.name: max((gap for _, gap in _gaps(measure, one[name], other[name])), default=0.0)
-        for name in one.keys() & other.keys()
-        for measure in _measures(one[name])
-    }
+    found = {}
+    together = _Together()
+    for name in one.keys() & other.keys():
+        rows = _differing(one[name], other[name], together.of(one[name], other[name]))
+        for measure in _measures(one[name]):
+            gaps = (measure.between(before, after) for _, before, after in rows)
+            found[measure.name] = max(gaps, default=0.0)
+    return found
 
 
 def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Sequence[Block]) -> list[Near]:
@@ -106,6 +127,8 @@ def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Seque
     found = []
     for name in original.keys() & mutant.keys():
         if original[name].track.kind is Kind.VALUE:
+            continue
+        if original[name].rows == mutant[name].rows:
             continue
         for block in blocks:
             least, at = _least(mutant[name], block)
@@ -144,28 +167,74 @@ def _turned(one: Sequence[float], other: Sequence[float]) -> float:
     return degrees(2.0 * acos(min(1.0, dot)))
 
 
-def _gaps(measure: _Measure, before: Path, after: Path) -> Iterator[tuple[float, float]]:
-    """Time and difference, at all moments of either; what has ended stays as it was."""
-    between, rows, others = measure.between, before.rows, after.rows
-    for time in sorted({*before.when, *after.when}):
-        one, other = rows[before.at(time)], others[after.at(time)]
-        yield time, 0.0 if one == other else between(one, other)
+#: a moment, and the numbers of the rows that hold then
+_Moment = tuple[float, int, int]
+#: a moment at which things are not the same, and how they are
+_Differing = tuple[float, tuple[float, ...], tuple[float, ...]]
 
 
-def _apart(measure: _Measure, before: Path, after: Path, tolerance: float, until: float) -> Apart | None:
-    gaps = [(time, gap) for time, gap in _gaps(measure, before, after) if time <= until]
+class _Together:
+    """Moments of two recordings: things that are always there share them."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[int, int], list[_Moment]] = {}
+
+    def of(self, before: Path, after: Path) -> list[_Moment]:
+        """Those of two paths, which both live as long as this."""
+        key = id(before.when), id(after.when)
+        if key not in self._known:
+            self._known[key] = _together(before.when, after.when)
+        return self._known[key]
+
+
+def _differing(before: Path, after: Path, moments: Iterable[_Moment]) -> list[_Differing]:
+    """What is not the same, at all moments of either; what has ended stays as it was."""
+    rows, others = before.rows, after.rows
+    return [
+        (time, one, other) for time, here, there in moments if (one := rows[here]) != (other := others[there])
+    ]
+
+
+def _together(one: Sequence[float], other: Sequence[float]) -> list[_Moment]:
+    """All moments of either, with the numbers of the rows that hold then, as ``Path.at`` has them."""
+    if one == other:
+        return [(time, number, number) for number, time in enumerate(one)]
+    found = []
+    here = there = 0
+    last, end = len(one) - 1, len(other) - 1
+    for time in sorted({*one, *other}):
+        until = time + _SAME
+        while here < last and one[here + 1] <= until:
+            here += 1
+        while there < end and other[there + 1] <= until:
+            there += 1
+        found.append((time, here, there))
+    return found
+
+
+def _apart(
+    measure: _Measure,
+    before: Path,
+    after: Path,
+    rows: Iterable[_Differing],
+    tolerance: float,
+    last: float,
+) -> Apart | None:
+    """How far apart things were, if by more than the tolerance; ``last`` is the last moment of all."""
+    gaps = [(time, measure.between(one, other)) for time, one, other in rows]
     first = next((time for time, gap in gaps if gap > tolerance), None)
     if first is None:
         return None
     at, largest = max(gaps, key=lambda one: one[1])
+    final = gaps[-1][1] if gaps[-1][0] == last else 0.0
     beside = _aside(measure, before, after)
-    return Apart(measure.name, measure.unit, first, largest, at, gaps[-1][1], beside, tolerance)
+    return Apart(measure.name, measure.unit, first, largest, at, final, beside, tolerance)
 
 
 def _aside(measure: _Measure, before: Path, after: Path) -> float | None:
     """How far something went where it never is in the original."""
     if measure.is_position:
-        return max(aside(one, before.outline) for one in after.outline)
+        return aside(after.outline, before.outline)
     if before.track.kind is not Kind.VALUE:
         return None
     usual = [row[0] for row in before.rows]
@@ -175,11 +244,20 @@ def _aside(measure: _Measure, before: Path, after: Path) -> float | None:
 
 def _least(path: Path, block: Block) -> tuple[float, float]:
     """The least distance of a path from a block, m, and when."""
-    size = path.track.size or (0.0, 0.0, 0.0)
-    half = [0.5 * (one + other) for one, other in zip(size, block.size, strict=True)]
-    found = (
-        (sum(max(0.0, abs(x - c) - h) ** 2 for x, c, h in zip(point, block.centre, half, strict=True)), time)
-        for point, time in zip(path.points, path.when, strict=True)
-    )
-    square, time = min(found)
-    return float(square**0.5), time
+    known = path.least.get(block)
+    if known is None:
+        known = path.least[block] = _sought(path, block)
+    return known
+
+
+def _sought(path: Path, block: Block) -> tuple[float, float]:
+    size, (x, y, z) = path.track.size or (0.0, 0.0, 0.0), block.centre
+    dx, dy, dz = (0.5 * (one + other) for one, other in zip(size, block.size, strict=True))
+    least, when = inf, 0.0
+    for (px, py, pz), time in zip(path.points, path.when, strict=True):
+        # written out: this is asked of every moment of every mutant
+        gx, gy, gz = abs(px - x) - dx, abs(py - y) - dy, abs(pz - z) - dz
+        square = (gx * gx if gx > 0 else 0.0) + (gy * gy if gy > 0 else 0.0) + (gz * gz if gz > 0 else 0.0)
+        if square < least:
+            least, when = square, time
+    return float(least**0.5), when

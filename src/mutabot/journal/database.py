@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import RLock, Timer
+from time import monotonic
+from typing import Any
 
 from mutabot.errors import JournalError
+
+#: seconds that a row waits for others to be committed with; half of what is promised, for timers may be late
+PATIENCE = 0.5
 
 
 def connect(path: Path) -> sqlite3.Connection:
@@ -54,6 +60,82 @@ def _connect_read_only(path: Path) -> sqlite3.Connection:
     return connection
 
 
+class Batch:
+    """Rows that are committed together, none later than ``PATIENCE`` seconds after it was added.
+
+    The first after a pause is committed at once: a campaign whose outcomes come one by one waits for nothing.
+    Of one whose outcomes come by the hundred, a commit for each would take most of the writing's time.
+
+    Attributes:
+        lock: to be held by whoever uses the connection.
+    """
+
+    def __init__(self, connection: sqlite3.Connection, *, clock: Callable[[], float] = monotonic) -> None:
+        self.lock = RLock()
+        self._connection, self._clock = connection, clock
+        self._waiting: list[tuple[str, tuple[Any, ...]]] = []
+        self._committed = float("-inf")
+        self._timer: Timer | None = None
+        self._problem: sqlite3.Error | None = None
+
+    def add(self, statement: str, *values: Any) -> None:
+        """Have a statement carried out. Raises what SQLite did when statements before were."""
+        with self.lock:
+            self._raise()
+            self._waiting.append((statement, values))
+            if self._clock() - self._committed >= PATIENCE:
+                self.commit()
+            elif self._timer is None:
+                self._timer = Timer(PATIENCE, self._commit_late)
+                self._timer.daemon = True
+                self._timer.start()
+
+    def commit(self) -> None:
+        """Carry out what waits. Raises what SQLite does, also what it did before."""
+        with self.lock:
+            if self._timer is not None:
+                self._timer.cancel()
+                self._timer = None
+            waiting, self._waiting = self._waiting, []
+            if waiting:
+                self._carry_out(waiting)
+                self._committed = self._clock()
+            self._raise()
+
+    def _carry_out(self, waiting: list[tuple[str, tuple[Any, ...]]]) -> None:
+        try:
+            self._connection.execute("BEGIN IMMEDIATE")
+            for statement, values in waiting:
+                self._connection.execute(statement, values)
+            self._connection.execute("COMMIT")
+        except sqlite3.Error:
+            if self._connection.in_transaction:  # SQLite itself rolls back when the disk is full
+                self._connection.execute("ROLLBACK")
+            self._one_by_one(waiting)
+
+    def _one_by_one(self, waiting: list[tuple[str, tuple[Any, ...]]]) -> None:
+        """One that fails takes no other with it."""
+        for statement, values in waiting:
+            try:
+                self._connection.execute(statement, values)
+            except sqlite3.Error as error:
+                self._problem = self._problem or error
+
+    def _commit_late(self) -> None:
+        """In a thread of its own: what goes wrong is told to whoever writes next."""
+        with self.lock:
+            if self._timer is not None:  # else somebody was quicker
+                try:
+                    self.commit()
+                except sqlite3.Error as error:
+                    self._problem = error
+
+    def _raise(self) -> None:
+        problem, self._problem = self._problem, None
+        if problem is not None:
+            raise problem
+
+
 @contextmanager
 def guarded(path: Path) -> Iterator[None]:
     """Turn what goes wrong with the file at ``path`` into a JournalError."""
@@ -72,5 +154,5 @@ def _explain(path: Path, error: sqlite3.DatabaseError) -> str:
     if "readonly" in text or "unable to open" in text:
         return f"{path} cannot be written: is the folder read-only? ({text})"
     if "full" in text:
-        return f"{path} cannot be written: the disk is full; what was reported before is kept ({text})"
+        return f"{path} cannot be written: the disk is full; what was written before is kept ({text})"
     return f"{path}: {text}"

@@ -1,8 +1,9 @@
 """The journal: one SQLite file with the plan, the baseline and every outcome of a campaign.
 
-One process writes, any number read, also while it writes and after it was killed. Each record is on its
-own and committed when it is added, so that a killed campaign loses nothing that was reported. All else
-(reports, resuming, comparing) reads from here.
+One process writes, any number read, also while it writes and after it was killed. Records that come close
+upon each other are committed together, none more than a second after it was added: a killed campaign loses
+the last second at most, and one that ends by itself, by an error or by Ctrl-C nothing. All else (reports,
+resuming, comparing) reads from here.
 
 A new campaign begins in the same file: in one transaction the plan, the baseline and the outcomes of the
 one before make way. Its mutants and outcomes are kept aside: outcomes that still hold are taken over, and
@@ -20,6 +21,7 @@ from typing import Any
 from mutabot.border.test_end import TestEnd
 from mutabot.model import LeftOut, Mutant, Outcome
 
+from . import merging
 from .database import guarded
 from .lock import WriterLock
 from .reader import JournalReader
@@ -130,14 +132,14 @@ class Journal(JournalReader):
 
     def add_test(self, round: int, repetition: int, test: TestEnd) -> None:
         """Add one test of the baseline; the same test again replaces it."""
-        self._store.write(
+        self._store.add(
             "INSERT OR REPLACE INTO test VALUES (?, ?, ?, ?, ?)",
             round, repetition, test.test, test.outcome, dump(test),
         )  # fmt: skip
 
     def add_control(self, test_file: str, control: str, ok: bool, detail: str = "") -> None:
         """Add the end of one control mutant."""
-        self._store.write("INSERT INTO control VALUES (?, ?, ?, ?)", test_file, control, int(ok), detail)
+        self._store.add("INSERT INTO control VALUES (?, ?, ?, ?)", test_file, control, int(ok), detail)
 
     def set_plan(
         self,
@@ -175,7 +177,7 @@ class Journal(JournalReader):
 
         ``key`` is what it depends on; the empty key says that nobody knows, and that it is not to be reused.
         """
-        self._store.write(
+        self._store.add(
             "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?, 0)",
             outcome.mutant, outcome.round, outcome.verdict.value, outcome.by.value if outcome.by else None,
             dump(outcome), key,
@@ -183,11 +185,8 @@ class Journal(JournalReader):
 
     def add_parts(self, parts: Mapping[str, Mapping[str, str]]) -> None:
         """Write down what digests in keys stand for."""
-        if not parts:
-            return
-        with self._store.transaction() as execute:
-            for digest, data in parts.items():
-                execute("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, dump(data))
+        for digest, data in parts.items():
+            self._store.add("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, dump(data))
 
     def forget_keys(self) -> None:
         """Never reuse what this campaign has found itself."""
@@ -225,6 +224,16 @@ class Journal(JournalReader):
             execute("DELETE FROM known")
             for mutant, outdated in known:
                 execute("INSERT INTO known VALUES (?, ?, ?)", mutant.id, dump(mutant), int(outdated))
+
+    # Shards
+
+    def take_plan(self, other: JournalReader) -> None:
+        """Take over the plan of another journal, its baseline and the texts, whole or not at all."""
+        merging.take_plan(self._store, other._store)
+
+    def take_outcomes(self, other: JournalReader) -> None:
+        """Take over what another journal has found and knows of earlier campaigns; what is there stays."""
+        merging.take_outcomes(self._store, other._store)
 
     def tidy(self, mutants: Iterable[str]) -> None:
         """Forget what earlier campaigns found about other mutants, and what nothing refers to."""

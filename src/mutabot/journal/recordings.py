@@ -124,6 +124,20 @@ class Recordings:
         )
         return bytes(rows[0][0]) if rows else None
 
+    def pairs(self) -> list[tuple[str, int]]:
+        """The mutants and rounds of which there are any; ``ORIGINAL`` stands for the original."""
+        return [
+            (str(mutant), int(round))
+            for mutant, round in self._rows("SELECT DISTINCT mutant, round FROM recording")
+        ]
+
+    def of(self, mutant: str, round: int) -> list[tuple[str, Rank, bytes]]:
+        """Test, rank and data of each recording of a mutant in a round."""
+        rows = self._rows(
+            "SELECT test, rank, data FROM recording WHERE mutant = ? AND round = ?", mutant, round
+        )
+        return [(str(test), Rank(rank), bytes(data)) for test, rank, data in rows]
+
     def keep_only(self, mutants: set[str]) -> None:
         """Drop those of all other mutants."""
         for (mutant,) in self._rows("SELECT DISTINCT mutant FROM recording WHERE mutant != ''"):

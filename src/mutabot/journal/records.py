@@ -14,6 +14,7 @@ DRAWING = "drawing"
 VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
 REPEATS = "repeats"
 SINCE, BUDGET = "since", "budget"
+SHARD = "shard"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 
@@ -201,6 +202,28 @@ class Budgeted:
     done: tuple[tuple[int, int], ...] = ()
     classes: tuple[BudgetedClass, ...] = ()
     is_whole: bool | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ShardOf:
+    """Which part of its plan a campaign has run.
+
+    Attributes:
+        number: 1-based number of the shard.
+        of: how many shards there are.
+        mutants: the numbers of its mutants; the plan holds all.
+        depends: all that outcomes depend on, by name; None if files changed during the baseline.
+    """
+
+    number: int
+    of: int
+    mutants: tuple[int, ...]
+    depends: Mapping[str, str] | None = None
+
+    @property
+    def words(self) -> str:
+        """``shard 2 of 8``."""
+        return f"shard {self.number} of {self.of}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from typing import Any, Protocol, Self, TypeVar
 from mutabot.border.codec import from_data, to_data
 from mutabot.errors import JournalError
 
-from .database import connect, connect_to_read, guarded
+from .database import Batch, connect, connect_to_read, guarded
 from .lock import WriterLock
 from .schema import SCHEMA_VERSION, VERSION_KEY
 
@@ -36,7 +36,7 @@ class Store:
 
     Attributes:
         path: the file.
-        connection: SQLite's own, without a transaction begun.
+        connection: SQLite's own; whoever uses it beside the methods calls ``flush`` before.
     """
 
     def __init__(
@@ -49,6 +49,7 @@ class Store:
     ) -> None:
         self.path, self.connection = path, connection
         self._lock, self._copy = lock, copy
+        self._batch, self._is_whole = Batch(connection), False
 
     @classmethod
     def to_read(cls, path: Path) -> Self:
@@ -70,11 +71,14 @@ class Store:
 
     def close(self) -> None:
         """Close the file; the lock of a writer is given back."""
-        self.connection.close()
-        if self._lock is not None:
-            self._lock.release()
-        if self._copy is not None:
-            self._copy.cleanup()
+        try:
+            self.flush()
+        finally:
+            self.connection.close()
+            if self._lock is not None:
+                self._lock.release()
+            if self._copy is not None:
+                self._copy.cleanup()
 
     @contextmanager
     def closed_on_error(self) -> Iterator[None]:
@@ -103,8 +107,15 @@ class Store:
 
     def rows(self, statement: str, *values: Any) -> list[Any]:
         """What a question is answered with."""
-        with guarded(self.path):
+        with guarded(self.path), self._batch.lock:
+            if not self._is_whole:
+                self._batch.commit()
             return self.connection.execute(statement, values).fetchall()
+
+    def each(self, statement: str) -> Iterator[Any]:
+        """What a question is answered with, one row after the other."""
+        with guarded(self.path):
+            yield from self.connection.execute(statement)
 
     def read(self, kind: type[T], statement: str) -> list[T]:
         """The objects whose data a question of one column is answered with."""
@@ -120,21 +131,39 @@ class Store:
         self.write("INSERT OR REPLACE INTO meta VALUES (?, ?)", key, dump(value))
 
     def write(self, statement: str, *values: Any) -> None:
-        """Carry out one statement."""
+        """Carry out one statement, at once with all that waits; within ``transaction``, as a part of it."""
         with guarded(self.path):
-            self.connection.execute(statement, values)
+            if self._is_whole:
+                self.connection.execute(statement, values)
+                return
+            self._batch.add(statement, *values)
+            self._batch.commit()
+
+    def add(self, statement: str, *values: Any) -> None:
+        """Carry out one statement; it is committed within a second, or with the next that is at once."""
+        with guarded(self.path):
+            self._batch.add(statement, *values)
+
+    def flush(self) -> None:
+        """Commit all that waits."""
+        with guarded(self.path):
+            self._batch.commit()
 
     @contextmanager
     def transaction(self) -> Iterator[Execute]:
         """Several statements that take effect together or not at all."""
-        with guarded(self.path):
+        with guarded(self.path), self._batch.lock:
+            self._batch.commit()
             self.connection.execute("BEGIN IMMEDIATE")
+            self._is_whole = True
             try:
                 yield lambda statement, *values: self.connection.execute(statement, values)
             except BaseException:
                 if self.connection.in_transaction:  # SQLite itself rolls back when the disk is full
                     self.connection.execute("ROLLBACK")
                 raise
+            finally:
+                self._is_whole = False
             self.connection.execute("COMMIT")
 
 

@@ -45,6 +45,7 @@ def make_way(path: Path) -> bool:
 def keep_copy(store: Store) -> None:
     """Keep the campaign of an opened journal as it is, as ``previous_of`` its path."""
     kept, new = previous_of(store.path), _half_a_copy_of(store.path)
+    store.flush()
     with guarded(store.path):
         try:
             store.connection.execute("VACUUM INTO ?", (str(new),))

@@ -20,11 +20,13 @@ from mutabot.journal.records import (
     OPERATORS,
     REACHING,
     REPEATS,
+    SHARD,
     VERIFICATION,
     Drawing,
     Repeated,
     Repeats,
     Replayed,
+    ShardOf,
     Verification,
 )
 from mutabot.model import Mutant, Outcome, Quantity, Verdict
@@ -32,7 +34,18 @@ from mutabot.model import Mutant, Outcome, Quantity, Verdict
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
-_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS}
+_ELSEWHERE = {
+    "vocabulary",
+    VERIFICATION,
+    CONFIRMATION,
+    FLAKY,
+    DRAWING,
+    REPEATS,
+    OPERATORS,
+    REACHING,
+    DRAWS,
+    SHARD,
+}
 
 
 def dumps(data: Any) -> str:
@@ -89,6 +102,7 @@ def results_data(results: Results) -> dict[str, Any]:
         "verification": _verification(results.verification),
         "confirmation": dict(results.confirmation) if results.confirmation is not None else None,
         "repeats": repeats_data(results.repeats),
+        "shard": _shard(results.shard),
     }
 
 
@@ -201,6 +215,12 @@ def replayed_data(mutant: Mutant, rounds: Iterable[Replayed]) -> dict[str, Any]:
             for one in rounds
         ],
     }
+
+
+def _shard(shard: ShardOf | None) -> dict[str, Any] | None:
+    if shard is None:
+        return None
+    return {"number": shard.number, "of": shard.of, "mutants": list(shard.mutants)}
 
 
 def _verification(found: Verification | None) -> dict[str, Any] | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import cache
 
 from mutabot.campaign.campaign import Campaign
@@ -49,7 +49,7 @@ def repetitions_for(request: Request) -> int:
 def run_mutants(
     campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, done: Collection[tuple[str, int]] = ()
 ) -> None:
-    """Run controls and mutants in all rounds; every outcome is in the journal as soon as it is known.
+    """Run controls and mutants in all rounds; every outcome is in the journal within a second.
 
     ``done`` are the ids and rounds that need not be run.
 
@@ -60,23 +60,29 @@ def run_mutants(
     run_trials(campaign, trials, sink)
 
 
-def run_trials(campaign: Campaign, trials: Sequence[Trial], sink: Sink) -> list[Outcome]:
-    """Run these mutants in these rounds, with their controls; every outcome is in the journal at once.
+def run_trials(
+    campaign: Campaign,
+    trials: Sequence[Trial],
+    sink: Sink,
+    found: Callable[[Outcome], object] | None = None,
+) -> None:
+    """Run these mutants in these rounds, with their controls; outcomes are in the journal within a second.
+
+    ``found`` is told each outcome. Nothing else keeps them: a campaign may have a million.
 
     Raises ControlError for a control that ends wrongly.
     """
     left, trials = Remainder(), list(trials)
-    report = _Report(campaign.progress, sink, {mutant.id: mutant.number for mutant, _ in trials})
+    report = _Report(campaign.progress, sink, {mutant.id: mutant.number for mutant, _ in trials}, found)
     for engine in engines_of(campaign.request):
         if not trials:
-            return report.outcomes
+            return
         left = Remainder()
-        for found in engine.run(campaign, trials, left):
-            report.take(found)
+        for one in engine.run(campaign, trials, left):
+            report.take(one)
         trials = left.all
     for outcome in _refused(trials, left, campaign.request.engine):
         report.take(outcome)
-    return report.outcomes
 
 
 def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Remainder]:
@@ -98,16 +104,22 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Re
 class _Report:
     """Outcomes and controls on their way to the journal and the screen."""
 
-    def __init__(self, progress: Progress, sink: Sink, numbers: dict[str, int]) -> None:
-        self._progress, self._sink, self._numbers = progress, sink, numbers
-        self.outcomes: list[Outcome] = []
+    def __init__(
+        self,
+        progress: Progress,
+        sink: Sink,
+        numbers: dict[str, int],
+        found: Callable[[Outcome], object] | None,
+    ) -> None:
+        self._progress, self._sink, self._numbers, self._found = progress, sink, numbers, found
 
     def take(self, found: Outcome | ControlEnd) -> None:
         if isinstance(found, ControlEnd):
             self._sink.journal.add_control(found.test_file, found.control, found.ok, found.detail)
             return
         self._sink.add_outcome(found)
-        self.outcomes.append(found)
+        if self._found is not None:
+            self._found(found)
         by = f" by {found.by}" if found.by is not None else ""
         number = self._numbers[found.mutant]
         self._progress.advance(f"#{number} round {found.round + 1}: {found.verdict}{by}")

@@ -30,14 +30,15 @@ def carry(
         for mutant in known
         if mutant.id not in done and all(_may_be_there(single, now, request) for single in mutant.singles)
     ]
-    return _renumbered(found, planned)
+    return renumbered(found, planned)
 
 
 def _may_be_there(single: Mutant, now: dict[str, Mutant], request: Request) -> bool:
     return single.id in now or single.family not in request.families
 
 
-def _renumbered(mutants: Sequence[Mutant], planned: Sequence[Mutant]) -> list[Mutant]:
+def renumbered(mutants: Sequence[Mutant], planned: Sequence[Mutant]) -> list[Mutant]:
+    """Mutants beside a plan, by number; a number that is taken gives way."""
     taken = {(len(mutant.singles), mutant.number) for mutant in planned}
     last = max((mutant.number for mutant in (*planned, *mutants)), default=0)
     found = []

@@ -122,6 +122,15 @@ class Dependencies:
             name = name.partition("/")[2]
         return name
 
+    @property
+    def everything(self) -> Parts:
+        """All that any outcome depends on, but for what a mutant does."""
+        return {
+            **self.files,
+            **self.common,
+            **{k: v for one in self._operations.values() for k, v in one.items()},
+        }
+
     def keys(self, mutant: Mutant, round: int) -> tuple[str, ...]:
         """Keys of outcomes that are still valid, the first being that of an outcome found now.
 

@@ -26,7 +26,7 @@ def run_ladders(
     done: Collection[tuple[str, int]] = (),
     always: Mapping[str, Collection[float]] | None = None,
 ) -> None:
-    """Find the thresholds; every outcome is in the journal as soon as it is known.
+    """Find the thresholds; every outcome is in the journal within a second.
 
     ``done`` are the ids and rounds whose outcomes the journal holds already. ``always`` gives magnitudes that
     are run in every round, by ladder.
@@ -80,7 +80,12 @@ class _Search:
                     new.append((mutant, round))
                 else:
                     self._take(ladder, step, outcome)
-            ended = {(one.mutant, one.round): one for one in run_trials(self.campaign, new, self.sink)}
+            ended: dict[tuple[str, int], Outcome] = {}
+
+            def take(one: Outcome, ended: dict[tuple[str, int], Outcome] = ended) -> None:
+                ended[one.mutant, one.round] = one
+
+            run_trials(self.campaign, new, self.sink, take)
             for ladder, step, round in trials:
                 outcome = ended.get((ladder.mutants[step].id, round))
                 if outcome is not None:

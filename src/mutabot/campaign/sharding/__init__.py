@@ -1,0 +1,1 @@
+"""Shards: a campaign in parts on machines that know nothing of each other, and one journal of them."""

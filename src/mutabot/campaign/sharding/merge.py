@@ -1,0 +1,217 @@
+"""One journal of the journals of shards, as if one campaign had run."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, closing
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from mutabot.border.codec import from_data, to_data
+from mutabot.campaign.plan.earlier import renumbered
+from mutabot.errors import MergeError
+from mutabot.journal.files import HOME, JOURNAL
+from mutabot.journal.journal import Journal
+from mutabot.journal.lock import is_written
+from mutabot.journal.merging import take_recordings
+from mutabot.journal.reader import JournalReader
+from mutabot.journal.recordings import Recordings, recordings_path
+from mutabot.journal.records import (
+    CONFIRMATION,
+    FLAKY,
+    REPEATS,
+    SHARD,
+    VERIFICATION,
+    Flaky,
+    Repeated,
+    Repeats,
+    Verification,
+)
+
+from .differences import Part, refuse_strangers
+
+#: how a campaign ends that lacks something
+_INCOMPLETE = "not all shards are there"
+
+
+def merge(paths: Sequence[Path], target: Path, *, root: Path, room: int) -> list[str]:
+    """Write one journal of the shards' journals and recordings. Returns what is missing, a line each.
+
+    What was in ``target`` before is kept as by any new campaign.
+
+    Args:
+        paths: journals, or folders with one.
+        target: where the journal is written.
+        root: the project.
+        room: bytes that recordings may take.
+
+    Raises MergeError if these are not shards of one plan, JournalError for a file that cannot be used.
+    """
+    with ExitStack() as stack:
+        parts = [_opened(stack, found_in(path), target) for path in paths]
+        if not parts:
+            raise MergeError("there is nothing to merge: name the journals of the shards")
+        parts.sort(key=lambda part: part.shard.number)
+        refuse_strangers(parts)
+        missing = list(_missing(parts))
+        meta = {**_meta(parts), "root": str(root)}
+        with Journal.prepare(target, meta=meta) as journal:
+            journal.begin(meta)
+            journal.take_plan(parts[0].journal)
+            for part in parts:
+                journal.take_outcomes(part.journal)
+            known = _known(journal, parts)
+            journal.set_known(known)
+            _merge_recordings(stack, parts, target, room, {one.id for one, _ in known})
+            journal.finish(_INCOMPLETE if missing else "complete")
+    return missing
+
+
+def found_in(path: Path) -> Path:
+    """The journal that is meant: a file, or that in a folder. Raises MergeError if there is none."""
+    places = (path, path / JOURNAL, path / HOME / JOURNAL)
+    found = next((place for place in places if place.is_file()), None)
+    if found is None:
+        raise MergeError(f"there is no journal {path}" + (f", nor {JOURNAL} in it" if path.is_dir() else ""))
+    return found
+
+
+def _opened(stack: ExitStack, path: Path, target: Path) -> Part:
+    if is_written(path):
+        raise MergeError(f"{path} is being written by a `mutabot run`: merge it when that has ended")
+    opened = path
+    if target.exists() and path.samefile(target):
+        opened = _copied(Path(stack.enter_context(TemporaryDirectory(prefix="mutabot-merge-"))), path)
+    return Part.of(path, stack.enter_context(JournalReader.open(opened)))
+
+
+def _copied(folder: Path, path: Path) -> Path:
+    """A shard that lies where the whole is to lie."""
+    for file in (path, recordings_path(path)):
+        if file.is_file():
+            with closing(sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True)) as connection:
+                connection.execute("VACUUM INTO ?", (str(folder / file.name),))
+    return folder / path.name
+
+
+def _missing(parts: Sequence[Part]) -> Iterator[str]:
+    """What a whole campaign would have beyond these."""
+    first = parts[0]
+    of, rounds = first.shard.of, int(first.meta.get("rounds") or 1)
+    there = {part.shard.number for part in parts}
+    claimed = [number for part in parts for number in part.shard.mutants]
+    free = len({one.number for one in first.mutants} - set(claimed))
+    absent = [number for number in range(1, of + 1) if number not in there]
+    if absent:
+        names = ", ".join(map(str, absent))
+        again = ", ".join(f"`mutabot run --shard {number}/{of}`" for number in absent[:3])
+        more = " …" if len(absent) > 3 else ""
+        yield (
+            f"{'shard' if len(absent) == 1 else 'shards'} {names} of {of} missing, {free} of "
+            f"{len(first.mutants)} mutants, {free * rounds} outcomes: run {again}{more} and merge again"
+        )
+    elif free:
+        yield (
+            f"{free} mutants are in no shard, since the baselines of the shards differ: `mutabot run` with "
+            "the merged journal runs them alone"
+        )
+    for part in parts:
+        ended = part.journal.finished or "killed"
+        if ended != "complete":
+            lacking = _lacking(part, rounds)
+            yield (
+                f"{part.words} is not complete ({ended}), {lacking}: run it again with "
+                f"`mutabot run --shard {part.shard.number}/{of}` and its journal, and merge again"
+            )
+
+
+def _lacking(part: Part, rounds: int) -> str:
+    """How many outcomes a shard lacks; of ladders nobody knows how many it takes."""
+    own = set(part.shard.mutants)
+    alone = {one.id for one in part.mutants if one.number in own and not one.ladder}
+    done = sum(one.mutant in alone for one in part.journal.outcomes())
+    ladders = any(one.number in own and one.ladder for one in part.mutants)
+    return f"{len(alone) * rounds - done} outcomes are missing{', and some of ladders' if ladders else ''}"
+
+
+def _meta(parts: Sequence[Part]) -> dict[str, Any]:
+    """What the campaign says about itself: that of the first shard, and sums of what was counted."""
+    metas = [part.meta for part in parts]
+    found = {key: value for key, value in metas[0].items() if key != SHARD}
+    found["shards"] = parts[0].shard.of
+    for key, together in (("started", min), ("seconds", max)):
+        values = [meta[key] for meta in metas if meta.get(key) is not None]
+        if values:
+            found[key] = together(values)
+    for key, added in _ADDED.items():
+        said = [meta[key] for meta in metas if key in meta]
+        if said:
+            found[key] = added(said)
+    return found
+
+
+def _flaky(said: Sequence[Any]) -> Any:
+    each = [from_data(Flaky, one) for one in said]
+    tests = dict.fromkeys(test for one in each for test in one.tests)
+    return to_data(Flaky(tuple(tests), max(one.known for one in each)))
+
+
+def _verification(said: Sequence[Any]) -> Any:
+    each = [from_data(Verification, one) for one in said]
+    disagreements = tuple(other for one in each for other in one.disagreements)
+    whole = Verification(sum(one.wanted for one in each), sum(one.checked for one in each), disagreements)
+    return to_data(whole)
+
+
+def _confirmation(said: Sequence[Mapping[str, int]]) -> Any:
+    return {key: sum(one[key] for one in said) for key in said[0]}
+
+
+def _repeats(said: Sequence[Any]) -> Any:
+    each = [from_data(Repeats, one) for one in said]
+    doubted, others, survivors = (
+        Repeated(
+            sum(one.outcomes for one in those),
+            sum(one.repeated for one in those),
+            sum(one.changed for one in those),
+        )
+        for those in (
+            [one.doubted for one in each],
+            [one.others for one in each],
+            [one.survivors for one in each],
+        )
+    )
+    return to_data(Repeats(doubted, others, sum(one.certain for one in each), survivors))
+
+
+_ADDED = {
+    FLAKY: _flaky,
+    VERIFICATION: _verification,
+    CONFIRMATION: _confirmation,
+    REPEATS: _repeats,
+}
+
+
+def _known(journal: Journal, parts: Sequence[Part]) -> list[tuple[Any, bool]]:
+    """Mutants of earlier campaigns beside the plan: what shards say of them counts."""
+    planned = parts[0].mutants
+    ids = {one.id for one in planned}
+    found = {one.id: (one, outdated) for one, outdated in journal.known()}
+    for part in parts:
+        found.update((one.id, (one, outdated)) for one, outdated in part.journal.known())
+    left = [(one, outdated) for name, (one, outdated) in found.items() if name not in ids]
+    is_outdated = {one.id: outdated for one, outdated in left}
+    return [(one, is_outdated[one.id]) for one in renumbered([one for one, _ in left], planned)]
+
+
+def _merge_recordings(
+    stack: ExitStack, parts: Sequence[Part], target: Path, room: int, known: set[str]
+) -> None:
+    found = [Recordings.to_read(part.journal.path) for part in parts]
+    opened = [stack.enter_context(one) for one in found if one is not None]
+    if opened:
+        mutants = known | {one.id for one in parts[0].mutants}
+        with Recordings.to_write(target, room) as recordings:
+            take_recordings(recordings, opened, mutants)

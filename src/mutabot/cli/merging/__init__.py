@@ -1,0 +1,1 @@
+"""``mutabot merge``: the shards of a campaign as one."""

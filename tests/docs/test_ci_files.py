@@ -1,0 +1,192 @@
+"""The files that users copy for their CI: they are YAML, and their steps do what they say in a clone."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer.main
+from tests.campaign.project import write_project
+
+import pages
+from mutabot.analysis.results import read_results
+from mutabot.cli.app import app
+from mutabot.journal.journal import Journal
+
+yaml: Any = pytest.importorskip("yaml")
+
+MISSION = """
+    def fetch(arm):
+        arm.move_by(0.5)
+        arm.move_by(-0.25)
+"""
+TESTS = """
+    import mission
+    from robot import Arm
+
+    def test_fetch():
+        arm = Arm()
+        mission.fetch(arm)
+        assert arm.x == 0.25
+"""
+
+
+def loaded(name: str) -> dict[str, Any]:
+    found: dict[str, Any] = yaml.safe_load((pages.ROOT / "ci" / name).read_text(encoding="utf-8"))
+    return found
+
+
+def test_the_workflow_has_a_job_for_changes_and_jobs_in_parts() -> None:
+    jobs = loaded("github.yml")["jobs"]
+    assert jobs.keys() == {"change", "shard", "merge"}
+    number = len(jobs["shard"]["strategy"]["matrix"]["shard"])
+    scripts = [step["run"] for step in jobs["shard"]["steps"] if step.get("name") == "Run"]
+    assert f"/{number}" in scripts[0]
+    assert jobs["merge"]["needs"] == "shard"
+
+
+def test_the_journal_is_fetched_from_where_it_is_kept() -> None:
+    steps = [step for job in loaded("github.yml")["jobs"].values() for step in job["steps"]]
+    caches = [step["with"] for step in steps if step.get("uses", "").startswith("actions/cache/")]
+    assert len(caches) == 3
+    assert len({cache["path"] for cache in caches}) == 1
+    assert {cache["key"].partition("$")[0] for cache in caches} == {"mutabot-main-"}
+    jobs = [one for one in loaded("gitlab.yml").values() if isinstance(one, dict) and "cache" in one]
+    assert {job["cache"]["policy"] for job in jobs} == {"pull", "push"}
+    assert {(job["cache"]["key"], *job["cache"]["paths"]) for job in jobs} == {
+        ("mutabot-main", ".mutabot/main")
+    }
+
+
+def options_of(name: str) -> set[str]:
+    """The options of a command of ours."""
+    command = typer.main.get_command(app).commands[name]  # type: ignore[attr-defined]
+    return {option for parameter in command.params for option in parameter.opts}
+
+
+class Site:
+    """A repository, and a place where jobs run in clones of it."""
+
+    def __init__(self, home: Path) -> None:
+        self.home, self.origin, self.programs = home, home / "origin", home / "bin"
+        write_project(self.origin, MISSION, TESTS, more={"requirements.txt": "", ".gitignore": ".mutabot/"})
+        self.programs.mkdir()
+        self._program("pip", "true")
+        self._program("mutabot", f'exec {sys.executable} -m mutabot.cli.app "$@"')
+        self.git("init", "-q", "-b", "main")
+        self.git("add", "-A")
+        self.git("-c", "user.name=a", "-c", "user.email=a@b", "commit", "-qm", "first")
+
+    def _program(self, name: str, text: str) -> None:
+        path = self.programs / name
+        path.write_text(f"#!/bin/sh\n{text}\n")
+        path.chmod(0o755)
+
+    def git(self, *words: str) -> str:
+        done = subprocess.run(["git", *words], cwd=self.origin, check=True, capture_output=True, text=True)
+        return done.stdout.strip()
+
+    def clone(self, name: str) -> Path:
+        folder = self.home / name
+        self.git("clone", "-q", str(self.origin), str(folder))
+        return folder
+
+    def run(self, script: str, folder: Path, **environment: str) -> None:
+        """Run a script as runners do. Fails with what it printed."""
+        path = f"{self.programs}{os.pathsep}{os.environ['PATH']}"
+        done = subprocess.run(
+            ["bash", "-e", "-o", "pipefail", "-c", script], cwd=folder, capture_output=True, text=True,
+            env={**os.environ, **environment, "PATH": path}, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, f"{script}\n{done.stdout}\n{done.stderr}"
+
+
+def steps_of_github(site: Site, job: dict[str, Any], folder: Path, *, base: str = "", **matrix: str) -> None:
+    """Run the steps of a job; what other actions do is done here by copying files."""
+    store, said = site.home / "stored", site.home / "summary.md"
+
+    def filled(text: str) -> str:
+        known = {"github.sha": "abc", "github.event.pull_request.base.sha": base}
+        known.update((f"matrix.{name}", value) for name, value in matrix.items())
+        return re.sub(r"\$\{\{ *([^} ]+) *\}\}", lambda found: known[found[1]], text)
+
+    for step in job["steps"]:
+        action, given = step.get("uses", ""), step.get("with", {})
+        if "run" in step:
+            given = {**loaded("github.yml")["env"], **step.get("env", {})}
+            environment = {name: filled(str(value)) for name, value in given.items()}
+            site.run(filled(step["run"]), folder, GITHUB_STEP_SUMMARY=str(said), **environment)
+        elif action.startswith("actions/upload-artifact"):
+            files = [one for glob in given["path"].split() for one in folder.glob(glob)]
+            assert files
+            for file in files:
+                to = store / filled(given["name"]) / file.name
+                to.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copytree(file, to) if file.is_dir() else shutil.copy(file, to)
+        elif action.startswith("actions/download-artifact"):
+            for one in store.glob(given["pattern"]):
+                shutil.copytree(one, folder / given["path"] / one.name)
+        elif action.startswith("actions/cache/save"):
+            shutil.copytree(folder / given["path"], store / "cache")
+        elif action.startswith("actions/cache/restore") and (store / "cache").is_dir():
+            shutil.copytree(store / "cache", folder / given["path"])
+        elif "upload-sarif" in action:
+            assert json.loads((folder / given["sarif_file"]).read_text())["version"] == "2.1.0"
+
+
+@pytest.mark.whole
+def test_the_workflow_runs_in_parts_and_goes_on_from_its_journal(tmp_path: Path) -> None:
+    site, jobs = Site(tmp_path), loaded("github.yml")["jobs"]
+    for number in jobs["shard"]["strategy"]["matrix"]["shard"]:
+        steps_of_github(site, jobs["shard"], site.clone(f"shard-{number}"), shard=str(number))
+    steps_of_github(site, jobs["merge"], site.clone("merge"))
+    with Journal.open(tmp_path / "merge" / ".mutabot" / "journal.sqlite") as journal:
+        found = read_results(journal)
+    assert found.state == "complete"
+    assert found.done == found.planned > 0
+    assert "## Mutation testing" in (tmp_path / "summary.md").read_text()
+    again = site.clone("again")
+    steps_of_github(site, jobs["shard"], again, shard="1")
+    with Journal.open(again / ".mutabot" / "journal.sqlite") as journal:
+        assert len(journal.reused()) == len(journal.outcomes()) > 0
+
+    if not {"--since", "--journal", "--budget"} <= options_of("run"):
+        pytest.skip("--since and --budget come with another change")
+    base = site.git("rev-parse", "HEAD")
+    mission = site.origin / "mission.py"
+    mission.write_text(mission.read_text().replace("-0.25", "-0.125"))
+    test = site.origin / "tests" / "test_mission.py"
+    test.write_text(test.read_text().replace("0.25", "0.375"))
+    site.git("-c", "user.name=a", "-c", "user.email=a@b", "commit", "-qam", "second")
+    change = site.clone("change")
+    steps_of_github(site, jobs["change"], change, base=base)
+    with Journal.open(change / ".mutabot" / "journal.sqlite") as journal:
+        assert read_results(journal).done
+
+
+@pytest.mark.whole
+def test_the_jobs_of_gitlab_run_in_parts(tmp_path: Path) -> None:
+    site, file = Site(tmp_path), loaded("gitlab.yml")
+    kept = tmp_path / "artifacts"
+    number = file["mutants"]["parallel"]
+    for index in range(1, number + 1):
+        folder = site.clone(f"node-{index}")
+        environment = {"CI_NODE_INDEX": str(index), "CI_NODE_TOTAL": str(number)}
+        for part in ("script", "after_script"):
+            site.run("\n".join(file["mutants"][part]), folder, **environment)
+        shutil.copytree(folder / ".mutabot" / "shards", kept, dirs_exist_ok=True)
+    folder = site.clone("merge")
+    shutil.copytree(kept, folder / ".mutabot" / "shards")
+    for part in ("script", "after_script"):
+        site.run("\n".join(file["merge"][part]), folder)
+    for path in file["merge"]["artifacts"]["paths"]:
+        assert (folder / path).exists()
+    with Journal.open(folder / ".mutabot" / "main" / "journal.sqlite") as journal:
+        assert read_results(journal).state == "complete"
