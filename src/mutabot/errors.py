@@ -2,7 +2,8 @@
 
     MutabotError
     ├── UsageError                  wrong command line, nothing to do with the user's files    (exit 2)
-    │   └── SelectionError          an id or a pattern that selects nothing
+    │   ├── SelectionError          an id or a pattern that selects nothing
+    │   └── ClusterError            a cluster that cannot be reached, or whose workers do not fit
     ├── ConfigurationError          a configuration or vocabulary file that cannot be used     (exit 2)
     │   ├── VocabularyError         a mistake in a vocabulary
     │   └── UnknownNameError        a name that does not exist, with the nearest that does
@@ -51,6 +52,10 @@ class SelectionError(UsageError):
     def __init__(self, message: str, *, unknown: Iterable[str] = ()) -> None:
         super().__init__(message)
         self.unknown = tuple(unknown)
+
+
+class ClusterError(UsageError):
+    """A cluster cannot be used: nobody answers there, or its workers run with something else."""
 
 
 class ConfigurationError(MutabotError):

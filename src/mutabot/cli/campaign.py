@@ -101,6 +101,11 @@ def run(
     json: options.Json = False,
     serve: options.Serve = False,
     port: options.Port = None,
+    cluster: options.Cluster = None,
+    mixed: options.Mixed = False,
+    tls_ca: options.TlsCa = None,
+    tls_cert: options.TlsCert = None,
+    tls_key: options.TlsKey = None,
 ) -> None:
     """Run the campaign, or go on with it: baseline, controls, mutants, scores."""
     if port is not None and not serve:
@@ -110,7 +115,7 @@ def run(
         order=order, pairs=pairs,
         selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
         engine=engine, fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
-        evidence=True,
+        evidence=True, cluster=_cluster(cluster, mixed=mixed, ca=tls_ca, cert=tls_cert, key=tls_key),
     )  # fmt: skip
     with ExitStack() as stack:
         campaign = stack.enter_context(_served(request, port)).run if serve else partial(_run, request)
@@ -118,6 +123,15 @@ def run(
             journal_path = campaign(progress)
         results = show_results(journal_path, json=json, summary=not table)
         exit_as(_decision(request, results, min_score))
+
+
+def _cluster(address: str | None, **given: bool | str | None) -> dict[str, bool | str | None] | None:
+    """What the options say about a cluster. Raises UsageError for those that need one."""
+    if address is not None:
+        return {"address": address, **given}
+    if any(given.values()):
+        raise UsageError("--mixed, --tls-ca, --tls-cert and --tls-key go with --cluster")
+    return None
 
 
 def _run(request: Request, progress: Progress) -> Path:

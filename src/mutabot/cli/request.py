@@ -33,6 +33,7 @@ def request_of(
     Raises UsageError and ConfigurationError.
     """
     from mutabot.campaign.request import Request
+    from mutabot.settings.cluster import cluster_settings
     from mutabot.settings.configuration import load_configuration
     from mutabot.settings.sample import Sample
     from mutabot.vocabulary import load
@@ -45,6 +46,7 @@ def request_of(
         selection = configuration.root / configuration.selection
     elif selection is not None:
         selection = _found(selection, configuration.root)
+    cluster = cluster_settings(**given["cluster"]) if given.get("cluster") else None
     return Request(
         configuration=configuration,
         vocabulary=load(configuration.vocabulary, configuration.root),
@@ -55,6 +57,8 @@ def request_of(
         skip=tuple(given.get("skip") or ()),
         selection=selection,
         engine=engine,
+        executor="local" if cluster is None else "cluster",
+        cluster=cluster,
         fresh=bool(given.get("fresh")),
         verify=given.get("verify") or 0,
         confirm=bool(given.get("confirm")),

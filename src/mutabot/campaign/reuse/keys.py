@@ -82,7 +82,7 @@ class Dependencies:
             **_pytest_parts(request),
             **_settings(request),
             **_vocabulary_parts(request.vocabulary),
-            **_versions(),
+            **versions(),
         }
         self._common = self._stored(common)
         self._operations = {
@@ -248,7 +248,7 @@ def _without_source(data: Any) -> Any:
     return [_without_source(item) for item in data] if isinstance(data, list) else data
 
 
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
     """Python, and all that is installed beside it, for any of it may take part in a simulation."""
     found = {
         "python": f"{platform.python_implementation()} {platform.python_version()}",

@@ -16,7 +16,15 @@ from .task import Result, Task
 
 
 class Executor(Protocol):
-    """Runs tasks, as many at a time as it may. Leaving its context ends whatever still runs."""
+    """Runs tasks, as many at a time as it may. Leaving its context ends whatever still runs.
+
+    Attributes:
+        spread: how many places share nothing, neither trunks nor fork servers: work is worth cutting into
+            parts for them, and to begin with its longest. 1 on one machine.
+    """
+
+    @property
+    def spread(self) -> int: ...
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which tasks end. Tasks are taken from the iterable as places free up."""
