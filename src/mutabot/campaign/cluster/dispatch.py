@@ -28,6 +28,8 @@ from .unit import Answer, Ground, Unit
 TRIES = 3
 #: seconds between two looks at all
 _PERIOD = 0.2
+#: seconds for a worker's own work around a unit, at most
+_GRACE = 300.0
 #: seconds without any worker until that is told, and until nobody waits any more
 _TOLD, _PATIENCE = 5.0, 600.0
 
@@ -43,12 +45,14 @@ class _Trial:
         faults: how it was lost, one entry each.
         avoided: the workers with which it was.
         answer: the last answer, if there was one.
+        until: when (``time.monotonic``) it must have ended, whatever it does.
     """
 
     task: Task
     faults: list[str] = field(default_factory=list)
     avoided: set[str] = field(default_factory=set)
     answer: Answer | None = None
+    until: float = 0.0
 
 
 class Cluster(Protocol):
@@ -133,6 +137,7 @@ class Dispatch:
             worker = next((one for one in idle if one not in trial.avoided), idle[0])
             idle.remove(worker)
             data = Unit(self._ground, trial.task).data()
+            trial.until = time.monotonic() + longest(trial.task)
             self._running[self._cluster.link.ask(worker, far.run_unit, data)] = worker, trial
 
     def _due(self) -> _Trial | None:
@@ -153,11 +158,13 @@ class Dispatch:
         except queue.Empty:
             pass
         gone = roster.update()
+        now = time.monotonic()
         for number, (worker, trial) in list(self._running.items()):
-            if worker in gone:
+            if worker in gone or now > trial.until:
                 del self._running[number]
                 link.forget(number)
-                self._lost(trial, worker, "its worker was lost")
+                why = "its worker was lost" if worker in gone else "no answer in all the time it may take"
+                self._lost(trial, worker, why)
 
     def _take(self, news: News) -> None:
         worker, trial = self._running.pop(news.asked, ("", None))
@@ -236,6 +243,21 @@ class Dispatch:
             yield self._next.task
             self._next = self._taken()
         yield from self._at_home
+
+
+def longest(task: Task) -> float:
+    """Seconds after which a worker that has not answered never will: limits inside end a task long before."""
+    walls = [task.deadlines.get(test, task.deadline) for test in task.job.tests or ()]
+    branching = task.job.branching
+    if branching is not None:
+        walls += [
+            task.deadline,
+            *(branching.walls.get(test, branching.wall) for test in task.job.tests or ()),
+        ]
+        walls += [
+            branching.walls.get(test, branching.wall) for tests in branching.tests.values() for test in tests
+        ]
+    return _GRACE + 2 * (task.startup + sum(walls))
 
 
 def is_for_home(task: Task) -> bool:

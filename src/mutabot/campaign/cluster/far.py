@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import os
+import shutil
 import socket
 import threading
+import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from mutabot.campaign.reuse.keys import versions
-from mutabot.campaign.workers.remains import end_abandoned
+from mutabot.campaign.workers.remains import OWNER, end_abandoned
 
 from .session import Session, Unwanted
 from .store import Store
@@ -17,6 +20,8 @@ from .unit import Introduction, Unit
 
 #: seconds between two looks for what is idle
 _PERIOD = 20.0
+#: seconds that a folder may be without an owner, since it is just being made
+_YOUNG = 60.0
 #: the answer of functions that have nothing to say
 TAKEN = b"{}"
 _sessions: dict[str, Session] = {}
@@ -27,8 +32,8 @@ def introduce(digest: str, inner: str) -> bytes:
     """Say who this worker is, and whether it has a bundle. An empty digest asks for none."""
     worker = _worker()
     has = bool(digest) and _store().has(digest)
-    if has:  # what workers of this machine have left that were killed
-        end_abandoned(_store().place(digest) / inner / ".mutabot")
+    if has:
+        _clear_up(_store().place(digest) / inner / ".mutabot")
     return Introduction(socket.gethostname(), versions(), has, worker.state.nthreads).data()
 
 
@@ -70,10 +75,21 @@ def _worker() -> Any:
 
 def _store() -> Store:
     """The bundles of this machine, beside Dask's own folders."""
-    folder = Path(_worker().local_directory).resolve().parent / f"mutabot-{os.getuid()}"
+    folder = (
+        Path(_worker().local_directory).resolve().parent / f"mutabot-{os.getuid()}-{socket.gethostname()}"
+    )
     if folder not in _stores:
         _stores[folder] = Store(folder)
     return _stores[folder]
+
+
+def _clear_up(home: Path) -> None:
+    """End and remove what workers of this machine have left that were killed."""
+    end_abandoned(home)
+    for folder in home.glob("work-*"):
+        with suppress(OSError):
+            if not (folder / OWNER).exists() and time.time() - folder.stat().st_mtime > _YOUNG:
+                shutil.rmtree(folder, ignore_errors=True)
 
 
 def _look_of(worker: Any) -> Any:

@@ -80,7 +80,11 @@ class Link:
         self._heard = time.monotonic()
         self._is_closed = threading.Event()
         self._calling = threading.Thread(target=self._call_roll, name="mutabot-roll", daemon=True)
-        self._call_once()
+        try:
+            self._call_once()
+        except Exception as error:
+            self.close()
+            raise ClusterError(_why_not(settings, address, error)) from error
         self._calling.start()
 
     @property
@@ -120,7 +124,8 @@ class Link:
         self._fetching.shutdown(wait=False, cancel_futures=True)
         with suppress(Exception):
             self._client.close(timeout=2)
-        self._calling.join(2)
+        if self._calling.is_alive():
+            self._calling.join(2)
 
     def _fetch(self, number: int, future: Any) -> None:
         with suppress(RuntimeError):  # it is closed

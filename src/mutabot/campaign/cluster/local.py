@@ -14,6 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from mutabot.campaign.workers.interruption import interruptible
+from mutabot.campaign.workers.remains import end_below
 from mutabot.campaign.workers.said import last_line
 from mutabot.errors import ClusterError
 
@@ -88,6 +89,7 @@ class LocalCluster:
         for process in (self._workers, self._scheduler):
             if process is not None:
                 _end(process)
+        end_below(self._folder)  # what tests had started
         self._workers = self._scheduler = None
 
     def _start_workers(self) -> None:
