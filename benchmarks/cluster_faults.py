@@ -1,11 +1,11 @@
 """Kill workers and schedulers of clusters at random moments of campaigns, and compare with one left in peace.
 
 Use: ``python benchmarks/cluster_faults.py [--workers 30] [--schedulers 3] [--seed 1] [--rounds 5]
-[--engine auto] [--where local netns]``. The published selection of ``examples/paper`` runs again and again until
-so many have been killed by SIGKILL, half of them under ``--cluster local:4`` and half on a scheduler with two
-workers in network namespaces of their own (``ip netns``, which needs root; without it all are killed under
-local:4, and that is said). Prints JSON; the exit code is 1 if an outcome differs or is lost, or if a fault has
-become a kill.
+[--engine auto] [--where local netns]``. The published selection of ``examples/paper`` runs again and again
+until so many have been killed by SIGKILL, half of them under ``--cluster local:4`` and half on a scheduler
+with two workers in network namespaces of their own (``ip netns``, which needs root; without it all are killed
+under local:4, and that is said). Prints JSON; the exit code is 1 if an outcome differs or is lost, or if a
+fault has become a kill.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -58,7 +59,6 @@ class Trial:
     campaigns: dict[str, int] = field(default_factory=dict)
     faults: list[str] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
-    resubmitted: int = 0
 
     @property
     def journal(self) -> Path:
@@ -176,7 +176,7 @@ def _run(
         for index, what in enumerate(wanted)
     ]
     began = time.monotonic()
-    reader = subprocess_reader(process)
+    reader = reader_of(process)
     disturb(trial, mark, process, plan)
     process.wait()
     trial.seconds.append(round(time.monotonic() - began, 1))
@@ -189,10 +189,8 @@ def _run(
     )
 
 
-def subprocess_reader(process: subprocess.Popen[str]) -> Any:
+def reader_of(process: subprocess.Popen[str]) -> Any:
     """Read what a process says beside; the function that is returned waits for it."""
-    import threading  # noqa: PLC0415
-
     lines: list[str] = []
 
     def read() -> None:
@@ -248,17 +246,15 @@ class Hosts:
 
     def tend(self) -> None:
         """Start what does not run."""
-        dask = [sys.executable, "-m", "dask"]
-        scheduler = [*dask, "scheduler", "--host", "0.0.0.0", "--port", str(_PORT), "--no-dashboard"]
-        self._tend("scheduler", [sys.executable, "-m", "distributed.cli.dask_scheduler", *scheduler[4:]])
+        host = ["--host", "0.0.0.0", "--port", str(_PORT), "--no-dashboard"]
+        self._tend("scheduler", [sys.executable, "-m", "distributed.cli.dask_scheduler", *host])
         for name, address in zip(self.names, self.near, strict=True):
             folder = self.folder / name
             folder.mkdir(exist_ok=True)
-            own = [f"tcp://{address}:{_PORT}", "--nthreads", "1", "--memory-limit", "0", "--no-dashboard"]
-            self._tend(
-                name,
-                ["ip", "netns", "exec", name, *dask, "worker", *own, "--local-directory", str(folder), "--death-timeout", "20"],
-            )  # fmt: skip
+            worker = ["ip", "netns", "exec", name, sys.executable, "-m", "distributed.cli.dask_worker"]
+            own = ["--nthreads", "1", "--memory-limit", "0", "--no-dashboard", "--death-timeout", "20"]
+            place = ["--local-directory", str(folder)]
+            self._tend(name, [*worker, f"tcp://{address}:{_PORT}", *own, *place])
 
     def _tend(self, name: str, command: list[str]) -> None:
         there = self.running.get(name)
@@ -278,8 +274,6 @@ class Hosts:
 
 def on_hosts(trial: Trial, expected: dict[Pair, dict[str, Any]], workers: int, schedulers: int) -> None:
     """Campaigns on a scheduler with workers in two namespaces, until so many are killed."""
-    import threading  # noqa: PLC0415
-
     before = dict(trial.kills)
     names = ["mutabot-h1", "mutabot-h2"]
     mark = f"{trial.folder}-hosts"

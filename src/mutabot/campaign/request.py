@@ -90,6 +90,11 @@ class Request:
         return (*self.configuration.tests, *self.configuration.pytest_args)
 
     @property
+    def is_mixed(self) -> bool:
+        """Whether outcomes may come from machines that run with something else than this one."""
+        return self.cluster is not None and self.cluster.mixed
+
+    @property
     def journal_path(self) -> Path:
         """Where the journal of this project lies."""
         return self.root / HOME / self.journal

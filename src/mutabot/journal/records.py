@@ -13,6 +13,8 @@ from mutabot.model.outcome import same_end
 DRAWING = "drawing"
 VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
 REPEATS = "repeats"
+#: what is to be known of the machines that the campaign ran on, a line each
+REMARKS = "remarks"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 

@@ -91,6 +91,11 @@ class Cluster:
         """How many workers are there; see ``Executor``."""
         return max(1, len(self.roster.usable) or self._settings.local or 1)
 
+    @property
+    def remarks(self) -> list[str]:
+        """What was told of workers that differ, or are of no use; see ``Executor``."""
+        return list(self.roster.told)
+
     def apart(self) -> Workers:
         """One more process at home."""
         return self.home.apart()

@@ -57,7 +57,9 @@ def module_folders(root: Path) -> tuple[str, ...]:
     found: dict[str, None] = {}
     for folder in _search_path(root):
         if folder == root or root in folder.parents:
-            found[folder.relative_to(root).as_posix()] = None
+            inside = folder.relative_to(root)
+            if not any(part.startswith(".") for part in inside.parts):  # as of a virtual environment
+                found[inside.as_posix()] = None
     return tuple(found)
 
 

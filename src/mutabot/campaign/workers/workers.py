@@ -49,10 +49,11 @@ class Workers:
     Attributes:
         pool: the tokens of trunks and branches.
         look: called several times a second while it waits; what it raises ends the run. None: nobody looks.
-        spread: see ``Executor``.
+        spread, remarks: see ``Executor``.
     """
 
     spread = 1
+    remarks: tuple[str, ...] = ()
 
     def __init__(
         self,
