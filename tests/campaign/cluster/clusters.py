@@ -60,6 +60,26 @@ TESTS = """
         back(arm)
         assert abs(arm.x) < 0.15, sorted(one.name for one in HERE.iterdir() if one.suffix == ".toml")
     """
+#: one test that takes a while, for campaigns that somebody is to disturb
+SLOW_MISSION = """
+    import time
+
+    def run(arm):
+        for step in (0.3, 0.2):
+            time.sleep(0.2)
+            arm.move_by(step)
+        arm.move_by(-0.1)
+        arm.move_by(0.2)
+    """
+SLOW_TESTS = """
+    from mission import run
+    from robot import Arm
+
+    def test_run():
+        arm = Arm()
+        run(arm)
+        assert abs(arm.x - 0.6) < 0.05
+    """
 #: what differs between equal runs
 _ACCIDENTAL = {"wall", "cpu"}
 
@@ -69,6 +89,11 @@ Ends = dict[tuple[str, int], dict[str, Any]]
 def write(folder: Path, **changes: Any) -> Path:
     """The project."""
     return write_project(folder, **{"mission": MISSION, "tests": TESTS, **changes})
+
+
+def write_slow(folder: Path) -> Path:
+    """The project that takes a while."""
+    return write_project(folder, SLOW_MISSION, SLOW_TESTS)
 
 
 def ends(path: Path) -> Ends:

@@ -18,9 +18,9 @@ from mutabot.errors import ClusterError
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import REMARKS
 from mutabot.model import Verdict
-from tests.campaign.project import ROBOT, Quiet, outcomes, request_for
+from tests.campaign.project import Quiet, outcomes, request_for
 
-from .clusters import cluster, ends, kill, on_cluster, processes, run_twice, until, write
+from .clusters import Ends, cluster, ends, kill, on_cluster, processes, run_twice, until, write, write_slow
 
 #: marks the processes of this module's own clusters
 MARK = f"OF_TEST_CLUSTER={os.getpid()}"
@@ -38,6 +38,18 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
             yield found
 
 
+@pytest.fixture(scope="module")
+def in_peace(tmp_path_factory: pytest.TempPathFactory) -> Ends:
+    """Outcomes of the project that takes a while, without a cluster."""
+    request = request_for(write_slow(tmp_path_factory.mktemp("in_peace")), engine="replay")
+    return ends(run_campaign(request, Quiet()))
+
+
+def has_begun(told: Quiet) -> bool:
+    """Whether some mutants have their outcomes."""
+    return sum(line.startswith("#") for line in told.lines) > 1
+
+
 def workers() -> list[int]:
     return processes(MARK.encode(), "multiprocessing.spawn")
 
@@ -49,7 +61,7 @@ def when(condition: Callable[[], bool], then: Callable[[], Any]) -> threading.Th
     return thread
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["branch", pytest.param("replay", marks=pytest.mark.whole)])
 def test_outcomes_are_those_of_a_campaign_without_a_cluster(
     engine: str, address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -64,21 +76,13 @@ def test_outcomes_are_those_of_a_campaign_without_a_cluster(
     assert not any("worker" in line for line in told.lines)
 
 
-def test_a_worker_that_dies_costs_nothing_but_time(address: str, tmp_path: Path) -> None:
-    slow = ROBOT.replace(
-        "            self.x += dx", "            import time; time.sleep(0.05); self.x += dx"
-    )
-    project = write(tmp_path / "project", robot=slow)
-    request = request_for(project, engine="replay", only=("reverse",))
-    plain = ends(run_campaign(request, Quiet()))
-    told = Quiet()
-    victims = workers()
-    killer = when(
-        lambda: len([line for line in told.lines if line.startswith("#")]) > 2, lambda: kill(victims)
-    )
+def test_a_worker_that_dies_costs_nothing_but_time(address: str, in_peace: Ends, tmp_path: Path) -> None:
+    request = request_for(write_slow(tmp_path), engine="replay")
+    told, victims = Quiet(), workers()
+    killer = when(lambda: has_begun(told), lambda: kill(victims))
     path = run_campaign(on_cluster(request, address), told)
     killer.join()
-    assert ends(path) == plain
+    assert ends(path) == in_peace
     assert victims
     assert not set(victims) & set(workers())
 
@@ -106,6 +110,7 @@ def test_a_mutant_that_takes_its_worker_along_each_time_is_an_error_with_the_rea
     assert until(lambda: len(workers()) == 2)
 
 
+@pytest.mark.whole
 def test_a_process_that_is_killed_from_outside_each_time_is_an_error(address: str, tmp_path: Path) -> None:
     tests = """
     import os, signal
@@ -137,7 +142,7 @@ def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(address:
         assert arm.x < 0.9
     """
     project = write(tmp_path / "project", mission="def run(arm):\n    arm.move_by(0.5)\n", tests=tests)
-    plain, found, told = run_twice(project, address, engine="replay", only=("reverse", "skip"))
+    plain, found, told = run_twice(project, address, engine="replay", only=("reverse",))
     assert found == plain
     assert "error" not in {one["verdict"] for one in found.values()}
     text = "\n".join(told.lines)
@@ -162,7 +167,7 @@ def test_what_takes_too_long_on_a_worker_is_decided_at_home(address: str, tmp_pa
     program = ["mission.py"]
     vocabulary = ["robot.toml"]
     pytest_args = ["-o", "pythonpath=."]
-    timeout_seconds = 4.0
+    timeout_seconds = 2.0
     """
     project = write(
         tmp_path / "project",
@@ -200,41 +205,35 @@ def test_a_worker_that_runs_with_something_else_is_refused_or_told(
     assert len(outcomes(path)) == 1
 
 
-def test_a_scheduler_that_is_killed_is_started_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_scheduler_that_is_killed_is_started_again(
+    in_peace: Ends, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("OF_TEST_SCHEDULER", str(tmp_path))
     mark = f"OF_TEST_SCHEDULER={tmp_path}".encode()
-    project = write(tmp_path / "project")
-    request = request_for(project, engine="replay", only=("reverse",))
-    plain = ends(run_campaign(request, Quiet()))
     told = Quiet()
-    killer = when(
-        lambda: len([line for line in told.lines if line.startswith("#")]) > 2,
-        lambda: kill(processes(mark, "dask_scheduler")),
-    )
-    path = run_campaign(on_cluster(request, "local:2"), told)
+    killer = when(lambda: has_begun(told), lambda: kill(processes(mark, "dask_scheduler")))
+    path = run_campaign(on_cluster(request_for(write_slow(tmp_path), engine="replay"), "local:1"), told)
     killer.join()
-    assert ends(path) == plain
+    assert ends(path) == in_peace
     assert sum("is gone; outcomes so far are kept" in line for line in told.lines) == 1
     assert until(lambda: not processes(mark))
 
 
+@pytest.mark.whole
 def test_a_scheduler_that_stays_away_leaves_the_rest_to_this_machine(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    in_peace: Ends, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(of_cluster, "_RETURN", 1.0)
-    project = write(tmp_path / "project")
-    request = request_for(project, engine="replay", only=("reverse",))
-    plain = ends(run_campaign(request, Quiet()))
+    request = request_for(write_slow(tmp_path / "project"), engine="replay")
+    before = set(_below(os.getpid()))
     with cluster(tmp_path / "dask", 1) as address, pytest.MonkeyPatch.context() as patch:
         told = Quiet()
         patch.setattr("mutabot.campaign.cluster.link.PATIENCE", 1.0)
-        own = [pid for pid in _below(os.getpid()) if "dask_scheduler" in _command(pid)]
-        killer = when(
-            lambda: len([line for line in told.lines if line.startswith("#")]) > 1, lambda: kill(own[-1:])
-        )
+        own = [pid for pid in _below(os.getpid()) if pid not in before and "dask_scheduler" in _command(pid)]
+        killer = when(lambda: has_begun(told), lambda: kill(own))
         path = run_campaign(on_cluster(request, address), told)
         killer.join()
-    assert ends(path) == plain
+    assert ends(path) == in_peace
     assert sum("the campaign goes on on this machine" in line for line in told.lines) == 1
 
 
@@ -263,21 +262,19 @@ def test_outcomes_are_the_same_on_any_number_of_workers(count: int, tmp_path: Pa
 
 
 @pytest.mark.whole
-def test_a_worker_that_hangs_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_that_hangs_is_replaced(
+    in_peace: Ends, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL", "4s")
     monkeypatch.setenv("OF_TEST_SCHEDULER", str(tmp_path))
     mark = f"OF_TEST_SCHEDULER={tmp_path}".encode()
-    slow = ROBOT.replace(
-        "            self.x += dx", "            import time; time.sleep(0.05); self.x += dx"
-    )
-    request = request_for(write(tmp_path / "project", robot=slow), engine="replay")
-    plain = ends(run_campaign(request, Quiet()))
+    request = request_for(write_slow(tmp_path), engine="replay")
     told = Quiet()
     stopper = when(
-        lambda: len([line for line in told.lines if line.startswith("#")]) > 2,
+        lambda: has_begun(told),
         lambda: kill(processes(mark, "multiprocessing.spawn")[:1], signal.SIGSTOP),
     )
     path = run_campaign(on_cluster(request, "local:2"), told)
     stopper.join()
-    assert ends(path) == plain
+    assert ends(path) == in_peace
     assert until(lambda: not processes(mark))

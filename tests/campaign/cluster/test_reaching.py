@@ -17,7 +17,7 @@ from mutabot.cli.app import main
 from mutabot.errors import ClusterError, UsageError
 from mutabot.settings.cluster import ClusterSettings, cluster_settings
 
-from .clusters import processes, until, write
+from .clusters import processes, until, write, write_slow
 
 
 @pytest.mark.parametrize(
@@ -102,28 +102,27 @@ def _certificates(folder: Path) -> tuple[str, str, str]:
 
 
 def test_an_interruption_leaves_no_process(tmp_path: Path) -> None:
-    project = write(tmp_path / "project")
+    project = write_slow(tmp_path / "project")
     mark = {"OF_TEST_INTERRUPTION": str(tmp_path)}
     words = ["-C", str(project), "run", "--engine", "replay", "--cluster", "local:2"]
-    process = subprocess.Popen(
+    with subprocess.Popen(
         [sys.executable, "-m", "mutabot.cli.app", *words],
         env={**os.environ, **mark},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
-    )
-    assert process.stderr is not None
-    try:
-        for line in process.stderr:
-            if line.startswith("mutants "):  # the first have their outcomes
-                break
-        process.send_signal(signal.SIGINT)
-        said = process.stderr.read()
-        assert process.wait(30) == 130, said
-        assert "Traceback" not in said
-    finally:
-        process.kill()
-        process.wait()
+    ) as process:
+        assert process.stderr is not None
+        try:
+            for line in process.stderr:
+                if line.startswith("mutants "):  # the first have their outcomes
+                    break
+            process.send_signal(signal.SIGINT)
+            said = process.stderr.read()
+            assert process.wait(30) == 130, said
+        finally:
+            process.kill()
+    assert "Traceback" not in said
     entry = f"OF_TEST_INTERRUPTION={tmp_path}".encode()
     assert until(lambda: not processes(entry), 5.0), processes(entry)
 
