@@ -13,6 +13,7 @@ import pytest
 
 from mutabot.campaign.cluster import cluster as of_cluster
 from mutabot.campaign.cluster.link import Link
+from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ClusterError
 from mutabot.journal.journal import Journal
@@ -38,10 +39,15 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
             yield found
 
 
+def slow(folder: Path) -> Request:
+    """A campaign that takes a while."""
+    return request_for(write_slow(folder), engine="replay", only=("reverse", "skip"))
+
+
 @pytest.fixture(scope="module")
 def in_peace(tmp_path_factory: pytest.TempPathFactory) -> Ends:
     """Outcomes of the project that takes a while, without a cluster."""
-    request = request_for(write_slow(tmp_path_factory.mktemp("in_peace")), engine="replay")
+    request = slow(tmp_path_factory.mktemp("in_peace"))
     return ends(run_campaign(request, Quiet()))
 
 
@@ -77,7 +83,7 @@ def test_outcomes_are_those_of_a_campaign_without_a_cluster(
 
 
 def test_a_worker_that_dies_costs_nothing_but_time(address: str, in_peace: Ends, tmp_path: Path) -> None:
-    request = request_for(write_slow(tmp_path), engine="replay")
+    request = slow(tmp_path)
     told, victims = Quiet(), workers()
     killer = when(lambda: has_begun(told), lambda: kill(victims))
     path = run_campaign(on_cluster(request, address), told)
@@ -212,7 +218,7 @@ def test_a_scheduler_that_is_killed_is_started_again(
     mark = f"OF_TEST_SCHEDULER={tmp_path}".encode()
     told = Quiet()
     killer = when(lambda: has_begun(told), lambda: kill(processes(mark, "dask_scheduler")))
-    path = run_campaign(on_cluster(request_for(write_slow(tmp_path), engine="replay"), "local:1"), told)
+    path = run_campaign(on_cluster(slow(tmp_path), "local:1"), told)
     killer.join()
     assert ends(path) == in_peace
     assert sum("is gone; outcomes so far are kept" in line for line in told.lines) == 1
@@ -224,7 +230,7 @@ def test_a_scheduler_that_stays_away_leaves_the_rest_to_this_machine(
     in_peace: Ends, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(of_cluster, "_RETURN", 1.0)
-    request = request_for(write_slow(tmp_path / "project"), engine="replay")
+    request = slow(tmp_path / "project")
     before = set(_below(os.getpid()))
     with cluster(tmp_path / "dask", 1) as address, pytest.MonkeyPatch.context() as patch:
         told = Quiet()
@@ -268,7 +274,7 @@ def test_a_worker_that_hangs_is_replaced(
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL", "4s")
     monkeypatch.setenv("OF_TEST_SCHEDULER", str(tmp_path))
     mark = f"OF_TEST_SCHEDULER={tmp_path}".encode()
-    request = request_for(write_slow(tmp_path), engine="replay")
+    request = slow(tmp_path)
     told = Quiet()
     stopper = when(
         lambda: has_begun(told),
