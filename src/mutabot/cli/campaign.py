@@ -128,7 +128,7 @@ def run(
 def _cluster(address: str | None, **given: bool | str | None) -> dict[str, bool | str | None] | None:
     """What the options say about a cluster. Raises UsageError for those that need one."""
     if address is not None:
-        return {"address": address, **given}
+        return {"address": address, **{name: value for name, value in given.items() if value}}
     if any(given.values()):
         raise UsageError("--mixed, --tls-ca, --tls-cert and --tls-key go with --cluster")
     return None

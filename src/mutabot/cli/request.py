@@ -17,6 +17,7 @@ from .options import ENGINES
 if TYPE_CHECKING:
     from mutabot.campaign.request import Request
     from mutabot.model import Moment
+    from mutabot.settings.configuration import Configuration
 
 
 def request_of(
@@ -46,7 +47,9 @@ def request_of(
         selection = configuration.root / configuration.selection
     elif selection is not None:
         selection = _found(selection, configuration.root)
-    cluster = cluster_settings(**given["cluster"]) if given.get("cluster") else None
+    cluster = None
+    if given.get("cluster"):
+        cluster = cluster_settings(**_certified(configuration, **given["cluster"]))
     return Request(
         configuration=configuration,
         vocabulary=load(configuration.vocabulary, configuration.root),
@@ -75,6 +78,14 @@ def request_of(
         whole_ladders=bool(given.get("whole_ladders")),
         evidence=bool(given.get("evidence")) and configuration.evidence > 0,
     )
+
+
+def _certified(configuration: Configuration, address: str, **given: Any) -> dict[str, Any]:
+    """What is known of a cluster, with the certificate files of the configuration where it may need them."""
+    files: dict[str, str] = {}
+    if not address.startswith(("tcp://", "local:")):
+        files = {name: str(configuration.root / file) for name, file in configuration.cluster.items()}
+    return {"address": address, **files, **given}
 
 
 def families_of(given: Sequence[str] | None) -> tuple[str, ...]:

@@ -14,8 +14,10 @@ from distributed import Security
 from mutabot.campaign.cluster import link
 from mutabot.campaign.cluster.local import LocalCluster
 from mutabot.cli.app import main
-from mutabot.errors import ClusterError, UsageError
+from mutabot.cli.request import request_of
+from mutabot.errors import ClusterError, ConfigurationError, UsageError
 from mutabot.settings.cluster import ClusterSettings, cluster_settings
+from tests.campaign.project import CONFIGURATION
 
 from .clusters import processes, until, write, write_slow
 
@@ -39,6 +41,21 @@ def test_what_is_no_cluster_is_refused(address: str, says: str) -> None:
 def test_a_missing_certificate_is_named() -> None:
     with pytest.raises(UsageError, match=r"--tls-ca nowhere\.pem: there is no such file"):
         cluster_settings("tls://host:8786", ca="nowhere.pem")
+
+
+def test_certificates_may_stand_in_the_configuration(tmp_path: Path) -> None:
+    project = write(
+        tmp_path, configuration=CONFIGURATION + '    cluster = { ca = "ca.pem", key = "key.pem" }\n'
+    )
+    for name in ("ca.pem", "key.pem", "mine.pem"):
+        (project / name).touch()
+    mine = str(project / "mine.pem")
+    request = request_of(project, cluster={"address": "tls://host:1", "cert": mine, "key": mine})
+    assert request.cluster == ClusterSettings("tls://host:1", False, str(project / "ca.pem"), mine, mine)
+    assert request.executor == "cluster"
+    write(tmp_path, configuration=CONFIGURATION + '    cluster = { cq = "ca.pem" }\n')
+    with pytest.raises(ConfigurationError, match=r"cluster.*'cq'; did you mean 'ca'"):
+        request_of(project)
 
 
 def test_options_of_a_cluster_need_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

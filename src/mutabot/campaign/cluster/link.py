@@ -163,7 +163,9 @@ def _client(settings: ClusterSettings, address: str) -> Any:
 
 
 def _security(settings: ClusterSettings, address: str) -> Any:
-    if not address.startswith("tls://") and not settings.files:
+    if not address.startswith("tls://"):
+        if settings.files:
+            raise ValueError("it is not encrypted, though there are certificate files")
         return None
     security: Any = distributed.Security
     return security(
