@@ -80,6 +80,8 @@ def cluster_settings(
     for option, file in (("ca", ca), ("cert", cert), ("key", key)):
         if file is not None and not Path(file).is_file():
             raise UsageError(f"--tls-{option} {file}: there is no such file")
+    if found.files and (found.local is not None or address.startswith("tcp://")):
+        raise UsageError(f"--cluster {address} is not encrypted: certificate files go with tls://")
     if address.startswith("tls://") and len(found.files) < 3:
         raise UsageError(f"--cluster {address} needs --tls-ca, --tls-cert and --tls-key")
     return found

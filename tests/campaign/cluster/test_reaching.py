@@ -53,9 +53,18 @@ def test_certificates_may_stand_in_the_configuration(tmp_path: Path) -> None:
     request = request_of(project, cluster={"address": "tls://host:1", "cert": mine, "key": mine})
     assert request.cluster == ClusterSettings("tls://host:1", False, str(project / "ca.pem"), mine, mine)
     assert request.executor == "cluster"
+    without = request_of(project, cluster={"address": "local:2"}).cluster
+    assert without is not None
+    assert without.files == ()
     write(tmp_path, configuration=CONFIGURATION + '    cluster = { cq = "ca.pem" }\n')
     with pytest.raises(ConfigurationError, match=r"cluster.*'cq'; did you mean 'ca'"):
         request_of(project)
+
+
+def test_certificates_without_encryption_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "ca.pem").touch()
+    with pytest.raises(UsageError, match="certificate files go with tls://"):
+        cluster_settings("tcp://host:8786", ca=str(tmp_path / "ca.pem"))
 
 
 def test_options_of_a_cluster_need_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
