@@ -13,8 +13,8 @@ from .unit import Introduction
 
 #: how often a worker is asked who it is
 _ASKS = 3
-#: differences that are named
-_SHOWN = 5
+#: differences that are named, and workers that are told of
+_SHOWN, _TOLD = 5, 10
 
 
 @dataclass(slots=True)
@@ -155,6 +155,9 @@ class Roster:
                 self._ask(address, far.receive, self.bundle.digest, index, len(chunks), chunk)
 
     def _tell_once(self, text: str) -> None:
-        if text not in self.told:
-            self.told[text] = None
-            self.tell(text)
+        if text in self.told or len(self.told) > _TOLD:
+            return
+        if len(self.told) == _TOLD:
+            text = "more workers differ, or are not used: they are not told one by one"
+        self.told[text] = None
+        self.tell(text)
