@@ -81,6 +81,8 @@ def values_of(schema: Mapping[str, Any], whole: Mapping[str, Any]) -> str:
             if items.get("type") == "object":
                 return "tables, with double brackets"
             return f"list of {values_of(items, whole)}" if "enum" in items else "list of texts"
+        case "object":
+            return "table"
         case "string":
             return "text"
         case "boolean":

@@ -13,6 +13,7 @@ from mutabot.campaign.workers.pause import Pause
 from mutabot.families import USUAL
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
+from mutabot.settings.cluster import ClusterSettings
 from mutabot.settings.configuration import Configuration
 from mutabot.settings.sample import Sample
 from mutabot.settings.shard import Shard
@@ -30,6 +31,7 @@ class Request:
         selection: file with the ids to run; None for all.
         engine: name of the engine; ``auto`` for the first that can judge a mutant.
         executor: name of what runs the tasks.
+        cluster: where the executor ``cluster`` runs them.
         fresh: whether to run everything, also what an earlier campaign has found.
         verify: how many outcomes to run once more in fresh processes, and compare.
         confirm: whether to run kills, survivors and time-outs once more.
@@ -64,6 +66,7 @@ class Request:
     selection: Path | None = None
     engine: str = "auto"
     executor: str = "local"
+    cluster: ClusterSettings | None = None
     fresh: bool = False
     verify: int = 0
     confirm: bool = False
@@ -96,6 +99,11 @@ class Request:
     def arguments(self) -> tuple[str, ...]:
         """The project's pytest arguments."""
         return (*self.configuration.tests, *self.configuration.pytest_args)
+
+    @property
+    def is_mixed(self) -> bool:
+        """Whether outcomes may come from machines that run with something else than this one."""
+        return self.cluster is not None and self.cluster.mixed
 
     @property
     def journal_path(self) -> Path:

@@ -39,7 +39,7 @@ from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Result
 from mutabot.errors import JournalError
 from mutabot.journal.journal import Journal
-from mutabot.journal.records import DRAWING, DRAWS, OPERATORS, REACHING
+from mutabot.journal.records import DRAWING, DRAWS, OPERATORS, REACHING, REMARKS
 from mutabot.model import LeftOut, Mutant
 
 from .beginning import at_it, begin, plan_of, selected
@@ -71,7 +71,10 @@ def run_campaign(request: Request, progress: Progress) -> Path:
                 at_it(request, progress) as opened,
                 recorded(request, progress) as evidence,
             ):
-                is_whole = _run(request, opened, progress, journal, evidence)
+                try:
+                    is_whole = _run(request, opened, progress, journal, evidence)
+                finally:
+                    _remember(journal, opened)
             journal.set_meta("seconds", request.clock() - started)
             journal.finish("complete" if is_whole else OUT_OF_TIME)
         except BaseException as error:
@@ -139,6 +142,13 @@ def _run(
         _forget_if_edited(request, journal, progress, dependencies, after)
     _tidy(request, journal, whole, found.presumed.values())
     return is_whole
+
+
+def _remember(journal: Journal, opened: Executor) -> None:
+    """Write down what readers are to know of where tasks ran."""
+    if opened.remarks:
+        with suppress(JournalError):
+            journal.set_meta(REMARKS, list(opened.remarks))
 
 
 def _run_all(campaign: Campaign, plan: Plan, sink: Sink, found: Reused, started: float) -> bool:

@@ -106,6 +106,11 @@ def run(
     json: options.Json = False,
     serve: options.Serve = False,
     port: options.Port = None,
+    cluster: options.Cluster = None,
+    mixed: options.Mixed = False,
+    tls_ca: options.TlsCa = None,
+    tls_cert: options.TlsCert = None,
+    tls_key: options.TlsKey = None,
 ) -> None:
     """Run the campaign, or go on with it: baseline, controls, mutants, scores."""
     if port is not None and not serve:
@@ -119,6 +124,7 @@ def run(
         engine=engine, fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
         evidence=True, since=since, sites_only=sites_only, other_journal=journal, budget=budget,
         shard=shard,
+        cluster=_cluster(cluster, mixed=mixed, ca=tls_ca, cert=tls_cert, key=tls_key),
     )  # fmt: skip
     with ExitStack() as stack:
         campaign = stack.enter_context(_served(request, port)).run if serve else partial(_run, request)
@@ -126,6 +132,15 @@ def run(
             journal_path = campaign(progress)
         results = show_results(journal_path, json=json, summary=not table)
         exit_as(decided(request.configuration, results, min_score))
+
+
+def _cluster(address: str | None, **given: bool | str | None) -> dict[str, bool | str | None] | None:
+    """What the options say about a cluster. Raises UsageError for those that need one."""
+    if address is not None:
+        return {"address": address, **{name: value for name, value in given.items() if value}}
+    if any(given.values()):
+        raise UsageError("--mixed, --tls-ca, --tls-cert and --tls-key go with --cluster")
+    return None
 
 
 def _run(request: Request, progress: Progress) -> Path:

@@ -163,6 +163,24 @@ BaselineRuns = Annotated[
     int | None, typer.Option("--baseline", metavar="N", min=1, help="Run the original N times per round.")
 ]
 Round = Annotated[int | None, typer.Option("--round", metavar="N", min=1, help="Only this round.")]
+Cluster = Annotated[
+    str | None,
+    typer.Option(
+        "--cluster",
+        metavar="WHERE",
+        help="Run mutants on a Dask cluster: tcp://host:8786, tls://…, local:4, or a scheduler file.",
+    ),
+]
+Mixed = Annotated[
+    bool, typer.Option("--mixed", help="With --cluster: workers may run with other versions than here.")
+]
+TlsCa = Annotated[
+    str | None, typer.Option("--tls-ca", metavar="FILE", help="With --cluster: certificates to trust.")
+]
+TlsCert = Annotated[
+    str | None, typer.Option("--tls-cert", metavar="FILE", help="With --cluster: our certificate.")
+]
+TlsKey = Annotated[str | None, typer.Option("--tls-key", metavar="FILE", help="With --cluster: its key.")]
 Serve = Annotated[
     bool,
     typer.Option(

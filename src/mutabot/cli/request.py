@@ -17,6 +17,7 @@ from .options import ENGINES
 if TYPE_CHECKING:
     from mutabot.campaign.request import Request
     from mutabot.model import Moment
+    from mutabot.settings.configuration import Configuration
 
 
 def request_of(
@@ -33,6 +34,7 @@ def request_of(
     Raises UsageError and ConfigurationError.
     """
     from mutabot.campaign.request import Request
+    from mutabot.settings.cluster import cluster_settings
     from mutabot.settings.configuration import load_configuration
     from mutabot.settings.duration import seconds_of
     from mutabot.settings.sample import Sample
@@ -47,6 +49,9 @@ def request_of(
         selection = configuration.root / configuration.selection
     elif selection is not None:
         selection = _found(selection, configuration.root)
+    cluster = None
+    if given.get("cluster"):
+        cluster = cluster_settings(**_certified(configuration, **given["cluster"]))
     return Request(
         configuration=configuration,
         vocabulary=load(configuration.vocabulary, configuration.root),
@@ -57,6 +62,8 @@ def request_of(
         skip=tuple(given.get("skip") or ()),
         selection=selection,
         engine=engine,
+        executor="local" if cluster is None else "cluster",
+        cluster=cluster,
         fresh=bool(given.get("fresh")),
         verify=given.get("verify") or 0,
         confirm=bool(given.get("confirm")),
@@ -78,6 +85,14 @@ def request_of(
         other_journal=given.get("other_journal"),
         budget=None if given.get("budget") is None else seconds_of(given["budget"]),
     )
+
+
+def _certified(configuration: Configuration, address: str, **given: Any) -> dict[str, Any]:
+    """What is known of a cluster, with the certificate files of the configuration where it may need them."""
+    files: dict[str, str] = {}
+    if not address.startswith(("tcp://", "local:")):
+        files = {name: str(configuration.root / file) for name, file in configuration.cluster.items()}
+    return {"address": address, **files, **given}
 
 
 def families_of(given: Sequence[str] | None) -> tuple[str, ...]:

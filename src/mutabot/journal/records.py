@@ -15,6 +15,8 @@ VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
 REPEATS = "repeats"
 SINCE, BUDGET = "since", "budget"
 SHARD = "shard"
+#: what is to be known of the machines that the campaign ran on, a line each
+REMARKS = "remarks"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 

@@ -16,6 +16,7 @@ from mutabot.model import Moment
 from mutabot.model.graded.demand import Demand
 from mutabot.model.moment import EVERY
 
+from .cluster import ClusterTable
 from .demands import check_demands
 from .document import Document
 from .families import why_unknown
@@ -254,6 +255,12 @@ class Settings(BaseModel):
 
         demand = [{ site = "mission.py:38", quantity = "y", notice = "5 mm" }]
     """
+    cluster: dict[str, Any] = {}
+    """Files in PEM format for a [cluster](cluster.md#tls) with TLS. `--tls-ca`,
+    `--tls-cert` and `--tls-key` go before them; which cluster it is says `--cluster`.
+
+        cluster = { ca = "ca.pem", cert = "cert.pem", key = "key.pem" }
+    """
 
 
 class Configuration(Settings):
@@ -291,6 +298,7 @@ def load_configuration(folder: Path) -> Configuration:
     paths.refuse_overlap(program, oracle)
     paths.check_tests(settings.tests, "tests" in raw)
     paths.check_rest(settings)
+    check.table(ClusterTable, settings.cluster, (*place, "cluster"))
     demands = check_demands(settings.demand, check, (*place, "demand"))
     raise_errors(check.errors)
     changed = {"program": program, "oracle": oracle, "root": folder.resolve(), "file": document.file}

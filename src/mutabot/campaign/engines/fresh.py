@@ -41,6 +41,19 @@ def replay(campaign: Campaign, trials: Iterable[Trial], engine: str = REPLAY) ->
         yield from replay(campaign, widened, engine)
 
 
+def longest_first(campaign: Campaign, trials: list[Trial]) -> list[Trial]:
+    """Trials in an order that leaves no place with the last one; as they are where all share one machine."""
+    if campaign.executor.spread < 2:
+        return trials
+    baseline = campaign.baseline
+
+    def seconds(trial: Trial) -> float:
+        mutant, round = trial
+        return sum(baseline.ends[round, test].wall for test in baseline.judges(round, mutant))
+
+    return sorted(trials, key=seconds, reverse=True)
+
+
 def _drain(outcomes: list[Outcome]) -> Iterator[Outcome]:
     while outcomes:
         yield outcomes.pop(0)

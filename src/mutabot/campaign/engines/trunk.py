@@ -1,4 +1,4 @@
-"""Trunks, seen from the controller: one per round, and what its branches report.
+"""Trunks, seen from the controller: one per round or several, and what their branches report.
 
 A branch's report counts only once the trunk itself has passed the same test as in the baseline: the trunk is
 the second run of the original. What could not be branched, or got lost with a trunk, is left to another
@@ -7,6 +7,7 @@ engine.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -36,10 +37,14 @@ from .judge import Death, Run, judged
 
 #: seconds without any word from a trunk, beyond what its tests and branches may take
 _PATIENCE = 60.0
+#: mutants under which a part costs more than it spreads, and parts for each place: they are not equally long
+_LEAST, _PARTS = 10, 2
+#: seconds that a branch takes at least
+_FORK = 0.01
 
 
 class Trunks:
-    """The trunks of all rounds.
+    """The trunks of all rounds, cut into parts where places share nothing.
 
     Args:
         campaign: the campaign.
@@ -73,17 +78,19 @@ class Trunks:
             else:
                 yield without_tests(baseline, mutant, round)
         self.orders.update((round, trunk.order) for round, trunk in self._trunks.items())
+        parts = cut(list(self._trunks.values()), self._campaign.executor.spread)
+        by_key = dict(enumerate(parts))
         # the text of all rounds alike, so that one fork server can serve them
         text = baseline.program.instrumentation(
             {one.id: one for trunk in self._trunks.values() for one in trunk.mutants}.values()
         )
-        tasks = (trunk.task(text) for trunk in self._trunks.values())
+        tasks = (trunk.task(key, text) for key, trunk in by_key.items())
         for event in self._campaign.executor.events(tasks):
             if isinstance(event, Result):
-                yield from self._trunks[event.task.job.round].finish(event)
+                yield from by_key[event.task.key].finish(event)
             else:
                 task, line = event
-                yield from self._trunks[task.job.round].take(line)
+                yield from by_key[task.key].take(line)
 
     def _add(self, mutant: Mutant, round: int, tests: tuple[str, ...]) -> None:
         baseline = self._campaign.baseline
@@ -98,6 +105,15 @@ class Trunks:
             self._trunks[round].run_too(tests)
         else:
             self._trunks[round].add(mutant, tests)
+
+
+def cut(trunks: list[_Trunk], places: int) -> list[_Trunk]:
+    """Trunks in parts for so many places that share nothing, the longest first; as they are for one."""
+    if places < 2 or not trunks:
+        return trunks
+    whole = sum(trunk.seconds for trunk in trunks) or 1.0
+    parts = (trunk.parts(math.ceil(_PARTS * places * trunk.seconds / whole)) for trunk in trunks)
+    return sorted((part for some in parts for part in some), key=lambda part: -part.seconds)
 
 
 @dataclass(slots=True)
@@ -170,7 +186,39 @@ class _Trunk:
         """The tests it runs, in their order."""
         return self._baseline.in_order(self._round, self._needed)
 
-    def task(self, text: Instrumentation | None) -> Task:
+    @property
+    def seconds(self) -> float:
+        """What its own tests and its branches take at most, by those of the baseline."""
+        own = sum(self._wall(test) for test in self._needed)
+        return own + sum(map(self._branches_seconds, self._open.values()))
+
+    def parts(self, count: int) -> list[_Trunk]:
+        """As many trunks with a part of the mutants each, so that mutants of the same tests stay together."""
+        count = min(count, len(self._open) // _LEAST)
+        if count < 2:
+            return [self]
+        branches = sorted(self._open.values(), key=lambda one: (one.tests, one.mutant.id))
+        share = sum(map(self._branches_seconds, branches)) / count
+        found, used, bare = list[_Trunk](), 0.0, set(self._needed)
+        for one in branches:
+            if not found or (used >= share * len(found) and len(found) < count):
+                found.append(self._empty())
+            found[-1].add(one.mutant, one.tests)
+            used += self._branches_seconds(one)
+            bare.difference_update(one.tests)
+        found[0].run_too(tuple(bare))
+        return found
+
+    def _empty(self) -> _Trunk:
+        return _Trunk(self._campaign, self._round, self._left, self._suspects, self._engine)
+
+    def _wall(self, test: str) -> float:
+        return self._baseline.ends[self._round, test].wall
+
+    def _branches_seconds(self, branches: _Branches) -> float:
+        return sum(self._wall(test) for test in branches.tests) + _FORK
+
+    def task(self, key: int, text: Instrumentation | None) -> Task:
         """The task that runs the trunk."""
         request, baseline, round = self._campaign.request, self._baseline, self._round
         in_order = self.order
@@ -198,7 +246,7 @@ class _Trunk:
             instrumentation=text,
         )
         patience = 2.0 * longest + _PATIENCE
-        return Task(round, job, {}, patience, patience, is_trunk=True, may_share=True)
+        return Task(key, job, {}, patience, patience, is_trunk=True, may_share=True)
 
     def take(self, line: Line) -> Iterator[Outcome]:
         """Sort in a report line; yields the outcomes that it settles."""

@@ -99,7 +99,7 @@ class Dependencies:
             **_settings(request),
             **self._roles({name: name for name in self.files if name not in self.texts}),
             **_vocabulary_parts(request.vocabulary),
-            **_versions(),
+            **versions(),
         }
         self._common = self._stored(self.common)
         self._operations = {
@@ -310,6 +310,7 @@ def _settings(request: Request) -> dict[str, str]:
         "memory": str(configuration.memory),
         **({"every test": "run"} if request.every_test else {}),
         **({"the checks": "switched off"} if request.no_oracle else {}),
+        **({"workers": "may run with other versions"} if request.is_mixed else {}),
     }
 
 
@@ -398,7 +399,7 @@ def _without_source(data: Any) -> Any:
     return [_without_source(item) for item in data] if isinstance(data, list) else data
 
 
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
     """Python, and all that is installed beside it, for any of it may take part in a simulation."""
     found = {
         "python": f"{platform.python_implementation()} {platform.python_version()}",

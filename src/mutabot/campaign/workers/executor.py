@@ -6,7 +6,7 @@ which tasks there are, and what their results mean, is the engines' business.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from typing import Protocol
 
@@ -16,7 +16,19 @@ from .task import Result, Task
 
 
 class Executor(Protocol):
-    """Runs tasks, as many at a time as it may. Leaving its context ends whatever still runs."""
+    """Runs tasks, as many at a time as it may. Leaving its context ends whatever still runs.
+
+    Attributes:
+        spread: how many places share nothing, neither trunks nor fork servers: work is worth cutting into
+            parts for them, and to begin with its longest. 1 on one machine.
+        remarks: what is to be known of where tasks ran, for whoever reads the journal.
+    """
+
+    @property
+    def spread(self) -> int: ...
+
+    @property
+    def remarks(self) -> Sequence[str]: ...
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which tasks end. Tasks are taken from the iterable as places free up."""

@@ -20,6 +20,8 @@ from .processes import Home, LineReader, Spawned, kill_group
 
 #: seconds that a server may take to answer, and to end, once its tests are collected
 _PATIENCE = 30.0
+#: seconds between two looks whether a run is still wanted
+LOOKS = 0.2
 
 
 class Copy:
@@ -95,10 +97,19 @@ class ForkServer:
         """Whether none of its copies is at work."""
         return None not in self._codes.values()
 
-    def wait_until_ready(self, seconds: float) -> str | None:
-        """Wait until the tests are collected. Returns why it cannot serve, or None if it can."""
+    def wait_until_ready(self, seconds: float, look: Callable[[], None] | None = None) -> str | None:
+        """Wait until the tests are collected. Returns why it cannot serve, or None if it can.
+
+        ``look``: called several times a second meanwhile; what it raises ends the wait.
+        """
+
+        def is_ready() -> bool:
+            if look is not None:
+                look()
+            return self.serving is not None
+
         with interruptible():
-            self._listen_until(lambda: self.serving is not None, seconds)
+            self._listen_until(is_ready, seconds, LOOKS if look is not None else seconds)
         self.startup = time.monotonic() - self._started
         if self.serving is None:
             return "the process that was to collect the tests did not get there"
@@ -152,8 +163,8 @@ class ForkServer:
         os.close(self.pipe)
         self._home.remove()
 
-    def _listen_until(self, done: Callable[[], bool], seconds: float) -> None:
-        """Listen until something is so, the server has ended, or the time is up."""
+    def _listen_until(self, done: Callable[[], bool], seconds: float, period: float = float("inf")) -> None:
+        """Listen until something is so, asked once a ``period``, the server has ended, or time is up."""
         until = time.monotonic() + seconds
         poll = select.poll()
         poll.register(self.pipe, select.POLLIN)
@@ -164,7 +175,7 @@ class ForkServer:
                 return
             ended = self._process.exit_code is not None
             if not ended:
-                poll.poll(left * 1e3)
+                poll.poll(min(left, period) * 1e3)
             self.listen()
             if ended:
                 return

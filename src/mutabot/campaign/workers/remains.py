@@ -26,7 +26,7 @@ _KERNEL = 0x00200000
 _PATIENCE = 5000
 _PROC = Path("/proc")
 #: in the folder of workers: who their controller is, and when it began
-_OWNER = "controller"
+OWNER = "controller"
 
 
 def end_left_over(folder: Path) -> int:
@@ -55,7 +55,7 @@ def started_below(folder: Path) -> list[int]:
 
 def claim(folder: Path) -> None:
     """Say that the folder of workers belongs to this process, as long as that lives."""
-    (folder / _OWNER).write_text(f"{os.getpid()} {_began(os.getpid())}", encoding="ascii")
+    (folder / OWNER).write_text(f"{os.getpid()} {_began(os.getpid())}", encoding="ascii")
 
 
 def end_abandoned(home: Path) -> int:
@@ -65,18 +65,25 @@ def end_abandoned(home: Path) -> int:
         home: the folder in which the folders of workers are made.
     """
     ended = 0
-    for owner in home.glob(f"*/{_OWNER}"):
+    for owner in home.glob(f"*/{OWNER}"):
         try:
             pid, began = owner.read_text("ascii").split()
         except (OSError, ValueError):  # another campaign is about to write it, or to remove it
             continue
         if _began(int(pid)) == began:
             continue
-        marks = f"{VARIABLE}={owner.parent}/".encode()
-        for process in _processes():
-            entries = [entry for entry in _environment(process) if entry.startswith(marks)]
-            ended += sum(_end(process, entry) for entry in entries)
+        ended += end_below(owner.parent)
         owner.unlink(missing_ok=True)
+    return ended
+
+
+def end_below(folder: Path) -> int:
+    """End all that was started below workers whose folders are in this one; returns how many there were."""
+    marks = f"{VARIABLE}={folder}/".encode()
+    ended = 0
+    for process in _processes():
+        entries = [entry for entry in _environment(process) if entry.startswith(marks)]
+        ended += sum(_end(process, entry) for entry in entries)
     return ended
 
 

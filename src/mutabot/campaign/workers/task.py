@@ -80,6 +80,7 @@ class Result:
         where: where it was then: its innermost calls; None if that is not known.
         wall: seconds from its start to its end.
         log: the last lines it printed.
+        lost: why no process could be had that runs it to its end, or None.
     """
 
     task: Task
@@ -102,6 +103,7 @@ class Result:
     where: str | None = None
     wall: float = 0.0
     log: str = ""
+    lost: str | None = None
 
     def take(self, line: Line) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
         """Sort in one report line."""
@@ -145,6 +147,8 @@ class Result:
 
 def death(result: Result, *, said: bool = True) -> str:
     """How a worker ended that did not end in an orderly way, and the last that it ``said``."""
+    if result.lost is not None:
+        return result.lost
     during = f" during {result.running}" if result.running else ""
     if result.overdue:
         return f"{result.overdue}{during}"

@@ -22,7 +22,7 @@ from mutabot.border.starter import is_supported
 from mutabot.border.test_end import TestEnd
 from mutabot.errors import JournalError
 
-from .forkserver import Copy, ForkServer
+from .forkserver import LOOKS, Copy, ForkServer
 from .interruption import interruptible
 from .pause import Pause
 from .processes import Home, LineReader, Spawned, refuse_full_disk, usual_environment
@@ -48,7 +48,12 @@ class Workers:
 
     Attributes:
         pool: the tokens of trunks and branches.
+        look: called several times a second while it waits; what it raises ends the run. None: nobody looks.
+        spread, remarks: see ``Executor``.
     """
+
+    spread = 1
+    remarks: tuple[str, ...] = ()
 
     def __init__(
         self,
@@ -71,6 +76,7 @@ class Workers:
         self._warm: WarmServer | None = None
         self._may_begin_warm = True
         self.pool = TokenPool(self._jobs)
+        self.look: Callable[[], None] | None = None
         home = root / ".mutabot"
         try:
             home.mkdir(exist_ok=True)
@@ -198,10 +204,11 @@ class Workers:
             return found
         for idle in [server for server in self._servers if server.is_idle]:
             self._end_server(idle)  # what it was for is over
-        server = ForkServer(task.job, self._root, self._arguments, Path(self._folder.name), self._inherited)
+        folder = Path(self._folder.name)
+        server = ForkServer(task.job, self._root, self._arguments, folder, self._inherited)
         self._servers.append(server)
         self._selector.register(server.pipe, selectors.EVENT_READ, server)
-        reason = server.wait_until_ready(task.startup)
+        reason = server.wait_until_ready(task.startup, self.look)
         if reason is None:
             return server
         self._may_share = False
@@ -220,6 +227,9 @@ class Workers:
         awaited = self._awaited(next_task)
         if awaited is not None:
             self._selector.register(awaited, selectors.EVENT_READ, None)
+        if self.look is not None:
+            self.look()
+            timeout = LOOKS if timeout is None else min(timeout, LOOKS)
         with interruptible():
             ready = self._selector.select(timeout)
         if awaited is not None:

@@ -15,6 +15,7 @@ from mutabot.analysis.divergence import first_line
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import Group, KillRate, RoundScores
 from mutabot.analysis.statistics import Interval
+from mutabot.journal.records import REMARKS
 from mutabot.model import LeftOut, Outcome, Verdict
 
 from .console import (
@@ -338,6 +339,8 @@ def trust_lines(results: Results) -> Iterator[RenderableType]:
         yield heading(f"{plural(len(results.flaky.tests), 'test')} set aside, which cannot be relied on")
         for line in results.flaky.tests:
             yield Text(plain(line), overflow="fold")
+    for remark in results.meta.get(REMARKS, ()):
+        yield Text(f"\n{plain(remark)}", style="bold", overflow="fold")
     checked = results.verification
     if checked is not None:
         text = f"\nVerified: {checked.agreed} of {checked.checked} outcomes end the same in fresh processes."

@@ -8,7 +8,7 @@ from mutabot.campaign.baseline.taking import REPETITIONS
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.engine import Engine, Remainder, Trial
-from mutabot.campaign.engines.fresh import replay
+from mutabot.campaign.engines.fresh import longest_first, replay
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome
 
@@ -26,7 +26,7 @@ class Replay:
         yield from run_controls(campaign, {mutant.id: mutant for mutant, _ in trials}.values())
         is_all = campaign.request.engine == self.name
         campaign.progress.stage("mutants" if is_all else "mutants by replay", len(trials))
-        yield from replay(campaign, trials)
+        yield from replay(campaign, longest_first(campaign, trials))
 
     def try_controls(
         self, campaign: Campaign, mutants: Iterable[Mutant], left: Remainder

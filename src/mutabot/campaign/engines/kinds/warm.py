@@ -13,7 +13,7 @@ from mutabot.campaign.baseline.taking import REPETITIONS
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.engine import Engine, Remainder, Trial
-from mutabot.campaign.engines.fresh import replay
+from mutabot.campaign.engines.fresh import longest_first, replay
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 
@@ -45,7 +45,7 @@ class Warm:
         yield from run_controls(campaign, by_id.values(), warm=True)
         campaign.progress.stage("mutants by warm starts", len(own))
         doubtful: list[Trial] = []
-        for outcome in replay(campaign, own, self.name):
+        for outcome in replay(campaign, longest_first(campaign, own), self.name):
             if outcome.verdict in _IN_DOUBT and not is_all:
                 doubtful.append((by_id[outcome.mutant], outcome.round))
             else:

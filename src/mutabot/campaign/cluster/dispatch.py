@@ -1,0 +1,279 @@
+"""Who runs what, and what becomes of it: units to workers, one at a time each, and their answers back.
+
+A worker that dies, hangs or goes away with a unit is not the mutant's fault: the unit goes to another, at
+most three times.
+"""
+
+from __future__ import annotations
+
+import queue
+import time
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+from mutabot.border.lines import BranchDied, Line
+from mutabot.campaign.workers.executor import Executor
+from mutabot.campaign.workers.interruption import interruptible
+from mutabot.campaign.workers.pause import Pause
+from mutabot.campaign.workers.task import Result, Task
+
+from . import far
+from .link import Link, News
+from .roster import Roster
+from .unit import Answer, Ground, Unit
+
+#: how often a unit is tried
+TRIES = 3
+#: seconds between two looks at all
+_PERIOD = 0.2
+#: seconds for a worker's own work around a unit, at most
+_GRACE = 300.0
+#: seconds without any worker until that is told, and until nobody waits any more
+_TOLD, _PATIENCE = 5.0, 600.0
+
+Event = Result | tuple[Task, Line]
+
+
+@dataclass(slots=True)
+class _Trial:
+    """A task on its way.
+
+    Attributes:
+        task: the task.
+        faults: how it was lost, one entry each.
+        avoided: the workers with which it was.
+        answer: the last answer, if there was one.
+        until: when (``time.monotonic``) it must have ended, whatever it does.
+    """
+
+    task: Task
+    faults: list[str] = field(default_factory=list)
+    avoided: set[str] = field(default_factory=set)
+    answer: Answer | None = None
+    until: float = 0.0
+
+
+class Cluster(Protocol):
+    """A cluster, as far as it is needed here.
+
+    Attributes:
+        link, roster: the connection, and who is there.
+        pause: while it is on, no unit begins.
+        done: units done since the last connection.
+    """
+
+    @property
+    def home(self) -> Executor:
+        """What runs tasks on this machine."""
+
+    link: Link
+    roster: Roster
+    pause: Pause | None
+    done: int
+
+    def tell(self, text: str) -> None:
+        """Tell the user."""
+
+    def give_up(self, why: str) -> None:
+        """From now on run everything at home."""
+
+    def look_after(self) -> None:
+        """Start again what is gone of workers on this machine."""
+
+    def reconnect(self) -> bool:
+        """Reach a scheduler again that is gone; returns whether that worked."""
+
+
+class Dispatch:
+    """Runs tasks on a cluster.
+
+    Args:
+        cluster: it.
+        ground: what units stand on.
+        tasks: what is to be run; taken as places free up.
+    """
+
+    def __init__(self, cluster: Cluster, ground: Ground, tasks: Iterator[Task]) -> None:
+        self._cluster, self._ground, self._tasks = cluster, ground, tasks
+        self._again: deque[_Trial] = deque()
+        self._running: dict[int, tuple[str, _Trial]] = {}
+        self._at_home: list[Task] = []
+        self._settled: deque[Event] = deque()
+        self._next = self._taken()
+        self._lonely_since: float | None = None
+        self._was_told = False
+
+    def events(self) -> Iterator[Event]:
+        """Lines and results; what has to run at home comes last."""
+        try:
+            while self._running or self._again or self._next is not None:
+                self._assign()
+                self._wait()
+                while self._settled:
+                    yield self._settled.popleft()
+                if not self._can_go_on():
+                    yield from self._cluster.home.events(self._rest())
+                    return
+            yield from self._cluster.home.events(self._at_home)
+        finally:
+            self._cluster.link.forget(*self._running)
+
+    def _taken(self) -> _Trial | None:
+        for task in self._tasks:
+            if not is_for_home(task):
+                return _Trial(task)
+            self._at_home.append(task)
+        return None
+
+    def _assign(self) -> None:
+        pause = self._cluster.pause
+        if pause is not None and pause.is_on:
+            return
+        busy = {worker for worker, _ in self._running.values()}
+        idle = [worker for worker in self._cluster.roster.fit if worker not in busy]
+        while idle and (trial := self._due()) is not None:
+            worker = next((one for one in idle if one not in trial.avoided), idle[0])
+            idle.remove(worker)
+            data = Unit(self._ground, trial.task).data()
+            trial.until = time.monotonic() + longest(trial.task)
+            self._running[self._cluster.link.ask(worker, far.run_unit, data)] = worker, trial
+
+    def _due(self) -> _Trial | None:
+        if self._again:
+            return self._again.popleft()
+        trial, self._next = self._next, None if self._next is None else self._taken()
+        return trial
+
+    def _wait(self) -> None:
+        roster, link = self._cluster.roster, self._cluster.link
+        try:
+            with interruptible():
+                news = link.news.get(timeout=_PERIOD)
+            while True:
+                if not roster.take(news):
+                    self._take(news)
+                news = link.news.get_nowait()
+        except queue.Empty:
+            pass
+        gone = roster.update()
+        now = time.monotonic()
+        for number, (worker, trial) in list(self._running.items()):
+            if worker in gone or now > trial.until:
+                del self._running[number]
+                link.forget(number)
+                why = "its worker was lost" if worker in gone else "no answer in all the time it may take"
+                self._lost(trial, worker, why)
+
+    def _take(self, news: News) -> None:
+        worker, trial = self._running.pop(news.asked, ("", None))
+        if trial is None:
+            return
+        if news.data is None:
+            self._lost(trial, worker, f"its worker gave no answer: {news.why}")
+            return
+        answer = Answer.of(news.data)
+        if answer.fault is not None:
+            trial.answer = None if answer.is_unfit else answer
+            if answer.is_unfit:
+                self._cluster.roster.refuse(worker, answer.fault)
+            self._lost(trial, worker, answer.fault)
+            return
+        self._settle(trial, answer)
+
+    def _settle(self, trial: _Trial, answer: Answer) -> None:
+        self._cluster.done += 1
+        task, lines = trial.task, answer.reported
+        overdue = {line.mutant for line in lines if isinstance(line, BranchDied) and line.overdue}
+        if answer.overdue is not None and not task.is_trunk:
+            self._at_home.append(task)
+            return
+        if overdue:
+            # a part of the trunk at home decides about these
+            lines = [line for line in lines if getattr(line, "mutant", None) not in overdue]
+            self._at_home.append(_only(task, overdue))
+        self._settled.extend((task, line) for line in lines)
+        if not overdue:
+            self._settled.append(answer.result(task, lines))
+
+    def _lost(self, trial: _Trial, worker: str, why: str) -> None:
+        trial.faults.append(f"{why} ({worker})")
+        trial.avoided.add(worker)
+        if len(trial.faults) < TRIES:
+            self._again.append(trial)
+            return
+        if trial.answer is not None:  # what ended it each time may be the mutant after all: the judge knows
+            self._settle(trial, trial.answer)
+            return
+        lost = f"{TRIES} workers could not run it: {'; '.join(dict.fromkeys(trial.faults))}"
+        self._settled.append(Result(trial.task, lost=lost))
+
+    def _can_go_on(self) -> bool:
+        """Whether there is a cluster; it may have to be reached again, or waited for."""
+        cluster = self._cluster
+        if cluster.link.is_lost:
+            self._again.extendleft(trial for _, trial in self._running.values())
+            self._running.clear()
+            if not cluster.reconnect():
+                cluster.give_up(f"the scheduler at {cluster.link.address} does not come back")
+                return False
+        cluster.look_after()
+        if self._running or cluster.roster.fit:
+            self._lonely_since = None
+            return True
+        now = time.monotonic()
+        self._lonely_since = self._lonely_since or now
+        if cluster.link.workers and not cluster.roster.usable:
+            cluster.give_up("no worker can be used")
+            return False
+        if now - self._lonely_since > _PATIENCE:
+            cluster.give_up(f"no worker has come to {cluster.link.address} for {_PATIENCE / 60:.0f} minutes")
+            return False
+        if now - self._lonely_since > _TOLD and not self._was_told:
+            self._was_told = True
+            cluster.tell(f"no worker is at {cluster.link.address}: waiting for one")
+        return True
+
+    def _rest(self) -> Iterator[Task]:
+        """What has not been run."""
+        for trial in (*(one for _, one in self._running.values()), *self._again):
+            yield trial.task
+        while self._next is not None:
+            yield self._next.task
+            self._next = self._taken()
+        yield from self._at_home
+
+
+def longest(task: Task) -> float:
+    """Seconds after which a worker that has not answered never will: limits inside end a task long before."""
+    walls = [task.deadlines.get(test, task.deadline) for test in task.job.tests or ()]
+    branching = task.job.branching
+    if branching is not None:
+        walls += [
+            task.deadline,
+            *(branching.walls.get(test, branching.wall) for test in task.job.tests or ()),
+        ]
+        walls += [
+            branching.walls.get(test, branching.wall) for tests in branching.tests.values() for test in tests
+        ]
+    return _GRACE + 2 * (task.startup + sum(walls))
+
+
+def is_for_home(task: Task) -> bool:
+    """Whether a task is to run on the controller's machine: the original, and whatever shares its files."""
+    job = task.job
+    return (job.mutant is None and job.branching is None) or job.pictures is not None or task.alone
+
+
+def _only(task: Task, mutants: set[str]) -> Task:
+    """The same trunk with some of its mutants."""
+    branching = task.job.branching
+    assert branching is not None
+    own = replace(
+        branching,
+        mutants=tuple(one for one in branching.mutants if one.id in mutants),
+        tests={mutant: tests for mutant, tests in branching.tests.items() if mutant in mutants},
+        choices={mutant: found for mutant, found in branching.choices.items() if mutant in mutants},
+    )
+    return replace(task, job=replace(task.job, branching=own))

@@ -1,0 +1,93 @@
+"""What makes runs elsewhere mean what they mean here: versions, variables, where modules come from."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+from mutabot.campaign.workers.processes import usual_environment
+
+#: variables that say how Python, pytest and numbers behave; those that name places stay with their machine
+_DECIDED = ("PYTHON", "PYTEST_", "LC_", "LANG", "TZ", "MUJOCO_GL", "PYOPENGL_PLATFORM")
+_THREADS = "_NUM_THREADS"
+_PLACES = {
+    "PYTHONPATH", "PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX", "PYTHONEXECUTABLE", "PYTHONSTARTUP",
+    "PYTEST_CURRENT_TEST", "PYTEST_VERSION", "PYTEST_XDIST_WORKER", "PYTEST_XDIST_WORKER_COUNT",
+    "PYTEST_XDIST_TESTRUNUID",
+}  # fmt: skip
+#: variables that nobody set and that Dask's nannies set
+_NOT_TO_BE = ("PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "PYTEST_ADDOPTS", "PYTEST_PLUGINS", "TZ")
+
+
+def decided() -> dict[str, str | None]:
+    """The variables that this machine decides for all; None for those that are not to be set."""
+    here = usual_environment()
+    ours = {
+        name: value
+        for name, value in here.items()
+        if name not in _PLACES and (name.startswith(_DECIDED) or name.endswith(_THREADS))
+    }
+    return {**dict.fromkeys(_NOT_TO_BE), **ours}
+
+
+def apply(environment: Mapping[str, str | None], paths: Iterable[str]) -> None:
+    """Let processes that start from now on have these variables, and find modules in these folders first."""
+    for name, value in environment.items():
+        if value is None:
+            os.environ.pop(name, None)
+        else:
+            os.environ[name] = value
+    own = os.environ.get(_OWN_PATH)
+    if own is None:
+        own = os.environ[_OWN_PATH] = os.environ.get("PYTHONPATH", "")
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [*paths, own]))
+
+
+#: the PYTHONPATH that a worker began with
+_OWN_PATH = "MUTABOT_WORKERS_PYTHONPATH"
+
+
+def module_folders(root: Path) -> tuple[str, ...]:
+    """Folders of the project that modules come from, relative to it.
+
+    Installed in place, a project would be imported from where it was installed, not from its copy.
+    """
+    found: dict[str, None] = {}
+    for folder in _search_path(root):
+        if folder == root or root in folder.parents:
+            inside = folder.relative_to(root)
+            if not any(part.startswith(".") for part in inside.parts):  # as of a virtual environment
+                found[inside.as_posix()] = None
+    return tuple(found)
+
+
+def _search_path(root: Path) -> Iterator[Path]:
+    for entry in filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep)):
+        yield (root / entry).resolve()
+    for entry in sys.path:
+        if entry and "site-packages" not in entry:
+            yield Path(entry).resolve()
+    for finder in list(sys.modules.values()):  # how setuptools installs in place where a path would not do
+        mapping = getattr(finder, "MAPPING", None)
+        if getattr(finder, "__name__", "").startswith("__editable__") and isinstance(mapping, dict):
+            yield from (Path(place).resolve().parent for place in mapping.values())
+
+
+def differences(here: Mapping[str, str], there: Mapping[str, str]) -> list[str]:
+    """What differs between two machines' versions, in words."""
+    found = []
+    for name in sorted({*here, *there}, key=lambda name: (name not in _FIRST, name)):
+        if here.get(name) != there.get(name):
+            ours, theirs = (_shown(versions.get(name)) for versions in (here, there))
+            is_digest = "#" in (here.get(name, " ") + there.get(name, " "))
+            found.append(f"{name} is another" if is_digest else f"{name} is {theirs} there, {ours} here")
+    return found
+
+
+_FIRST = ("python", "machine", "mutabot")
+
+
+def _shown(version: str | None) -> str:
+    return "missing" if version is None else version

@@ -1,0 +1,117 @@
+"""A cluster on this machine: a scheduler and its workers, in sessions of their own.
+
+They listen on 127.0.0.1 only, and end with the controller, however that ends.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+
+from mutabot.campaign.workers.interruption import interruptible
+from mutabot.campaign.workers.remains import end_below
+from mutabot.campaign.workers.said import last_line
+from mutabot.errors import ClusterError
+
+#: what the processes run; nothing outlives whoever started it
+_CODE = (
+    "import sys\n"
+    "from mutabot.inside.fork.lifeline import die_with_parent\n"
+    "die_with_parent(int(sys.argv[1]))\n"
+    "from distributed.cli.dask_{what} import main\n"
+    "sys.argv[:] = ['dask-{what}', *sys.argv[2:]]\n"
+    "main()\n"
+)
+#: settings of Dask that fit what runs here, unless the user has others
+_SETTINGS = {
+    "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1000000",  # the controller counts
+    "DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "60s",
+    "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
+    "DASK_DISTRIBUTED__ADMIN__SYSTEM_MONITOR__GIL__ENABLED": "False",
+}
+#: seconds that a scheduler may take to come up
+_PATIENCE = 60.0
+
+
+class LocalCluster:
+    """A scheduler and workers on this machine.
+
+    Args:
+        workers: how many.
+        folder: where they keep what they need; it must be there.
+    """
+
+    def __init__(self, workers: int, folder: Path) -> None:
+        self._count, self._folder = workers, folder
+        self._address = ""
+        self._scheduler: subprocess.Popen[bytes] | None = None
+        self._workers: subprocess.Popen[bytes] | None = None
+
+    def start(self) -> str:
+        """Start all anew; returns the scheduler's address. Raises ClusterError."""
+        self.close()
+        file = self._folder / "scheduler.json"
+        file.unlink(missing_ok=True)
+        own = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
+        self._scheduler = self._start("scheduler", *own)
+        until = time.monotonic() + _PATIENCE
+        while not file.is_file() or not file.read_bytes():
+            if self._scheduler.poll() is not None or time.monotonic() > until:
+                said = last_line((self._folder / "scheduler.log").read_text(errors="replace"))
+                raise ClusterError(f"a scheduler could not be started on this machine: {said}")
+            with interruptible():
+                time.sleep(0.05)
+        from .link import address_in  # noqa: PLC0415
+
+        self._address = address_in(file)
+        self._start_workers()
+        return self._address
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether its scheduler is there."""
+        return self._scheduler is not None and self._scheduler.poll() is None
+
+    def look_after_workers(self) -> bool:
+        """Start the workers again if whoever looks after them is gone; returns whether that was so."""
+        if self._workers is None or self._workers.poll() is None:
+            return False
+        self._start_workers()
+        return True
+
+    def close(self) -> None:
+        """End all."""
+        for process in (self._workers, self._scheduler):
+            if process is not None:
+                _end(process)
+        end_below(self._folder)  # what tests had started
+        self._workers = self._scheduler = None
+
+    def _start_workers(self) -> None:
+        self._workers = self._start(
+            "worker", self._address, "--host", "127.0.0.1", "--nworkers", str(self._count), "--nthreads", "1",
+            "--memory-limit", "0", "--no-dashboard", "--death-timeout", "60",
+            "--local-directory", str(self._folder),
+        )  # fmt: skip
+
+    def _start(self, what: str, *arguments: str) -> subprocess.Popen[bytes]:
+        with (self._folder / f"{what}.log").open("wb") as log:
+            return subprocess.Popen(
+                [sys.executable, "-c", _CODE.format(what=what), str(os.getpid()), *arguments],
+                env={**_SETTINGS, **os.environ},
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    with suppress(ProcessLookupError, PermissionError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()

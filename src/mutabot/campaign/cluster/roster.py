@@ -1,0 +1,163 @@
+"""The workers of a cluster as the controller knows them: who runs with the same, and has the project."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from . import far
+from .bundle import Bundle
+from .environment import differences
+from .link import Link, News
+from .unit import Introduction
+
+#: how often a worker is asked who it is
+_ASKS = 3
+#: differences that are named, and workers that are told of
+_SHOWN, _TOLD = 5, 10
+
+
+@dataclass(slots=True)
+class _Worker:
+    """One worker.
+
+    Attributes:
+        asked: numbers of what it was asked, and how often altogether.
+        is_known: whether it runs with the same, or may differ.
+        is_fit: whether units can be given to it.
+        refused: why it is not used, or None.
+    """
+
+    asked: set[int] = field(default_factory=set)
+    asks: int = 0
+    is_known: bool = False
+    is_fit: bool = False
+    refused: str | None = None
+
+
+@dataclass
+class Roster:
+    """Who is there.
+
+    Args:
+        link: the connection.
+        versions: what this machine runs with.
+        mixed: whether workers may differ in that.
+        tell: is told of workers that do, once for each difference.
+
+    Attributes:
+        bundle: the project; None as long as it is not needed.
+        told: all that was told.
+    """
+
+    link: Link
+    versions: Mapping[str, str]
+    mixed: bool
+    tell: Callable[[str], None]
+    bundle: Bundle | None = None
+    told: dict[str, None] = field(default_factory=dict)
+    _workers: dict[str, _Worker] = field(default_factory=dict)
+    _asked: dict[int, str] = field(default_factory=dict)
+
+    @property
+    def fit(self) -> list[str]:
+        """The workers that units can be given to."""
+        return [address for address, worker in self._workers.items() if worker.is_fit]
+
+    @property
+    def usable(self) -> list[str]:
+        """Those that may become so, or are."""
+        return [address for address, worker in self._workers.items() if worker.refused is None]
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether all that are there have said who they are."""
+        return not self._asked and all(one.is_known or one.refused for one in self._workers.values())
+
+    @property
+    def is_quiet(self) -> bool:
+        """Whether nothing is asked that is not answered."""
+        return not self._asked
+
+    @property
+    def refusals(self) -> dict[str, str]:
+        """Why workers are not used, by their address."""
+        return {address: one.refused for address, one in self._workers.items() if one.refused is not None}
+
+    def update(self) -> set[str]:
+        """Look who has come; returns who has gone."""
+        there = self.link.workers
+        gone = self._workers.keys() - there.keys()
+        for address in gone:
+            for number in self._workers.pop(address).asked:
+                self._asked.pop(number, None)
+        for address in there:
+            worker = self._workers.setdefault(address, _Worker())
+            is_due = not worker.is_known or (self.bundle is not None and not worker.is_fit)
+            if is_due and not worker.asked and worker.refused is None:
+                self._introduce(address)
+        return gone
+
+    def take(self, news: News) -> bool:
+        """Take an answer; returns whether it was for the roster."""
+        address = self._asked.pop(news.asked, None)
+        if address is None:
+            return False
+        worker = self._workers[address]
+        worker.asked.discard(news.asked)
+        if news.data is None:
+            if worker.asks >= _ASKS and address in self.link.workers:
+                self.refuse(address, f"it cannot run mutabot ({news.why}): install the same version there")
+        elif news.data == far.TAKEN:
+            worker.is_fit = worker.refused is None and not worker.asked
+        else:
+            self._introduced(address, worker, Introduction.of(news.data))
+        return True
+
+    def refuse(self, address: str, why: str) -> None:
+        """Give a worker no units any more."""
+        worker = self._workers.get(address)
+        if worker is not None and worker.refused is None:
+            worker.refused, worker.is_fit = why, False
+            self._tell_once(f"worker {address} is not used: {why}")
+
+    def dismiss(self) -> None:
+        """The campaign is over: workers need to keep nothing of it."""
+        for address in self.usable:
+            self._ask(address, far.leave, self.bundle.digest if self.bundle is not None else "")
+
+    def _introduce(self, address: str) -> None:
+        bundle = self.bundle
+        named = (bundle.digest, bundle.inner) if bundle is not None else ("", "")
+        self._ask(address, far.introduce, *named)
+
+    def _ask(self, address: str, function: Callable[..., bytes], *arguments: object) -> None:
+        number = self.link.ask(address, function, *arguments)
+        self._asked[number] = address
+        self._workers[address].asked.add(number)
+        self._workers[address].asks += 1
+
+    def _introduced(self, address: str, worker: _Worker, one: Introduction) -> None:
+        differing = differences(self.versions, one.versions)
+        if differing:
+            more = f" and {len(differing) - _SHOWN} more" if len(differing) > _SHOWN else ""
+            text = "; ".join(differing[:_SHOWN]) + more
+            if not self.mixed:
+                self.refuse(address, f"{text} (--mixed uses it all the same)")
+                return
+            self._tell_once(f"worker {one.host} runs with something else: {text}")
+        worker.is_known, worker.asks = True, 0
+        if one.has:
+            worker.is_fit = True
+        elif self.bundle is not None:
+            chunks = self.bundle.chunks()
+            for index, chunk in enumerate(chunks):
+                self._ask(address, far.receive, self.bundle.digest, index, len(chunks), chunk)
+
+    def _tell_once(self, text: str) -> None:
+        if text in self.told or len(self.told) > _TOLD:
+            return
+        if len(self.told) == _TOLD:
+            text = "more workers differ, or are not used: they are not told one by one"
+        self.told[text] = None
+        self.tell(text)
