@@ -38,7 +38,9 @@ from .judge import Death, Run, judged
 #: seconds without any word from a trunk, beyond what its tests and branches may take
 _PATIENCE = 60.0
 #: mutants under which a part costs more than it spreads, and parts for each place: they are not equally long
-_LEAST, _PARTS = 10, 2
+_LEAST, _PARTS = 10, 16
+#: fewer do where the branches of a part would take less than so many times its own tests; but not fewer than
+_WORTH, _FEWEST = 4, 2
 #: seconds that a branch takes at least
 _FORK = 0.01
 
@@ -112,7 +114,7 @@ def cut(trunks: list[_Trunk], places: int) -> list[_Trunk]:
     if places < 2 or not trunks:
         return trunks
     whole = sum(trunk.seconds for trunk in trunks) or 1.0
-    parts = (trunk.parts(math.ceil(_PARTS * places * trunk.seconds / whole)) for trunk in trunks)
+    parts = (trunk.parts(places * trunk.seconds / whole) for trunk in trunks)
     return sorted((part for some in parts for part in some), key=lambda part: -part.seconds)
 
 
@@ -189,16 +191,22 @@ class _Trunk:
     @property
     def seconds(self) -> float:
         """What its own tests and its branches take at most, by those of the baseline."""
-        own = sum(self._wall(test) for test in self._needed)
-        return own + sum(map(self._branches_seconds, self._open.values()))
+        return self._own + sum(map(self._branches_seconds, self._open.values()))
 
-    def parts(self, count: int) -> list[_Trunk]:
-        """As many trunks with a part of the mutants each, so that mutants of the same tests stay together."""
-        count = min(count, len(self._open) // _LEAST)
+    @property
+    def _own(self) -> float:
+        """What its own tests take."""
+        return sum(self._wall(test) for test in self._needed)
+
+    def parts(self, places: float) -> list[_Trunk]:
+        """Trunks with a part of the mutants each, for so many places; equal tests stay together."""
+        seconds = sum(map(self._branches_seconds, self._open.values()))
+        worth = max(_FEWEST * places, seconds / (_WORTH * (self._own or 1.0)))
+        count = min(math.ceil(min(_PARTS * places, worth)), len(self._open) // _LEAST)
         if count < 2:
             return [self]
         branches = sorted(self._open.values(), key=lambda one: (one.tests, one.mutant.id))
-        share = sum(map(self._branches_seconds, branches)) / count
+        share = seconds / count
         found, used, bare = list[_Trunk](), 0.0, set(self._needed)
         for one in branches:
             if not found or (used >= share * len(found) and len(found) < count):
