@@ -13,6 +13,7 @@ from mutabot.analysis.score import KillRate, RoundScores, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.border.codec import to_data
 from mutabot.journal.records import (
+    BUDGET,
     CONFIRMATION,
     DRAWING,
     DRAWS,
@@ -20,6 +21,7 @@ from mutabot.journal.records import (
     OPERATORS,
     REACHING,
     REPEATS,
+    SINCE,
     VERIFICATION,
     Drawing,
     Repeated,
@@ -32,7 +34,9 @@ from mutabot.model import Mutant, Outcome, Quantity, Verdict
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
-_ELSEWHERE = {"vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS}
+_ELSEWHERE = {
+    "vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS, SINCE, BUDGET,
+}  # fmt: skip
 
 
 def dumps(data: Any) -> str:
