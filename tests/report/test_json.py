@@ -62,6 +62,16 @@ DIVERGED = (
         fault=1.0,
     ),
 )
+#: a campaign of what has changed, whose time was not enough
+NARROWED = {
+    "since": {"ref": "main", "commit": "1a2b3c4d", "run": {"go() in a.py changed": 2}, "taken_over": 3},
+    "budget": {
+        "seconds": 60.0,
+        "done": [],
+        "classes": [{"name": "the rest", "round": 0, "mutants": [2, 1, 3], "counted": 2}],
+        "is_whole": False,
+    },
+}
 
 
 def data(path: Path, **changes: Any) -> Any:
@@ -168,7 +178,8 @@ def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
         replace(one, diverged=DIVERGED) if one.verdict is Verdict.SURVIVED else one
         for one in samples.OUTCOMES
     )
-    found = data(tmp_path, outcomes=outcomes, **SECOND_LOOK, **DRAWING)
+    found = data(tmp_path, outcomes=outcomes, **SECOND_LOOK, **DRAWING, **NARROWED)
+    assert not {"since", "budget"} & found["meta"].keys()
     outcomes = [one for mutant in found["mutants"] for one in mutant["rounds"]]
     all_looked = [looked for one in outcomes for looked in one.get("looked", ())]
     diverged = [one for outcome in outcomes for one in outcome.get("diverged", ())]
@@ -186,6 +197,10 @@ def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
         found["repeats"]["doubted"],
         found["repeats"]["false_kills"],
         *found["baseline"],
+        found["since"],
+        found["budget"],
+        *found["budget"]["classes"],
+        *found["budget"]["estimates"],
         *outcomes,
         *(one for looked in all_looked for one in (looked, *looked["checks"])),
         *(one for found in diverged for one in (found, *found["apart"], *found["near"])),

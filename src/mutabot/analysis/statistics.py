@@ -133,48 +133,72 @@ def stratified(strata: Sequence[tuple[Sequence[float | None], int]]) -> tuple[fl
     """The score of several strata together, from a random sample of each, and its interval.
 
     Every stratum is drawn from without replacement and weighs as much as it holds. The score is the ratio of
-    the estimated numbers of killed and valid ones, linearised; its variance is
+    the estimated numbers of killed and valid ones. Strata that are known as a whole count as they are; of the
+    others together, the linearised score has the variance
 
         V = Σ N² (1 − n/N) s² / n / (valid ones)²
 
-    (Cochran, "Sampling Techniques", 1977, chapters 5A and 6), the interval as in ``sampled``: Wilson's, with
-    Student's t of Satterthwaite's degrees of freedom, never narrower than if each valid one had been decided
-    by one throw. The spread of a stratum is estimated with a tenth of an imagined killed and of an imagined
-    surviving one, so that a few that are alike do not seem to say that all are.
+    (Cochran, "Sampling Techniques", 1977, chapters 5A and 6), and the interval is Wilson's, with Student's t
+    of Satterthwaite's degrees of freedom. It is never narrower than if all strata were alike, for a few that
+    are alike have often missed those that are not.
 
     Args:
-        strata: for each the cells that were drawn, as for ``crossed``, and how many there are; one at least
-            is drawn of each.
+        strata: for each the cells that were drawn, as for ``crossed``, and how many there are.
 
     Returns:
-        The score with its interval, or None without a valid one.
+        The score with its interval, or None where no valid one was drawn.
     """
-    strata = [(cells, size) for cells, size in strata if cells]
-    killed = math.fsum(size / len(cells) * math.fsum(one or 0.0 for one in cells) for cells, size in strata)
-    valid = math.fsum(size / len(cells) * sum(one is not None for one in cells) for cells, size in strata)
-    if not valid:
+    drawn = [(cells, size) for cells, size in strata if cells]
+    whole = _Part.of([one for one in drawn if len(one[0]) == one[1]])
+    part = _Part.of([one for one in drawn if len(one[0]) < one[1]])
+    valid = whole.valid + part.valid
+    if not valid or (part.strata and not part.valid):
         return None
-    score = killed / valid
-    variance = spread = 0.0
-    drawn = left = 0.0
-    for cells, size in strata:
-        share = 1 - len(cells) / size
-        count = sum(one is not None for one in cells)
-        drawn, left = drawn + count, left + share * count
-        if share > 0:
-            weight = len(cells) + 2 * _IMAGINED
+    score, share = (whole.killed + part.killed) / valid, part.valid / valid
+    if not share:
+        return score, Interval(score, score)
+    interval = part.interval()
+    known = whole.killed / valid
+    return score, Interval(known + share * interval.low, known + share * interval.high)
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """Strata, and the estimated numbers of killed and valid ones in them."""
+
+    strata: Sequence[tuple[Sequence[float | None], int]]
+    killed: float
+    valid: float
+
+    @classmethod
+    def of(cls, strata: Sequence[tuple[Sequence[float | None], int]]) -> _Part:
+        sums = [
+            (sum(one or 0.0 for one in cells), sum(one is not None for one in cells)) for cells, _ in strata
+        ]
+        weights = [size / len(cells) for cells, size in strata]
+        killed = math.fsum(weight * count for weight, (count, _) in zip(weights, sums, strict=True))
+        valid = math.fsum(weight * count for weight, (_, count) in zip(weights, sums, strict=True))
+        return cls(strata, killed, valid)
+
+    def interval(self) -> Interval:
+        """Of the score of all in these strata, of which none is known as a whole."""
+        score = self.killed / self.valid
+        variance = spread = alike = 0.0
+        for cells, size in self.strata:
+            left, count = 1 - len(cells) / size, sum(one is not None for one in cells)
             apart = [0.0 if one is None else one - score for one in cells]
             mean = math.fsum(apart) / len(cells)
             squares = math.fsum((one - mean) ** 2 for one in apart)
             squares += _IMAGINED * ((1 - score) ** 2 + score**2)
-            part = size**2 * share * squares / (weight - 1) / len(cells) / valid**2
-            variance, spread = variance + part, spread + part**2 / max(len(cells) - 1, 1)
-    if not left:
-        return score, Interval(score, score)
-    smoothed = (killed + _IMAGINED) / (valid + 2 * _IMAGINED)
-    independent = smoothed * (1 - smoothed) / variance
-    independent *= (_NORMAL / student(max(1.0, variance**2 / spread))) ** 2
-    return score, _wilson(score, min(independent, drawn**2 / left))
+            free = len(cells) + 2 * _IMAGINED - 1
+            own = size**2 * left * squares / free / len(cells) / self.valid**2
+            variance, spread = variance + own, spread + own**2 / max(len(cells) - 1, 1)
+            weight = size / len(cells) * max(count, 1) / self.valid
+            alike += weight**2 * left / max(count, 1)
+        smoothed = (self.killed + _IMAGINED) / (self.valid + 2 * _IMAGINED)
+        independent = smoothed * (1 - smoothed) / variance
+        independent *= (_NORMAL / student(max(1.0, variance**2 / spread))) ** 2
+        return _wilson(score, min(independent, 1 / alike))
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from mutabot.analysis.score import KillRate, RoundScores, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.border.codec import to_data
 from mutabot.journal.records import (
+    BUDGET,
     CONFIRMATION,
     DRAWING,
     DRAWS,
@@ -21,6 +22,7 @@ from mutabot.journal.records import (
     REACHING,
     REPEATS,
     SHARD,
+    SINCE,
     VERIFICATION,
     Drawing,
     Repeated,
@@ -35,17 +37,9 @@ from mutabot.model import Mutant, Outcome, Quantity, Verdict
 FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
 _ELSEWHERE = {
-    "vocabulary",
-    VERIFICATION,
-    CONFIRMATION,
-    FLAKY,
-    DRAWING,
-    REPEATS,
-    OPERATORS,
-    REACHING,
-    DRAWS,
+    "vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS, SINCE, BUDGET,
     SHARD,
-}
+}  # fmt: skip
 
 
 def dumps(data: Any) -> str:

@@ -88,6 +88,7 @@ class Dependencies:
         self.request, self._baseline, self.names = request, baseline, state.names
         self._test_files = {self.file_of(test) for test in tests}
         self._places: dict[Any, str] = {}
+        self._targets: dict[str, set[str]] = {}
         self._reached: dict[Any, Reached] = {}
         code = {name: digest for name, digest in self.files.items() if name in self.texts}
         self.reach = self.reach_of(code, self.texts)
@@ -213,10 +214,11 @@ class Dependencies:
         return self._reached[key]
 
     def _operation_names(self, target: str) -> set[str]:
-        vocabulary = self.request.vocabulary
-        return _targets(
-            [_meaning(one) for name in _together(vocabulary, target) if (one := vocabulary.operation(name))]
-        )
+        if target not in self._targets:
+            vocabulary = self.request.vocabulary
+            found = (vocabulary.operation(name) for name in _together(vocabulary, target))
+            self._targets[target] = _targets([_meaning(one) for one in found if one is not None])
+        return self._targets[target]
 
     def _names_of(self, mutant: Mutant) -> frozenset[str]:
         """Names that the text of a mutant mentions, beyond those of the original."""
