@@ -39,8 +39,6 @@ def test_the_page_is_made_of_its_data() -> None:
 
 
 def test_a_trunk_is_cut_as_the_engine_cuts_it() -> None:
-    if not hasattr(trunk, "_PARTS"):
-        pytest.skip("trunks are cut where there is a cluster")
     assert (trunk._LEAST, trunk._PARTS) == (simulation.LEAST, simulation.PARTS)
 
 

@@ -37,8 +37,8 @@ from mutabot.model import Mutant, Outcome, Quantity, Verdict
 FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
 _ELSEWHERE = {
-    "vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS, SINCE, BUDGET,
-    SHARD,
+    "vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS,
+    SINCE, BUDGET, SHARD,
 }  # fmt: skip
 
 
