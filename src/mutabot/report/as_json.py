@@ -35,7 +35,8 @@ from mutabot.model import Mutant, Outcome, Quantity, Verdict
 FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
 _ELSEWHERE = {
-    "vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS, SINCE, BUDGET,
+    "vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS,
+    SINCE, BUDGET,
 }  # fmt: skip
 
 
