@@ -59,6 +59,8 @@ def decide(
     )
     if unstable:
         return Decision(ExitCode.UNRELIABLE, unstable)
+    if results.since is not None and not results.everything:
+        return Decision(ExitCode.FINE)  # nothing that was asked for has changed
     if not total.valid and not _knows_thresholds(results):
         return Decision(ExitCode.NOTHING_KNOWN, (_nothing_valid(results),))
     share = total.timeouts / total.valid if total.valid else 0.0

@@ -12,10 +12,12 @@ from typing import Any
 
 import pytest
 
+from mutabot.analysis.gate import decide
 from mutabot.analysis.results import read_results
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.since.git import Revision
 from mutabot.errors import UsageError
+from mutabot.exit_codes import ExitCode
 from mutabot.journal.journal import Journal
 from tests.campaign.project import Quiet, fingerprint, request_for, write_project
 
@@ -119,6 +121,14 @@ def test_without_a_journal_only_altered_mutants_are_run_and_that_is_said(project
     assert sum(results.since.run.values()) == len(ran)
     assert sum(results.since.not_judged.values()) > 0
     assert results.done == results.planned == len(ran)
+
+
+def test_where_nothing_has_changed_and_no_journal_is_there_nothing_is_wrong(project: Project) -> None:
+    assert project.run(since="HEAD") == set()
+    with Journal.open(project.journal) as journal:
+        results = read_results(journal)
+    assert results.everything == ()
+    assert decide(results, min_score=0.9).exit_code == ExitCode.FINE
 
 
 def test_uncommitted_and_untracked_files_and_the_vocabulary_count(project: Project) -> None:

@@ -176,7 +176,7 @@ class Dependencies:
         words = key.split()
         if words[0] != self._common or words[3:] != [self.tree]:
             return False
-        now: dict[str, str] = {}
+        now = self._roles({name: name for name in self.files})
         for parts in self._operations.values():
             now.update(parts)
         unknown = {JUDGES, REACHED, ASIDE}
