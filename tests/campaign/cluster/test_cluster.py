@@ -112,7 +112,7 @@ def test_a_mutant_that_takes_its_worker_along_each_time_is_an_error_with_the_rea
     (found,) = outcomes(run_campaign(on_cluster(request, address), Quiet()))
     assert found.verdict is Verdict.ERROR
     assert found.message is not None
-    assert found.message.startswith("3 workers could not run it: its worker was lost")
+    assert found.message.startswith("4 workers could not run it: its worker was lost")
     assert until(lambda: len(workers()) == 2)
 
 
