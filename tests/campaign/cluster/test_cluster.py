@@ -112,7 +112,7 @@ def test_a_mutant_that_takes_its_worker_along_each_time_is_an_error_with_the_rea
     (found,) = outcomes(run_campaign(on_cluster(request, address), Quiet()))
     assert found.verdict is Verdict.ERROR
     assert found.message is not None
-    assert found.message.startswith("3 workers could not run it: its worker was lost")
+    assert found.message.startswith("4 workers could not run it: its worker was lost")
     assert until(lambda: len(workers()) == 2)
 
 
@@ -157,7 +157,10 @@ def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(address:
     assert "the campaign goes on on this machine" in text
 
 
-def test_what_takes_too_long_on_a_worker_is_decided_at_home(address: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("engine", ["replay", pytest.param("branch", marks=pytest.mark.whole)])
+def test_what_takes_too_long_on_a_worker_is_decided_at_home(
+    engine: str, address: str, tmp_path: Path
+) -> None:
     tests = """
     import os, time
     from mission import run
@@ -181,10 +184,9 @@ def test_what_takes_too_long_on_a_worker_is_decided_at_home(address: str, tmp_pa
         tests=tests,
         configuration=settings,
     )
-    for engine in ("replay", "branch"):
-        request = request_for(project, engine=engine, only=("reverse",))
-        (found,) = outcomes(run_campaign(on_cluster(request, address), Quiet()))
-        assert (found.verdict, found.engine) == (Verdict.SURVIVED, engine), found.message
+    request = request_for(project, engine=engine, only=("reverse",))
+    (found,) = outcomes(run_campaign(on_cluster(request, address), Quiet()))
+    assert (found.verdict, found.engine) == (Verdict.SURVIVED, engine), found.message
 
 
 def test_a_worker_that_runs_with_something_else_is_refused_or_told(

@@ -13,13 +13,14 @@ from distributed import Security
 
 from mutabot.campaign.cluster import link
 from mutabot.campaign.cluster.local import LocalCluster
+from mutabot.campaign.cluster.roster import Roster
 from mutabot.cli.app import main
 from mutabot.cli.request import request_of
 from mutabot.errors import ClusterError, ConfigurationError, UsageError
 from mutabot.settings.cluster import ClusterSettings, cluster_settings
 from tests.campaign.project import CONFIGURATION
 
-from .clusters import processes, until, write, write_slow
+from .clusters import cluster, processes, until, write, write_slow
 
 
 @pytest.mark.parametrize(
@@ -79,6 +80,40 @@ def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
         ClusterError, match=r"no scheduler answers at tcp://127\.0\.0\.1:9: .*is the port right"
     ):
         link.Link(ClusterSettings("tcp://127.0.0.1:9"), "tcp://127.0.0.1:9")
+
+
+def test_a_worker_without_mutabot_is_told_and_lives_on(tmp_path: Path) -> None:
+    code = (
+        "import sys\n"
+        "sys.modules['mutabot'] = None\n"
+        "from distributed.cli.dask_worker import main\n"
+        "sys.argv[:] = ['dask-worker', *sys.argv[1:]]\n"
+        "main()\n"
+    )
+    with cluster(tmp_path, 0) as address:
+        own = ["--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(tmp_path)]
+        with subprocess.Popen(
+            [sys.executable, "-c", code, address, *own], stderr=subprocess.DEVNULL
+        ) as process:
+            try:
+                there = link.Link(ClusterSettings(address), address)
+                roster = Roster(there, {}, False, lambda text: None)
+                assert until(lambda: roster.update() is not None and there.workers)
+                assert until(lambda: _has_refused(roster))
+                (why,) = roster.refusals.values()
+                assert "is the same mutabot installed there" in why
+                assert "mutabot" in why.partition("(")[2]
+                assert process.poll() is None
+                there.close()
+            finally:
+                process.kill()
+
+
+def _has_refused(roster: Roster) -> bool:
+    roster.update()
+    while not roster.link.news.empty():
+        roster.take(roster.link.news.get())
+    return bool(roster.refusals)
 
 
 def test_a_file_that_is_no_scheduler_file(tmp_path: Path) -> None:

@@ -24,8 +24,8 @@ from .link import Link, News
 from .roster import Roster
 from .unit import Answer, Ground, Unit
 
-#: how often a unit is tried
-TRIES = 3
+#: how often a unit is tried: at first, and three times elsewhere
+TRIES = 4
 #: seconds between two looks at all
 _PERIOD = 0.2
 #: seconds for a worker's own work around a unit, at most

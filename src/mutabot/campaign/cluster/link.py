@@ -36,6 +36,8 @@ PATIENCE = 10.0
 _PERIOD, _SILENCE = 0.5, 45.0
 #: threads that fetch answers
 _FETCHERS = 4
+#: how a function of ours is called: one that went as itself would end a worker that cannot import it
+_CALL = "__import__('importlib').import_module('{}').{}(*given)"
 _KINDS = ["dask", "msgpack", "error"]
 
 
@@ -103,7 +105,8 @@ class Link:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # large messages are meant
             future = self._client.submit(
-                function, *arguments, key=f"mutabot-{self._client.id}-{number}", pure=False, workers=[worker],
+                eval, _CALL.format(function.__module__, function.__name__), {"given": arguments},
+                key=f"mutabot-{self._client.id}-{number}", pure=False, workers=[worker],
                 allow_other_workers=False,
             )  # fmt: skip
         self._asked[number] = future

@@ -42,7 +42,7 @@ class LocalCluster:
     """A scheduler and workers on this machine.
 
     Args:
-        workers: how many.
+        workers: how many; 0 for a scheduler alone.
         folder: where they keep what they need; it must be there.
     """
 
@@ -93,6 +93,8 @@ class LocalCluster:
         self._workers = self._scheduler = None
 
     def _start_workers(self) -> None:
+        if not self._count:
+            return
         self._workers = self._start(
             "worker", self._address, "--host", "127.0.0.1", "--nworkers", str(self._count), "--nthreads", "1",
             "--memory-limit", "0", "--no-dashboard", "--death-timeout", "60",

@@ -107,7 +107,8 @@ class Roster:
         worker.asked.discard(news.asked)
         if news.data is None:
             if worker.asks >= _ASKS and address in self.link.workers:
-                self.refuse(address, f"it cannot run mutabot ({news.why}): install the same version there")
+                hint = "is the same mutabot installed there, and room on its disk?"
+                self.refuse(address, f"it cannot take part ({news.why}): {hint}")
         elif news.data == far.TAKEN:
             worker.is_fit = worker.refused is None and not worker.asked
         else:
