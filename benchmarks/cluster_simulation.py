@@ -35,7 +35,7 @@ import simpy
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import DRAWING
 
-DATA = Path(__file__).parents[1] / "docs" / "data" / "scaling.json"
+DATA = Path(__file__).with_name("scaling.json")
 MUTANTS, ROUNDS = 100_000, 10
 WORKERS = (1, 10, 100, 300, 1000)
 #: as the engines cut a trunk: parts for each worker, and mutants of a part at least

@@ -1,4 +1,4 @@
-"""Write docs/scaling.md and docs/img/scaling.svg from docs/data/scaling.json.
+"""Write docs/scaling.md and docs/img/scaling.svg from benchmarks/scaling.json.
 
     python tools/make_scaling_page.py            write them
     python tools/make_scaling_page.py --check    exit with 1 if one is out of date
@@ -17,7 +17,11 @@ from pathlib import Path
 from typing import Any
 
 DOCS = Path(__file__).parents[1] / "docs"
-DATA, PAGE, PICTURE = DOCS / "data" / "scaling.json", DOCS / "scaling.md", DOCS / "img" / "scaling.svg"
+DATA, PAGE, PICTURE = (
+    DOCS.parent / "benchmarks" / "scaling.json",
+    DOCS / "scaling.md",
+    DOCS / "img" / "scaling.svg",
+)
 WIDTH, HEIGHT = 860, 400
 INK, FAINT, GRID, PAPER = "#222222", "#6b6b6b", "#e6e8eb", "#ffffff"
 ENGINES = {"replay": "#2f6fb0", "branch": "#1b7837"}
@@ -37,7 +41,7 @@ BARS = (10, 100, 300, 1000)
 TEXT = """\
 # What do many machines gain?
 
-<!-- Written by tools/make_scaling_page.py from docs/data/scaling.json. Do not edit. -->
+<!-- Written by tools/make_scaling_page.py from benchmarks/scaling.json. Do not edit. -->
 
 A campaign of {mutants} mutants × {rounds} rounds on 1 to 1,000 workers, simulated event by event with costs
 that were measured: nobody has run one yet. At 100 workers the efficiency is {replay} with replay and
@@ -97,7 +101,7 @@ Measured by
 ```
 
 and simulated by `python benchmarks/cluster_simulation.py`, which stores what came of it in
-`docs/data/scaling.json`; the page is made of that by `python tools/make_scaling_page.py`.
+`benchmarks/scaling.json`; the page is made of that by `python tools/make_scaling_page.py`.
 """
 
 

@@ -135,7 +135,7 @@ def _more(one: Outcome) -> tuple[Any, ...]:
 
 
 def test_branches_are_what_runs_mutants_that_act_in_a_test(ends: dict[str, dict[str, Outcome]]) -> None:
-    replayed = {mutant for mutant, one in ends["auto"].items() if one.engine == "replay" and one.tests}
+    replayed = {mutant for mutant, one in ends["auto"].items() if one.engine != "branch" and one.tests}
     assert replayed
     assert all(":<module>:" in mutant for mutant in replayed)
 
@@ -202,7 +202,8 @@ def test_a_mutant_without_effect_needs_no_branch_and_one_with_a_late_effect_bran
     assert idle.shared == idle.simulated == 7.0  # eight ticks; the trunk ran them all
     assert (acting.hits, acting.acted, acting.example) == (4, 1, (-0.1, 0.1))
     early = ends["branch"]["mission.py:way:step#2:UOI=neg"]
-    assert (early.shared, acting.shared) == (0.0, 4.0)  # after one tick, and after five
+    # after five ticks; the former went with -abs(step) until then, and has simulated no tick alone before
+    assert (early.shared, acting.shared) == (4.0, 4.0)
     assert ends["branch"].keys() == ends["replay"].keys()
     for mutant, one in ends["branch"].items():
         again = ends["replay"][mutant]

@@ -88,8 +88,8 @@ class BranchOfTest:
         mutants = bunch.end(code)
         each = 1 / len(mutants)  # they share what it took
         end = replace(end, wall=(end.wall - bunch.waited) * each, cpu=end.cpu * each)
-        for mutant in mutants:
-            self._session.pipe.send(BranchEnd(mutant, end, sites, self._shared))
+        for number, mutant in enumerate(mutants):  # the first one was simulated, for all of them
+            self._session.pipe.send(BranchEnd(mutant, end, sites, end.simulated if number else self._shared))
         return code
 
     def _leave_before(self, deed: Deed) -> None:
