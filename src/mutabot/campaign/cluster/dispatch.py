@@ -141,7 +141,11 @@ class Dispatch:
             self._running[self._cluster.link.ask(worker, far.run_unit, data)] = worker, trial
 
     def _due(self) -> _Trial | None:
-        if self._again:
+        """The next to run: what was lost once at once, what was lost more often when all else has begun.
+
+        Losses come together, as where a cluster is taken away piece by piece: later tries had better be later.
+        """
+        if self._again and (self._next is None or len(self._again[0].faults) < 2):
             return self._again.popleft()
         trial, self._next = self._next, None if self._next is None else self._taken()
         return trial
@@ -202,6 +206,7 @@ class Dispatch:
         trial.avoided.add(worker)
         if len(trial.faults) < TRIES:
             self._again.append(trial)
+            self._again = deque(sorted(self._again, key=lambda one: len(one.faults)))
             return
         if trial.answer is not None:  # what ended it each time may be the mutant after all: the judge knows
             self._settle(trial, trial.answer)
