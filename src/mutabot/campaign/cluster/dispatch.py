@@ -143,7 +143,7 @@ class Dispatch:
     def _due(self) -> _Trial | None:
         """The next to run: what was lost once at once, what was lost more often when all else has begun.
 
-        Losses come together, as where a cluster is taken away piece by piece: later tries had better be later.
+        Losses come together, as where a cluster is taken away piece by piece: later tries are better later.
         """
         if self._again and (self._next is None or len(self._again[0].faults) < 2):
             return self._again.popleft()
