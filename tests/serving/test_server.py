@@ -39,6 +39,7 @@ def served(tmp_path: Path) -> Iterator[Served]:
     journal, _ = reports.campaign(tmp_path)
     feed, given = Feed(), []
     pages = Pages(journal, "cell", lambda: 1)
+    pages.look_at_once()
     names = ("pause", "resume", "stop")
     commands = {name: (lambda name=name: given.append(name)) for name in names}
     server = Server(pages, feed, commands)
@@ -202,3 +203,17 @@ def test_before_there_is_a_journal_the_page_has_no_data_and_no_error(tmp_path: P
         assert page is not None
         assert page.data == b""
     assert pages.get("data/mutants/1.js") is None
+
+
+def test_data_that_may_lack_what_is_new_say_so_by_their_version(tmp_path: Path) -> None:
+    journal, _ = reports.campaign(tmp_path)
+    pages = Pages(journal, "cell", lambda: 3)
+
+    def told() -> bytes:
+        page = pages.get("data/campaign.js")
+        assert page is not None
+        return page.data
+
+    assert b'"version":2}' in told()
+    pages.look_at_once()
+    assert b'"version":3}' in told()

@@ -13,8 +13,9 @@ from typing import Any
 
 from mutabot.errors import JournalError
 
-#: seconds that a row waits for others to be committed with; half of what is promised, for timers may be late
-PATIENCE = 0.5
+#: seconds after which a row that was added is in the file, and how long it waits: timers may be late
+WITHIN = 1.0
+PATIENCE = WITHIN / 2
 
 
 def connect(path: Path) -> sqlite3.Connection:
