@@ -256,6 +256,12 @@ class Hosts:
             place = ["--local-directory", str(folder)]
             self._tend(name, [*worker, f"tcp://{address}:{_PORT}", *own, *place])
 
+    def wait(self) -> None:
+        """Wait until the workers are connected."""
+        for name in self.names:
+            while not any((self.folder / name).glob("dask-scratch-space/worker-*")):
+                time.sleep(0.1)
+
     def _tend(self, name: str, command: list[str]) -> None:
         there = self.running.get(name)
         if there is None or there.poll() is not None:
@@ -288,7 +294,7 @@ def on_hosts(trial: Trial, expected: dict[Pair, dict[str, Any]], workers: int, s
         thread = threading.Thread(target=tend)
         thread.start()
         try:
-            time.sleep(6)
+            hosts.wait()
             while not trial.faults:
                 wanted = [
                     what

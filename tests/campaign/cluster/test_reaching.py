@@ -12,7 +12,7 @@ import pytest
 from distributed import Security
 
 from mutabot.campaign.cluster import link
-from mutabot.campaign.cluster.local import LocalCluster
+from mutabot.campaign.cluster.local import LocalCluster, address_in
 from mutabot.campaign.cluster.roster import Roster
 from mutabot.cli.app import main
 from mutabot.cli.request import request_of
@@ -119,7 +119,7 @@ def _has_refused(roster: Roster) -> bool:
 def test_a_file_that_is_no_scheduler_file(tmp_path: Path) -> None:
     (tmp_path / "s.json").write_text("{}")
     with pytest.raises(ClusterError, match=r"is no scheduler file: `dask scheduler --scheduler-file"):
-        link.address_in(tmp_path / "s.json")
+        address_in(tmp_path / "s.json")
 
 
 def test_without_dask_the_extra_is_named() -> None:
@@ -141,7 +141,7 @@ def test_certificates_that_do_not_fit_are_told(tmp_path: Path, monkeypatch: pyte
     )
     try:
         assert until(lambda: (tmp_path / "s.json").exists() and (tmp_path / "s.json").read_text())
-        address = link.address_in(tmp_path / "s.json")
+        address = address_in(tmp_path / "s.json")
         assert address.startswith("tls://")
         link.Link(cluster_settings(address, ca=ca, cert=cert, key=key), address).close()
         with pytest.raises(ClusterError, match="Do the certificate files belong to it"):

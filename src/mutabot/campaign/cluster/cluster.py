@@ -27,8 +27,8 @@ from mutabot.settings.cluster import ClusterSettings
 from .bundle import Bundle
 from .dispatch import Dispatch, is_for_home
 from .environment import decided, module_folders
-from .link import Link, address_in
-from .local import LocalCluster
+from .link import Link
+from .local import LocalCluster, address_in
 from .roster import Roster
 from .unit import Ground
 

@@ -16,7 +16,6 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import count
-from pathlib import Path
 from typing import Any
 
 from mutabot.errors import ClusterError
@@ -192,15 +191,3 @@ def _be_quiet() -> None:
         *(name for name in logging.root.manager.loggerDict if name.startswith(("distributed.", "tornado"))),
     ):
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)
-
-
-def address_in(file: Path) -> str:
-    """The address in a scheduler file. Raises ClusterError."""
-    import json  # noqa: PLC0415
-
-    try:
-        return str(json.loads(file.read_text(encoding="utf-8"))["address"])
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ClusterError(
-            f"{file} is no scheduler file: `dask scheduler --scheduler-file {file}` writes one"
-        ) from error

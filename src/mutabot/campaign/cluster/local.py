@@ -5,6 +5,7 @@ They listen on 127.0.0.1 only, and end with the controller, however that ends.
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -66,8 +67,6 @@ class LocalCluster:
                 raise ClusterError(f"a scheduler could not be started on this machine: {said}")
             with interruptible():
                 time.sleep(0.05)
-        from .link import address_in  # noqa: PLC0415
-
         self._address = address_in(file)
         self._start_workers()
         return self._address
@@ -117,3 +116,13 @@ def _end(process: subprocess.Popen[bytes]) -> None:
     with suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()
+
+
+def address_in(file: Path) -> str:
+    """The address in a scheduler file. Raises ClusterError."""
+    try:
+        return str(json.loads(file.read_text(encoding="utf-8"))["address"])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ClusterError(
+            f"{file} is no scheduler file: `dask scheduler --scheduler-file {file}` writes one"
+        ) from error

@@ -1,0 +1,378 @@
+"""Small projects, and random edits of them: what `since_edits.py` edits, and how."""
+
+from __future__ import annotations
+
+import ast
+import random
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+ERRANDS = {
+    "mutabot.toml": """
+        program = ["mission.py"]
+        vocabulary = ["robot.toml"]
+        pytest_args = ["-o", "pythonpath=."]
+    """,
+    "robot.toml": """
+        refusals = ["robot:Refused"]
+
+        [[operation]]
+        call = "robot:Arm.move_by"
+        arguments.dx = { kind = "translation", axis = "x", unit = "m", mode = "by" }
+
+        [[operation]]
+        call = "robot:Arm.grip"
+        arguments.closed = { kind = "opening", values = [0, 1] }
+
+        [[operation]]
+        call = "robot:Arm.position"
+        result = { kind = "position", axis = "x", unit = "m", noise = 0.5 }
+    """,
+    "robot.py": """
+        class Refused(Exception):
+            pass
+
+        class Arm:
+            reach = 1.0
+
+            def __init__(self, x=0.0):
+                self.x = x
+                self.closed = 0
+
+            def move_by(self, dx):
+                if not -self.reach <= self.x + dx <= self.reach:
+                    raise Refused(f"{self.x + dx} is out of reach")
+                self.x += dx
+
+            def grip(self, closed):
+                self.closed = closed
+
+            def position(self):
+                return self.x
+    """,
+    "routes.py": """
+        FAR = 0.5
+        NEAR = 0.1
+
+        def half(length):
+            return length / 2
+
+        def there_and_back(length):
+            return [length, -length]
+    """,
+    "mission.py": """
+        from routes import FAR, NEAR, half, there_and_back
+
+        def approach(arm, length):
+            arm.move_by(half(length))
+            arm.move_by(half(length))
+
+        def fetch(arm):
+            approach(arm, FAR)
+            arm.grip(1)
+            arm.move_by(-0.25)
+
+        def bring(arm):
+            arm.grip(1)
+            arm.move_by(0.3)
+            if arm.position() > 0.2:
+                arm.grip(0)
+
+        def patrol(arm):
+            for step in there_and_back(NEAR):
+                arm.move_by(step)
+    """,
+    "tests/conftest.py": """
+        import pytest
+        from robot import Arm
+
+        @pytest.fixture
+        def arm(mutabot_seed):
+            return Arm(mutabot_seed % 7 / 100)
+    """,
+    "tests/helpers.py": """
+        def is_near(one, other):
+            return abs(one - other) < 0.05
+    """,
+    "tests/test_fetch.py": """
+        import mission
+        from helpers import is_near
+
+        def test_fetches(arm):
+            start = arm.x
+            mission.fetch(arm)
+            assert arm.closed == 1
+            assert is_near(arm.x - start, 0.25)
+    """,
+    "tests/test_bring.py": """
+        import mission
+
+        def test_brings(arm):
+            mission.bring(arm)
+            assert arm.closed == 0
+            assert arm.x > 0.2
+
+        def test_brings_twice(arm):
+            mission.bring(arm)
+            mission.bring(arm)
+            assert arm.x < 0.9
+    """,
+    "tests/test_patrol.py": """
+        import mission
+        from helpers import is_near
+
+        def test_patrols(arm):
+            start = arm.x
+            mission.patrol(arm)
+            assert is_near(arm.x, start)
+    """,
+}
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A project to edit.
+
+    Attributes:
+        files: its files.
+        program, tests, helpers: which files each kind of edit is for.
+        vocabulary: its vocabulary.
+        options: of ``mutabot run``.
+        pinned: functions that a selection names, which must not go elsewhere.
+    """
+
+    files: dict[str, str]
+    program: list[str]
+    tests: list[str]
+    helpers: list[str]
+    vocabulary: str = "robot.toml"
+    options: tuple[str, ...] = ()
+    pinned: bool = False
+
+
+def of_example(name: str, **details: Any) -> Subject:
+    folder = EXAMPLES / name
+    paths = [path for path in folder.rglob("*") if path.is_file()]
+    names = {path.relative_to(folder).as_posix(): path for path in paths}
+    wanted = {
+        name: path
+        for name, path in names.items()
+        if not name.startswith((".", "script/")) and "/." not in name and "__pycache__" not in name
+    }
+    return Subject({name: path.read_text() for name, path in wanted.items()}, **details)
+
+
+SUBJECTS: dict[str, Callable[[], Subject]] = {
+    "errands": lambda: Subject(
+        {name: dedent(text).lstrip() for name, text in ERRANDS.items()},
+        program=["mission.py"],
+        tests=["tests/test_fetch.py", "tests/test_bring.py", "tests/test_patrol.py"],
+        helpers=["routes.py", "tests/helpers.py", "robot.py"],
+    ),
+    "scales": lambda: of_example(
+        "scales",
+        program=["sorter.py"],
+        tests=["tests/test_sorter.py", "tests/test_cell.py"],
+        helpers=["cell.py", "link.py", "tests/scales.py", "tests/conftest.py"],
+    ),
+    "paper": lambda: of_example(
+        "paper",
+        program=["mission.py"],
+        tests=["tests/test_mission.py"],
+        helpers=["tests/expected.py", "tests/conftest.py", "tracker.py"],
+        options=("--selection", "published.txt"),
+        pinned=True,
+    ),
+}
+
+
+class NotPossibleError(Exception):
+    """This edit cannot be made here."""
+
+
+def functions(text: str) -> list[ast.FunctionDef]:
+    return [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)]
+
+
+def replaced(text: str, node: Any, new: str) -> str:
+    lines = text.encode().splitlines(keepends=True)
+    first, last = node.lineno - 1, node.end_lineno - 1
+    before = b"".join(lines[:first]) + lines[first][: node.col_offset]
+    after = lines[last][node.end_col_offset :] + b"".join(lines[last + 1 :])
+    return (before + new.encode() + after).decode()
+
+
+def other_number(text: str, chance: random.Random, scale: float = 0.02) -> str:
+    """A number in some function is a little different."""
+    found = [
+        one
+        for function in functions(text)
+        for statement in function.body
+        for one in ast.walk(statement)
+        if isinstance(one, ast.Constant)
+        and isinstance(one.value, int | float)
+        and one.value not in (0, 1, True)
+    ]
+    if not found:
+        raise NotPossibleError
+    node = chance.choice(found)
+    value = node.value * (1 + scale * chance.choice((-1, 1)))
+    new = repr(round(value, 6)) if isinstance(node.value, float) else str(node.value + chance.choice((-1, 1)))
+    return replaced(text, node, new)
+
+
+def more_lines(text: str, chance: random.Random) -> str:
+    """A function has one more line that does nothing."""
+    found = functions(text)
+    if not found:
+        raise NotPossibleError
+    function = chance.choice(found)
+    node = chance.choice(function.body)
+    lines = text.splitlines(keepends=True)
+    indent = " " * node.col_offset
+    if lines[node.lineno - 1][: node.col_offset].strip():
+        raise NotPossibleError
+    lines.insert(node.end_lineno or node.lineno, f"{indent}_ = {chance.randint(1, 9)}\n")
+    return "".join(lines)
+
+
+def comment(text: str, chance: random.Random) -> str:
+    """Lines go down."""
+    lines = text.splitlines(keepends=True)
+    place = next(
+        index
+        for index, line in enumerate(lines)
+        if re.match(r"(def|class|import|from (?!__future__)|@)", line)
+        and (not index or not lines[index - 1].startswith("@"))
+    )
+    lines.insert(place, f"# edit {chance.randint(1, 999)}\n" * chance.randint(1, 3))
+    return "".join(lines)
+
+
+def of_text(kind: Callable[[Subject], list[str]]) -> Callable[[Path, Subject, random.Random], str]:
+    def edit(folder: Path, subject: Subject, chance: random.Random) -> str:
+        path = folder / chance.choice(kind(subject))
+        how = chance.choice((other_number, more_lines, comment))
+        path.write_text(how(path.read_text(), chance))
+        return f"{how.__name__} in {path.relative_to(folder)}"
+
+    return edit
+
+
+def changed_test(folder: Path, subject: Subject, chance: random.Random) -> str:
+    path = folder / chance.choice(subject.tests)
+    text = path.read_text()
+    tests = [one for one in functions(text) if one.name.startswith("test_")]
+    if tests and chance.random() < 0.5:
+        last = chance.choice(tests).body[-1]
+        lines = text.splitlines(keepends=True)
+        lines.insert(last.end_lineno or 0, f"{' ' * last.col_offset}assert {chance.randint(1, 9)}\n")
+        path.write_text("".join(lines))
+        return f"one more assert in {path.relative_to(folder)}"
+    return of_text(lambda _: [path.relative_to(folder).as_posix()])(folder, subject, chance)
+
+
+def moved_function(folder: Path, subject: Subject, chance: random.Random) -> str:
+    """A function goes to a file of its own, which the old one imports; it takes along the imports."""
+    name = chance.choice([*subject.helpers, *([] if subject.pinned else subject.program)])
+    path = folder / name
+    text = path.read_text()
+    tree = ast.parse(text)
+    own = {one.name for one in tree.body if isinstance(one, ast.FunctionDef | ast.ClassDef)}
+    own |= {
+        node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    }
+    able = [
+        one
+        for one in tree.body
+        if isinstance(one, ast.FunctionDef)
+        and not one.decorator_list
+        and not any(isinstance(node, ast.Name) and node.id in own - {one.name} for node in ast.walk(one))
+        and not any(isinstance(node, ast.Global) for node in ast.walk(one))
+    ]
+    if not able:
+        raise NotPossibleError
+    node = chance.choice(able)
+    lines = text.splitlines(keepends=True)
+    body = "".join(lines[node.lineno - 1 : node.end_lineno])
+    imports = "".join(
+        "".join(lines[one.lineno - 1 : one.end_lineno])
+        for one in tree.body
+        if isinstance(one, ast.Import | ast.ImportFrom)
+        and getattr(one, "module", "") != "__future__"
+        and any(re.search(rf"\b{alias.asname or alias.name}\b", body) for alias in one.names)
+    )
+    future = "from __future__ import annotations\n"
+    new = path.with_name(f"{node.name.strip('_')}_apart.py")
+    new.write_text((future if future in text else "") + imports + "\n\n" + body)
+    del lines[node.lineno - 1 : node.end_lineno]
+    starts = ("import ", "from ", "def ", "class ")
+    able_lines = (
+        index
+        for index, one in enumerate(lines)
+        if one.startswith(starts) and not one.startswith("from __future__")
+    )
+    place = next(able_lines, len(lines))
+    lines.insert(place, f"from {new.stem} import {node.name}\n")
+    path.write_text("".join(lines))
+    if name in subject.program:
+        configure(folder, name, f'{name}", "{new.relative_to(folder).as_posix()}')
+    return f"{node.name} goes from {name} to {new.relative_to(folder)}"
+
+
+def configure(folder: Path, old: str, new: str) -> None:
+    for path in (folder / "mutabot.toml", folder / "pyproject.toml"):
+        if path.is_file():
+            path.write_text(path.read_text().replace(f'"{old}"', f'"{new}"'))
+
+
+def renamed_file(folder: Path, subject: Subject, chance: random.Random) -> str:
+    named = (folder / subject.vocabulary).read_text()
+    able = [
+        name
+        for name in ([] if subject.pinned else subject.program) + subject.helpers
+        if f'"{Path(name).stem}:' not in named and Path(name).stem != "conftest"
+    ]
+    if not able:
+        raise NotPossibleError
+    name = chance.choice(able)
+    old = Path(name).stem
+    new = f"{old}_{chance.choice(('main', 'new', 'parts'))}"
+    (folder / name).rename((folder / name).with_name(f"{new}.py"))
+    for path in folder.rglob("*.py"):
+        text = path.read_text()
+        imports = rf"(?m)^(\s*(?:from|import)\s+){old}\b"
+        if re.search(imports, text):
+            text = re.sub(imports, rf"\g<1>{new}", text)
+            text = re.sub(rf"\b{old}\.(?=\w)", f"{new}.", text)
+            path.write_text(text)
+    configure(folder, name, name.replace(f"{old}.py", f"{new}.py"))
+    return f"{name} becomes {new}.py"
+
+
+def changed_entry(folder: Path, subject: Subject, chance: random.Random) -> str:
+    path = folder / subject.vocabulary
+    text = path.read_text()
+    found = list(re.finditer(r"(noise = |tolerance = |range = \[0, )(\d+(?:\.\d+)?)", text))
+    if not found:
+        path.write_text("# another comment\n" + text)
+        return "a comment in the vocabulary"
+    match = chance.choice(found)
+    value = float(match[2]) * chance.choice((0.5, 0.9, 1.1))
+    path.write_text(f"{text[: match.start(2)]}{value:g}{text[match.end(2) :]}")
+    return f"{match[0]} in the vocabulary becomes {value:g}"
+
+
+EDITS: dict[str, Callable[[Path, Subject, random.Random], str]] = {
+    "program": of_text(lambda subject: subject.program),
+    "moved": moved_function,
+    "renamed": renamed_file,
+    "test": changed_test,
+    "vocabulary": changed_entry,
+    "helper": of_text(lambda subject: subject.helpers),
+}
