@@ -39,6 +39,7 @@ from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Result
 from mutabot.errors import JournalError
 from mutabot.journal.journal import Journal
+from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import DRAWING, DRAWS, OPERATORS, REACHING, REMARKS
 from mutabot.model import LeftOut, Mutant
 
@@ -70,9 +71,11 @@ def run_campaign(request: Request, progress: Progress) -> Path:
                 _disk_told(request),
                 at_it(request, progress) as opened,
                 recorded(request, progress) as evidence,
+                ExitStack() as stack,
             ):
+                others = [stack.enter_context(one) for one in open_others(request, progress)]
                 try:
-                    is_whole = _run(request, opened, progress, journal, evidence)
+                    is_whole = _run(request, opened, progress, journal, others, evidence)
                 finally:
                     _remember(journal, opened)
             journal.set_meta("seconds", request.clock() - started)
@@ -89,6 +92,7 @@ def _run(
     opened: Executor,
     progress: Progress,
     journal: Journal,
+    others: Sequence[JournalReader],
     evidence: Evidence | None,
 ) -> bool:
     """Returns whether all was run: a budget may end before."""
@@ -127,11 +131,9 @@ def _run(
     journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
     write_shard(journal, request.shard, part, dependencies)
     note_outdated(journal, request, dependencies)
-    with ExitStack() as stack:
-        others = [stack.enter_context(one) for one in open_others(request, progress)]
-        found = reuse(
-            journal, dependencies, part.mutants, request.rounds, progress, others, presume=request.sites_only
-        )
+    found = reuse(
+        journal, dependencies, part.mutants, request.rounds, progress, others, presume=request.sites_only
+    )
     if revision is not None:
         altered = Altered.of(revision, campaign, _collected(results), dependencies, part.mutants)
         part = only_altered(journal, altered, found, part, request.rounds, progress)

@@ -15,10 +15,10 @@ def seconds_of(text: str) -> float:
     plain = text.strip().lower()
     parts = _PART.findall(plain)
     if not parts or _PART.sub("", plain).strip():
-        raise UsageError(f"{text!r} is no length of time; write 90s, 10m or 1h30m")
+        raise UsageError(f"--budget {text}: no length of time; write 90s, 10m or 1h30m")
     found = sum(float(number) * _SECONDS[unit] for number, unit in parts)
     if found <= 0:
-        raise UsageError(f"in {text!r} nothing can be run; write 90s, 10m or 1h30m")
+        raise UsageError(f"--budget {text}: nothing can be run in it; write 90s, 10m or 1h30m")
     return found
 
 

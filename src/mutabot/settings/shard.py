@@ -32,10 +32,10 @@ class Shard:
         """What ``2/8`` says. Raises UsageError for anything else."""
         found = _SHARD.fullmatch(text)
         if found is None:
-            raise UsageError(f"{text!r} is no shard; write its number and how many there are, such as 2/8")
+            raise UsageError(f"--shard {text}: write its number and how many there are, such as 2/8")
         number, of = int(found[1]), int(found[2])
         if of < 1:
-            raise UsageError(f"{text!r}: there must be at least one shard, 1/1")
+            raise UsageError(f"--shard {text}: there must be at least one shard, 1/1")
         if not 1 <= number <= of:
-            raise UsageError(f"{text!r}: shards of {of} are numbered 1/{of} to {of}/{of}")
+            raise UsageError(f"--shard {text}: shards of {of} are numbered 1/{of} to {of}/{of}")
         return cls(number, of)
