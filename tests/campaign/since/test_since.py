@@ -261,6 +261,6 @@ def test_since_gives_the_outcomes_of_a_whole_campaign_after_forty_edits() -> Non
 def test_a_journal_that_is_not_there_is_an_error_before_anything_runs(
     project: Project, tmp_path: Path
 ) -> None:
-    with pytest.raises(UsageError, match="--journal: .*there is no journal"):
+    with pytest.raises(UsageError, match=r"--journal: .*there is no journal"):
         project.run(other_journal=tmp_path / "none.sqlite")
     assert not [line for line in project.progress.lines if "baseline" in line]
