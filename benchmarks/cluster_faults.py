@@ -1,11 +1,11 @@
 """Kill workers and schedulers of clusters at random moments of campaigns, and compare with one left in peace.
 
-Use: ``python benchmarks/cluster_faults.py [--workers 30] [--schedulers 3] [--seed 1] [--rounds 5]
+Use: ``python benchmarks/cluster_faults.py [--workers 30] [--schedulers 3] [--links 0] [--seed 1] [--rounds 5]
 [--engine auto] [--where local netns]``. The published selection of ``examples/paper`` runs again and again
 until so many have been killed by SIGKILL, half of them under ``--cluster local:4`` and half on a scheduler
 with two workers in network namespaces of their own (``ip netns``, which needs root; without it all are killed
-under local:4, and that is said). Prints JSON; the exit code is 1 if an outcome differs or is lost, or if a
-fault has become a kill.
+under local:4, and that is said). ``--links``: so often the cable of a namespace is cut for 1 to 40 s. Prints
+JSON; the exit code is 1 if an outcome differs or is lost, or if a fault has become a kill.
 """
 
 from __future__ import annotations
@@ -36,6 +36,9 @@ _ACCIDENTAL = {"wall", "cpu"}
 #: marks the processes of a campaign in their environment
 _MARK = "MUTABOT_BENCHMARK"
 _PORT = 8786
+#: to each namespace one; and how soon a scheduler takes a worker that is silent for dead
+_CABLES = ("mb1", "mb2")
+_SETTINGS = {"DASK_DISTRIBUTED__SCHEDULER__WORKER_TTL": "15s"}
 
 Pair = tuple[str, int]
 
@@ -114,6 +117,20 @@ class Trial:
             os.kill(pid, signal.SIGKILL)
             self.kills[what] = self.kills.get(what, 0) + 1
 
+    def cut(self, cable: str, seconds: float) -> None:
+        """Cut a cable, and join it again after a while."""
+        ip("link", "set", cable, "down")
+        self.kills["link"] = self.kills.get("link", 0) + 1
+        joining = threading.Timer(seconds, join, [cable])
+        joining.daemon = True
+        joining.start()
+
+
+def join(cable: str) -> None:
+    """Join a cable that was cut."""
+    with suppress(subprocess.CalledProcessError):  # all is over
+        ip("link", "set", cable, "up")
+
 
 def processes(mark: str) -> Iterator[tuple[int, str]]:
     """The processes with a mark in their environment: number and command line."""
@@ -145,6 +162,9 @@ def disturb(trial: Trial, mark: str, process: subprocess.Popen[str], plan: list[
             process.wait(pause)
         if process.poll() is not None:
             return
+        if what == "link":
+            trial.cut(trial.chance.choice(_CABLES), trial.chance.uniform(1, 40))
+            continue
         found = workers_of(mark) if what == "worker" else schedulers_of(mark)
         if found:
             trial.kill(what, trial.chance.choice(found))
@@ -219,9 +239,10 @@ def namespaces(names: list[str]) -> Iterator[list[str]]:
     try:
         for number, name in enumerate(names, 1):
             ip("netns", "add", name)
-            ip("link", "add", f"mb{number}", "type", "veth", "peer", "name", "eth0", "netns", name)
-            ip("addr", "add", f"10.77.{number}.1/30", "dev", f"mb{number}")
-            ip("link", "set", f"mb{number}", "up")
+            cable = _CABLES[number - 1]
+            ip("link", "add", cable, "type", "veth", "peer", "name", "eth0", "netns", name)
+            ip("addr", "add", f"10.77.{number}.1/30", "dev", cable)
+            ip("link", "set", cable, "up")
             ip("-n", name, "addr", "add", f"10.77.{number}.2/30", "dev", "eth0")
             ip("-n", name, "link", "set", "eth0", "up")
             ip("-n", name, "link", "set", "lo", "up")
@@ -229,7 +250,7 @@ def namespaces(names: list[str]) -> Iterator[list[str]]:
         yield near
     finally:
         for number, name in enumerate(names, 1):
-            for words in (("link", "del", f"mb{number}"), ("netns", "del", name)):
+            for words in (("link", "del", _CABLES[number - 1]), ("netns", "del", name)):
                 with suppress(subprocess.CalledProcessError):
                     ip(*words)
 
@@ -266,7 +287,7 @@ class Hosts:
         there = self.running.get(name)
         if there is None or there.poll() is not None:
             self.running[name] = subprocess.Popen(
-                command, env={**os.environ, _MARK: self.mark}, stdin=subprocess.DEVNULL,
+                command, env={**os.environ, **_SETTINGS, _MARK: self.mark}, stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
             )  # fmt: skip
 
@@ -278,8 +299,10 @@ class Hosts:
             process.wait()
 
 
-def on_hosts(trial: Trial, expected: dict[Pair, dict[str, Any]], workers: int, schedulers: int) -> None:
-    """Campaigns on a scheduler with workers in two namespaces, until so many are killed."""
+def on_hosts(
+    trial: Trial, expected: dict[Pair, dict[str, Any]], workers: int, schedulers: int, links: int
+) -> None:
+    """Campaigns on a scheduler with workers in two namespaces, until so many are killed, and cables cut."""
     before = dict(trial.kills)
     names = ["mutabot-h1", "mutabot-h2"]
     mark = f"{trial.folder}-hosts"
@@ -298,7 +321,11 @@ def on_hosts(trial: Trial, expected: dict[Pair, dict[str, Any]], workers: int, s
             while not trial.faults:
                 wanted = [
                     what
-                    for what, of, most in (("worker", workers, 5), ("scheduler", schedulers, 1))
+                    for what, of, most in (
+                        ("worker", workers, 5),
+                        ("scheduler", schedulers, 1),
+                        ("link", links, 2),
+                    )
                     for _ in range(min(of - trial.kills.get(what, 0) + before.get(what, 0), most))
                 ]
                 if not wanted:
@@ -306,6 +333,8 @@ def on_hosts(trial: Trial, expected: dict[Pair, dict[str, Any]], workers: int, s
                 trial.campaigns["two namespaces"] = trial.campaigns.get("two namespaces", 0) + 1
                 process = trial.start("--cluster", f"tcp://127.0.0.1:{_PORT}")
                 _run(trial, expected, process, wanted, mark, 4.0)
+                for cable in _CABLES:
+                    join(cable)
         finally:
             is_over.set()
             thread.join()
@@ -328,6 +357,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--workers", type=int, default=30)
     parser.add_argument("--schedulers", type=int, default=3)
+    parser.add_argument("--links", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--engine", default="auto")
@@ -353,7 +383,7 @@ def main() -> int:
                 if len(where) == 1
                 else (given.workers - here, given.schedulers - of_schedulers)
             )
-            on_hosts(trial, expected, *rest)
+            on_hosts(trial, expected, *rest, given.links)
     found = {
         "engine": given.engine,
         "outcomes": len(expected),
