@@ -52,6 +52,7 @@ from mutabot.campaign.evidence import Evidence, recorded, without_recording
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.snapshot import Snapshot
+from mutabot.campaign.reuse.state import State
 from mutabot.campaign.sink import Sink
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.task import Result, Task
@@ -84,6 +85,8 @@ class Recorder:
 
     inner: Executor
     told: dict[Any, Told] = field(default_factory=dict)
+    spread: int = 1
+    remarks: list[str] = field(default_factory=list)
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
         """What the other one says."""
@@ -112,6 +115,8 @@ class Player:
     told: dict[Any, Told]
     sent: int = 0
     work: float = 0.0
+    spread: int = 1
+    remarks: list[str] = field(default_factory=list)
 
     def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
         """What the workers of these jobs would say."""
@@ -226,9 +231,8 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
         if evidence is not None:
             runs = [(one.task.key.round, one.task.key.repetition, one.ends) for one in results]
             evidence.begin(runs, plan.mutants)
-        dependencies = Dependencies(
-            request, campaign.baseline, campaign.baseline.tests[0], before, Snapshot.take(root, before)
-        )
+        state = State.now(request, before, Snapshot.take(root, before), None)
+        dependencies = Dependencies(request, campaign.baseline, campaign.baseline.tests[0], state)
         recorder.told.clear()
         began = time.monotonic()
         run_trials(campaign, [(one, 0) for one in plan.mutants], Sink(journal))

@@ -12,6 +12,7 @@ import pytest
 from distributed import Security
 
 from mutabot.campaign.cluster import link
+from mutabot.campaign.cluster.bundle import Bundle
 from mutabot.campaign.cluster.local import LocalCluster, address_in
 from mutabot.campaign.cluster.roster import Roster
 from mutabot.cli.app import main
@@ -82,31 +83,49 @@ def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
         link.Link(ClusterSettings("tcp://127.0.0.1:9"), "tcp://127.0.0.1:9")
 
 
-def test_a_worker_without_mutabot_is_told_and_lives_on(tmp_path: Path) -> None:
+def strange_worker(address: str, folder: Path, how: str) -> subprocess.Popen[bytes]:
+    """A worker that runs some code before all else."""
     code = (
-        "import sys\n"
-        "sys.modules['mutabot'] = None\n"
+        f"import sys\n{how}\n"
         "from distributed.cli.dask_worker import main\n"
         "sys.argv[:] = ['dask-worker', *sys.argv[1:]]\n"
         "main()\n"
     )
-    with cluster(tmp_path, 0) as address:
-        own = ["--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(tmp_path)]
-        with subprocess.Popen(
-            [sys.executable, "-c", code, address, *own], stderr=subprocess.DEVNULL
-        ) as process:
-            try:
-                there = link.Link(ClusterSettings(address), address)
-                roster = Roster(there, {}, False, lambda text: None)
-                assert until(lambda: roster.update() is not None and there.workers)
-                assert until(lambda: _has_refused(roster))
-                (why,) = roster.refusals.values()
-                assert "is the same mutabot installed there" in why
-                assert "mutabot" in why.partition("(")[2]
-                assert process.poll() is None
-                there.close()
-            finally:
-                process.kill()
+    own = ["--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder)]
+    return subprocess.Popen([sys.executable, "-c", code, address, *own], stderr=subprocess.DEVNULL)
+
+
+NO_ROOM = """
+from mutabot.campaign.cluster.store import Store
+def take(*given):
+    raise OSError(28, "No space left on device")
+Store.take = take
+"""
+
+
+@pytest.mark.parametrize(
+    ("how", "has_bundle", "says"),
+    [("sys.modules['mutabot'] = None", False, "mutabot"), (NO_ROOM, True, "No space left on device")],
+    ids=["no mutabot", "no room"],
+)
+def test_a_worker_that_cannot_take_part_is_told_and_lives_on(
+    how: str, has_bundle: bool, says: str, tmp_path: Path
+) -> None:
+    with cluster(tmp_path, 0) as address, strange_worker(address, tmp_path, how) as process:
+        try:
+            there = link.Link(ClusterSettings(address), address)
+            roster = Roster(there, {}, True, lambda text: None)
+            if has_bundle:
+                roster.bundle = Bundle.make(write(tmp_path / "project"))
+            assert until(lambda: roster.update() is not None and there.workers)
+            assert until(lambda: _has_refused(roster))
+            (why,) = roster.refusals.values()
+            assert "is the same mutabot installed there, and room on its disk?" in why
+            assert says in why.partition("(")[2]
+            assert process.poll() is None
+            there.close()
+        finally:
+            process.kill()
 
 
 def _has_refused(roster: Roster) -> bool:

@@ -11,8 +11,8 @@ from .environment import differences
 from .link import Link, News
 from .unit import Introduction
 
-#: how often a worker is asked who it is
-_ASKS = 3
+#: how often a worker may fail to say who it is, or to take the project
+_FAILURES = 3
 #: differences that are named, and workers that are told of
 _SHOWN, _TOLD = 5, 10
 
@@ -22,14 +22,17 @@ class _Worker:
     """One worker.
 
     Attributes:
-        asked: numbers of what it was asked, and how often altogether.
+        asked: numbers of what it was asked and has not answered.
+        fault: what went wrong with one of them, or None.
+        failures: how often in a row something did.
         is_known: whether it runs with the same, or may differ.
         is_fit: whether units can be given to it.
         refused: why it is not used, or None.
     """
 
     asked: set[int] = field(default_factory=set)
-    asks: int = 0
+    fault: str | None = None
+    failures: int = 0
     is_known: bool = False
     is_fit: bool = False
     refused: str | None = None
@@ -105,15 +108,24 @@ class Roster:
             return False
         worker = self._workers[address]
         worker.asked.discard(news.asked)
-        if news.data is None:
-            if worker.asks >= _ASKS and address in self.link.workers:
-                hint = "is the same mutabot installed there, and room on its disk?"
-                self.refuse(address, f"it cannot take part ({news.why}): {hint}")
-        elif news.data == far.TAKEN:
-            worker.is_fit = worker.refused is None and not worker.asked
-        else:
+        if news.data is not None and news.data != far.TAKEN:
             self._introduced(address, worker, Introduction.of(news.data))
+            return True
+        worker.fault = worker.fault or (news.why if news.data is None else None)
+        if not worker.asked:
+            self._has_answered(address, worker)
         return True
+
+    def _has_answered(self, address: str, worker: _Worker) -> None:
+        """A worker has answered all that it was asked."""
+        fault, worker.fault = worker.fault, None
+        if fault is None:
+            worker.is_fit, worker.failures = worker.refused is None, 0
+            return
+        worker.failures += 1
+        if worker.failures >= _FAILURES and address in self.link.workers:
+            hint = "is the same mutabot installed there, and room on its disk?"
+            self.refuse(address, f"it cannot take part ({fault}): {hint}")
 
     def refuse(self, address: str, why: str) -> None:
         """Give a worker no units any more."""
@@ -136,7 +148,6 @@ class Roster:
         number = self.link.ask(address, function, *arguments)
         self._asked[number] = address
         self._workers[address].asked.add(number)
-        self._workers[address].asks += 1
 
     def _introduced(self, address: str, worker: _Worker, one: Introduction) -> None:
         differing = differences(self.versions, one.versions)
@@ -147,7 +158,7 @@ class Roster:
                 self.refuse(address, f"{text} (--mixed uses it all the same)")
                 return
             self._tell_once(f"worker {one.host} runs with something else: {text}")
-        worker.is_known, worker.asks = True, 0
+        worker.is_known = True
         if one.has:
             worker.is_fit = True
         elif self.bundle is not None:
