@@ -287,6 +287,7 @@ def _play(
         "mutants": len(many),
         "cpu_seconds": round(cpu, 1),
         "cpu_ms": round(1e3 * cpu / len(many), 3),
+        "cpu_ms_last": round(1e3 * (looks[-1][1] - looks[-3][1]) / (looks[-1][0] - looks[-3][0]), 3),
         "sent_kb": round(player.sent / 1e3 / len(many), 2),
         "memory_mb": [(count, round(mb, 1)) for count, _, mb in looks],
         "larger": round(looks[-1][2] / tenth[2], 3),
