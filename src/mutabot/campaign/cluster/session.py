@@ -55,6 +55,7 @@ class Session:
 
     def answer(self, unit: Unit, look: Callable[[], None]) -> bytes:
         """Run a unit. ``look`` is called several times a second, and raises Unwanted if it is to end."""
+        here, there = str(self.root), self.ground.root
         with self._lock:
             try:
                 answer = self._answered(unit, look)
@@ -64,8 +65,9 @@ class Session:
             except (OSError, JournalError) as error:
                 self._close()
                 answer = Answer(fault=str(error), is_unfit=True)
+                here = there  # the folders that it names are this machine's
             self._used = time.monotonic()
-        return answer.data(str(self.root), self.ground.root)
+        return answer.data(here, there)
 
     def close(self) -> None:
         """End what it keeps."""
