@@ -93,6 +93,7 @@ def test_a_worker_that_dies_costs_nothing_but_time(address: str, in_peace: Ends,
     assert not set(victims) & set(workers())
 
 
+@pytest.mark.whole
 def test_a_mutant_that_takes_its_worker_along_each_time_is_an_error_with_the_reason(
     address: str, tmp_path: Path
 ) -> None:
@@ -213,6 +214,7 @@ def test_a_worker_that_runs_with_something_else_is_refused_or_told(
     assert len(outcomes(path)) == 1
 
 
+@pytest.mark.whole
 def test_a_scheduler_that_is_killed_is_started_again(
     in_peace: Ends, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
