@@ -278,9 +278,12 @@ class Hosts:
             self._tend(name, [*worker, f"tcp://{address}:{_PORT}", *own, *place])
 
     def wait(self) -> None:
-        """Wait until the workers are connected."""
+        """Wait until the workers have begun. Raises RuntimeError if they do not within a minute."""
+        until = time.monotonic() + 60
         for name in self.names:
             while not any((self.folder / name).glob("dask-scratch-space/worker-*")):
+                if time.monotonic() > until:
+                    raise RuntimeError(f"no worker has begun in the namespace {name}")
                 time.sleep(0.1)
 
     def _tend(self, name: str, command: list[str]) -> None:

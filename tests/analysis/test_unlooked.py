@@ -36,3 +36,7 @@ def test_what_was_not_judged_says_nothing(tmp_path: Path, verdict: Verdict) -> N
 
 def test_what_the_program_reads_or_commands_is_not_meant(tmp_path: Path) -> None:
     assert not found(tmp_path, Outcome(samples.REVERSE.id, 0, Verdict.SURVIVED))
+
+
+def test_what_is_still_to_be_run_may_be_noticed(tmp_path: Path) -> None:
+    assert not found(tmp_path, Outcome(NEGATE.id, 0, Verdict.SURVIVED))

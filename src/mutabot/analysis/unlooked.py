@@ -35,15 +35,22 @@ class Unlooked:
 
 
 def unlooked(results: Iterable[MutantResult]) -> tuple[Unlooked, ...]:
-    """Such readings of the oracle, in the order of their mutants; only those that were judged count."""
+    """Such readings of the oracle, in the order of their mutants; only those that were judged count.
+
+    Of a reading with a mutant that is still to be run, as in another shard, nothing is said.
+    """
     groups: dict[tuple[str, str], list[MutantResult]] = {}
+    open_ones: set[tuple[str, str]] = set()
     for one in results:
         mutant = one.mutant
         is_reading = mutant.site.role is Role.ORACLE and mutant.operation and mutant.quantity
+        key = (mutant.operation, mutant.quantity or "")
         if is_reading and not one.outdated and one.kill_rate.valid:
-            groups.setdefault((mutant.operation, mutant.quantity or ""), []).append(one)
+            groups.setdefault(key, []).append(one)
+        elif is_reading and not one.outcomes and not mutant.ladder:  # of a ladder, a search runs some
+            open_ones.add(key)
     return tuple(
         Unlooked(*key, tuple(dict.fromkeys(one.mutant.site.place for one in found)), len(found))
         for key, found in groups.items()
-        if not any(one.kill_rate.killed for one in found)
+        if key not in open_ones and not any(one.kill_rate.killed for one in found)
     )
