@@ -86,12 +86,6 @@ def test_no_room_leads_back_to_itself() -> None:
     levels(rooms())
 
 
-def test_no_room_has_more_than_twelve_files() -> None:
-    for folder in {file.parent for file in FILES}:
-        names = [file.name for file in folder.glob("*.py") if file.stem != "__init__"]
-        assert len(names) <= 12, f"{folder.relative_to(SOURCE)}: {len(names)} files"
-
-
 def test_the_inside_imports_the_standard_library_wrapt_and_pytest_only() -> None:
     allowed = {"wrapt", "pytest", "mutabot", *sys.stdlib_module_names}
     for file in (SOURCE / "inside").rglob("*.py"):
