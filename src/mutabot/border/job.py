@@ -103,6 +103,7 @@ class Job:
         oracle_nodes: resolved names of the tests' own nodes, in which ``*`` stands for any text.
         evidence: whether to record what the world does while tests run.
         pictures: which test is filmed; None for none.
+        key: of the seals on its report lines, see ``frame``.
     """
 
     root: str
@@ -127,6 +128,7 @@ class Job:
     oracle_nodes: tuple[str, ...] = ()
     evidence: bool = False
     pictures: Pictures | None = None
+    key: str = ""
 
 
 def job_file(home: str | os.PathLike[str]) -> Path:

@@ -251,6 +251,17 @@ class SessionEnd:
     not_private: str | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Untrusted:
+    """What a process reports cannot be relied on: said of it by whoever reads its pipe.
+
+    Attributes:
+        reason: in words.
+    """
+
+    reason: str
+
+
 Line = (
     SiteSeen
     | TestStart
@@ -273,6 +284,7 @@ Line = (
     | Copied
     | CopyEnded
     | SessionEnd
+    | Untrusted
 )
 
 
@@ -286,7 +298,12 @@ def line_to_data(line: Line) -> dict[str, Any]:
 
 
 def line_from_data(data: dict[str, Any]) -> Line:
-    """The report line in such data. Raises KeyError for a type that is not known."""
+    """The report line in such data.
+
+    Raises KeyError for a type that is not known, TypeError or ValueError for data that does not fit it.
+    """
+    if not isinstance(data, dict):
+        raise TypeError(f"a report line is an object, not {type(data).__name__}")
     kind = _LINES[data["type"]]
     line: Line = from_data(kind, {key: value for key, value in data.items() if key != "type"})
     return line

@@ -178,6 +178,12 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
     """Stop at once if this run of the suite cannot be a baseline."""
     if result.problems:
         raise _worst_problem(result)
+    if result.untrusted is not None:
+        raise BaselineError(
+            f"the tests cannot be run on the original: {result.untrusted}; do they write to descriptors that "
+            "they have not opened, or delete .mutabot?",
+            tests=_running(result),
+        )
     if result.end is None:
         text = f"the tests cannot be run on the original: {death(result, said=False)}{at(result)}"
         raise BaselineError(f"{text}{said_in(result.log)}", tests=_running(result))

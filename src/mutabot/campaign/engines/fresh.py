@@ -126,7 +126,9 @@ def run_of(result: Result, sources: Sources) -> Run:
 
 
 def _problem(result: Result) -> str | None:
-    """Why the mutant was not in the program, if it was not."""
+    """Why nothing is known of the mutant: it was not in the program, or what was told cannot be relied on."""
+    if result.untrusted is not None:
+        return result.untrusted
     return next((f"{file}: {why}" for file, why in result.not_instrumented.items()), None)
 
 

@@ -58,7 +58,7 @@ class Run:
         wall: seconds spent on it.
         shared: simulated seconds that it did not have to spend, since the original had.
         engine: ``replay`` or ``branch``.
-        problem: why the mutant was not there at all, or None.
+        problem: why nothing is known of the mutant, or None: it was not there, or reports cannot be trusted.
     """
 
     mutant: Mutant

@@ -19,8 +19,10 @@ from mutabot.border.lines import (
     Line,
     MutatedCall,
     SiteSeen,
+    TestStart,
     Unbranched,
     Undiverged,
+    Untrusted,
 )
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.observed import observation, place_of
@@ -168,6 +170,8 @@ class _Trunk:
         self._waiting: dict[str, set[str]] = {}
         self._undiverged: dict[str, Mapping[str, int]] = {}
         self._trunk_places: dict[int, Place] = {}
+        self._begun: set[str] = set()
+        self._doubted: list[Mutant] = []
 
     def add(self, mutant: Mutant, tests: tuple[str, ...]) -> None:
         """A mutant to branch in these tests."""
@@ -271,8 +275,26 @@ class _Trunk:
                 self._undiverged[line.test] = line.hits
             case SiteSeen():
                 self._trunk_places[line.index] = place_of(line, self._sources)
+            case TestStart():
+                self._begun.add(line.test)
             case TestEnd():
                 yield from self._test_ended(line)
+            case Untrusted():
+                self._doubt(line)
+
+    def _doubt(self, line: Untrusted) -> None:
+        """Nobody knows which process of the trunk wrote this: one of the mutants whose branches may run.
+
+        They are left to an engine in which each has a process of its own. A branch reports last of all, so
+        outcomes that are settled are not concerned.
+        """
+        doubted = [name for name, one in self._open.items() if not self._begun.isdisjoint(one.tests)]
+        if not self._doubted:
+            self._left.notes.append(
+                f"round {self._round + 1}: {line.reason}; mutants that may have to do with it run in "
+                "processes of their own"
+            )
+        self._doubted += [self._open.pop(name).mutant for name in doubted]
 
     def finish(self, result: Result) -> Iterator[Outcome]:
         """The trunk is gone: settle what can be settled, and leave the rest to replay."""
@@ -280,7 +302,8 @@ class _Trunk:
             self._left.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}{at(result)}")
         for mutant in list(self._open):
             yield from self._settle(mutant)
-        self._left.trials.extend((branches.mutant, self._round) for branches in self._open.values())
+        left = [*self._doubted, *(branches.mutant for branches in self._open.values())]
+        self._left.trials.extend((mutant, self._round) for mutant in left)
 
     def _branch_ended(self, line: BranchEnd) -> Iterator[Outcome]:
         branches = self._open[line.mutant]

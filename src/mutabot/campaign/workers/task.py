@@ -20,6 +20,7 @@ from mutabot.border.lines import (
     TestStart,
     TextsSeen,
     TokensHeld,
+    Untrusted,
     Watched,
 )
 from mutabot.border.test_end import TestEnd
@@ -81,6 +82,7 @@ class Result:
         wall: seconds from its start to its end.
         log: the last lines it printed.
         lost: why no process could be had that runs it to its end, or None.
+        untrusted: why what it reported cannot be relied on, or None.
     """
 
     task: Task
@@ -104,6 +106,7 @@ class Result:
     wall: float = 0.0
     log: str = ""
     lost: str | None = None
+    untrusted: str | None = None
 
     def take(self, line: Line) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
         """Sort in one report line."""
@@ -138,6 +141,9 @@ class Result:
                 self.problems.append(line)
             case SessionEnd():
                 self.end = line
+            case Untrusted() if self.untrusted is None:
+                during = f" (during {self.running})" if self.running else ""
+                self.untrusted = f"{line.reason}{during}"
 
     def find_overdue(self, now: float) -> None:
         """Say so if a limit of the suite's own ended the process, by ``now`` (``time.monotonic``)."""

@@ -34,9 +34,9 @@ class TokenPool:
             return False
 
     def give_back(self, count: int) -> None:
-        """Put tokens back."""
+        """Put tokens back; never more than there are."""
         if count > 0:
-            os.write(self._writing, _BYTE * count)
+            os.write(self._writing, _BYTE * min(count, self._size))
 
     def refill(self) -> None:
         """Make all tokens free again; only when nobody holds any."""

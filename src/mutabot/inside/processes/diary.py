@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import time
 
-from mutabot.border.processes import SUFFIX, Began, Entry, entry_to_data
+from mutabot.border.codec import shallow
+from mutabot.border.processes import SUFFIX, Began, Entry
+from mutabot.border.storable import to_json
 from mutabot.inside.pipe import plain
 
 
@@ -31,7 +32,6 @@ class Diary:
 
     def write(self, entry: Entry) -> None:
         """Write one entry."""
-        text = json.dumps(entry_to_data(entry), default=plain, separators=(",", ":"))
-        data = memoryview(f"{text}\n".encode())
+        data = memoryview(to_json({"type": type(entry).__name__, **shallow(entry)}, plain) + b"\n")
         while data:
             data = data[os.write(self._file, data) :]

@@ -94,7 +94,7 @@ class Conductor:
             from mutabot.inside.fork.copies import CopyServer  # noqa: PLC0415  # of no use to other jobs
 
             preload()
-            pipe = Pipe(descriptor)
+            pipe = Pipe(descriptor, job.key)
             conductor = cls(job, pipe, CopyServer(job.serving, pipe, os.path.join(home, LOG)))
         else:
             conductor = cls(job, pipe_of(job, home, descriptor))
@@ -297,8 +297,9 @@ class Conductor:
 def pipe_of(job: Job, home: str, descriptor: int) -> Pipe:
     """The pipe of a job; a trunk shares it with its branches."""
     if job.branching is None:
-        return Pipe(descriptor)
-    return Pipe(descriptor, os.open(os.path.join(home, "lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC))
+        return Pipe(descriptor, job.key)
+    lock = os.open(os.path.join(home, "lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+    return Pipe(descriptor, job.key, lock)
 
 
 def drop_idle_plugins(config: pytest.Config) -> None:
