@@ -47,8 +47,10 @@ def decide(
     tests among the tests, and of unstable outcomes among all; ``max_errors`` the greatest share of errors
     among all outcomes: mutants of which nothing is known. Graded mutants have no score, but their errors and
     unstable outcomes count; ``demands`` say which of them must be noticed. A disagreement that ``--verify``
-    found always fails. Of a shard nothing else is judged.
+    found always fails, and so does a journal that lacks what was found. Of a shard nothing else is judged.
     """
+    if results.is_incomplete:
+        return Decision(ExitCode.UNRELIABLE, (_incomplete(results),))
     if results.shard is not None and results.shard.of > 1:
         return _of_shard(results, results.shard)
     total = results.all.total
@@ -70,6 +72,14 @@ def decide(
     low = tuple(_too_low(results, min_score)) if min_score is not None else ()
     low += tuple(_too_loose(results, demands))
     return Decision(ExitCode.SCORE_TOO_LOW, low) if low else Decision(ExitCode.FINE)
+
+
+def _incomplete(results: Results) -> str:
+    lacking = [str(one.mutant.number) for one in results.mutants if len(one.outcomes) < results.rounds]
+    if results.shard is not None and results.shard.of > 1:
+        lacking = []  # most of them are other shards'
+    shown = f": mutants {', '.join(lacking[:20])}{' …' if len(lacking) > 20 else ''}" if lacking else ""
+    return f"not all that was found could be written to the journal{shown}; `mutabot run` runs it again"
 
 
 def _of_shard(results: Results, shard: ShardOf) -> Decision:

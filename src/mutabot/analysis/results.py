@@ -16,6 +16,7 @@ from mutabot.journal.records import (
     CONFIRMATION,
     DRAWING,
     FLAKY,
+    INCOMPLETE,
     REPEATS,
     SHARD,
     SINCE,
@@ -111,7 +112,8 @@ class Results:
 
     Attributes:
         meta: what the campaign said about itself.
-        state: ``complete``, ``interrupted``, ``running``, ``killed`` or why it stopped; of a shard, which.
+        state: ``complete``, ``incomplete`` (all has run, but the journal lacks some of it), ``interrupted``,
+            ``running``, ``killed`` or why it stopped; of a shard, which.
         rounds: number of rounds.
         mutants: every planned mutant by number, but for graded ones.
         groups: scores per family and role.
@@ -195,6 +197,11 @@ class Results:
         return len(self.mutants) * self.rounds
 
     @property
+    def is_incomplete(self) -> bool:
+        """Whether all was run, but not every outcome is in the journal."""
+        return INCOMPLETE in self.state
+
+    @property
     def done(self) -> int:
         """Number of (mutant, round) pairs that have an outcome."""
         return sum(len(result.outcomes) for result in self.mutants)
@@ -240,6 +247,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     drawing = from_data(Drawing, meta[DRAWING]) if DRAWING in meta else None
     shard = from_data(ShardOf, meta[SHARD]) if SHARD in meta else None
     groups = groups_of(mutants, outcomes, rounds, drawing)
+    is_whole = _is_whole(mutants, outcomes, rounds)
     drawn = groups if drawing is not None else ()
     budget = from_data(Budgeted, meta[BUDGET]) if BUDGET in meta else None
     is_cut = budget is not None and not budget.is_whole
@@ -266,7 +274,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
 
     return Results(
         meta=meta,
-        state=_state(journal, shard),
+        state=_state(journal, shard, is_whole=is_whole),
         rounds=rounds,
         mutants=tuple(result(mutant) for mutant in mutants if mutant.id not in graded),
         graded=tuple(result(mutant) for mutant in mutants if mutant.id in graded),
@@ -350,8 +358,17 @@ def _attempt(journal: JournalReader) -> str | None:
     return "running" if is_written(journal.path) else "killed"
 
 
-def _state(journal: JournalReader, shard: ShardOf | None) -> str:
+def _is_whole(mutants: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int) -> bool:
+    """Whether each mutant has an outcome in each round; those of ladders need not be run."""
+    known = {(outcome.mutant, outcome.round) for outcome in outcomes}
+    alone = (mutant.id for mutant in mutants if mutant.family != GRADED)
+    return all((name, round) in known for name in alone for round in range(rounds))
+
+
+def _state(journal: JournalReader, shard: ShardOf | None, *, is_whole: bool) -> str:
     state = journal.finished or ("running" if is_written(journal.path) else "killed")
+    if state == "complete" and not is_whole and (shard is None or shard.of == 1):
+        return INCOMPLETE
     if shard is None or shard.of == 1:
         return state
     # a part of a campaign is never complete, whatever has become of it

@@ -40,7 +40,7 @@ from mutabot.campaign.workers.task import Result
 from mutabot.errors import JournalError
 from mutabot.journal.journal import Journal
 from mutabot.journal.reader import JournalReader
-from mutabot.journal.records import DRAWING, DRAWS, OPERATORS, REACHING, REMARKS
+from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS
 from mutabot.model import LeftOut, Mutant
 
 from .beginning import at_it, begin, plan_of, selected
@@ -49,6 +49,8 @@ from .evidence import Evidence, recorded, without_recording
 from .request import Progress, Request
 from .sink import Sink
 
+#: rows that could not be stored, as far as they are told one by one
+_UNSTORED = 5
 #: what else decides how a campaign ends, beside the user's own files
 _VERSIONS = ("pytest", "wrapt", "mujoco", "mink", "ruckig", "numpy", "pytest-bdd")
 
@@ -75,11 +77,11 @@ def run_campaign(request: Request, progress: Progress) -> Path:
             ):
                 others = [stack.enter_context(one) for one in open_others(request, progress)]
                 try:
-                    is_whole = _run(request, opened, progress, journal, others, evidence)
+                    end = _run(request, opened, progress, journal, others, evidence)
                 finally:
                     _remember(journal, opened)
             journal.set_meta("seconds", request.clock() - started)
-            journal.finish("complete" if is_whole else OUT_OF_TIME)
+            journal.finish(end)
         except BaseException as error:
             with suppress(JournalError):  # on a full disk not even this can be written
                 journal.finish(_reason(error))
@@ -94,8 +96,8 @@ def _run(
     journal: Journal,
     others: Sequence[JournalReader],
     evidence: Evidence | None,
-) -> bool:
-    """Returns whether all was run: a budget may end before."""
+) -> str:
+    """Returns how it ended: a budget may end before all was run."""
     started = request.clock()
     revision = Revision.find(request.root, request.since) if request.since is not None else None
     before = Snapshot.take(request.root)
@@ -124,8 +126,8 @@ def _run(
     edited = after.edited_programs(before)
     if edited:
         progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
-        sink = Sink(journal)
-        return _run_all(campaign, part, sink, Reused(), started)
+        is_whole = _run_all(campaign, part, Sink(journal), Reused(), started)
+        return _end(journal, part, request, progress, is_whole=is_whole)
     state = State.now(request, before, after, watch.opened)
     dependencies = Dependencies(request, baseline, _collected(results), state)
     journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
@@ -143,7 +145,21 @@ def _run(
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
     _tidy(request, journal, whole, found.presumed.values())
-    return is_whole
+    return _end(journal, part, request, progress, is_whole=is_whole)
+
+
+def _end(journal: Journal, part: Plan, request: Request, progress: Progress, *, is_whole: bool) -> str:
+    """How the campaign has ended, by what is in the journal. What could not be stored is told."""
+    known = journal.rounds_known()
+    for text in journal.unstored[:_UNSTORED]:
+        progress.note(f"the journal cannot hold this row: {text}")
+    if len(journal.unstored) > _UNSTORED:
+        progress.note(f"nor can it hold {len(journal.unstored) - _UNSTORED} more rows")
+    if not is_whole:
+        return OUT_OF_TIME
+    alone, _ = apart(part.mutants)  # of ladders, not every mutant is run
+    is_known = all(known.get(mutant.id, 0) >= request.rounds for mutant in alone)
+    return "complete" if is_known and not journal.unstored else INCOMPLETE
 
 
 def _remember(journal: Journal, opened: Executor) -> None:

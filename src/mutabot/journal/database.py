@@ -16,6 +16,12 @@ from mutabot.errors import JournalError
 #: seconds after which a row that was added is in the file, and how long it waits: timers may be late
 WITHIN = 1.0
 PATIENCE = WITHIN / 2
+#: what Python raises for values that SQLite cannot take: beyond 64 bits, no UTF-8, of no type that it knows
+_ABOUT_VALUES = (OverflowError, ValueError, TypeError)
+#: what SQLite raises because of one row, and not because of the file
+_OF_ONE_ROW = (sqlite3.DataError, sqlite3.InterfaceError, sqlite3.ProgrammingError, sqlite3.IntegrityError)
+#: characters of a value that are shown
+_SHOWN = 100
 
 
 def connect(path: Path) -> sqlite3.Connection:
@@ -69,6 +75,7 @@ class Batch:
 
     Attributes:
         lock: to be held by whoever uses the connection.
+        unstored: why rows could not be stored, one line each, though the file can be written.
     """
 
     def __init__(self, connection: sqlite3.Connection, *, clock: Callable[[], float] = monotonic) -> None:
@@ -78,6 +85,7 @@ class Batch:
         self._committed = float("-inf")
         self._timer: Timer | None = None
         self._problem: sqlite3.Error | None = None
+        self.unstored: list[str] = []
 
     def add(self, statement: str, *values: Any) -> None:
         """Have a statement carried out. Raises what SQLite did when statements before were."""
@@ -109,7 +117,7 @@ class Batch:
             for statement, values in waiting:
                 self._connection.execute(statement, values)
             self._connection.execute("COMMIT")
-        except sqlite3.Error:
+        except (sqlite3.Error, *_ABOUT_VALUES):
             if self._connection.in_transaction:  # SQLite itself rolls back when the disk is full
                 self._connection.execute("ROLLBACK")
             self._one_by_one(waiting)
@@ -119,6 +127,9 @@ class Batch:
         for statement, values in waiting:
             try:
                 self._connection.execute(statement, values)
+            except (*_OF_ONE_ROW, *_ABOUT_VALUES) as error:
+                what = ", ".join(str(value)[:_SHOWN] for value in values[:2])
+                self.unstored.append(f"{what}: {type(error).__name__}: {error}")
             except sqlite3.Error as error:
                 self._problem = self._problem or error
 

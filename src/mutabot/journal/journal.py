@@ -128,6 +128,11 @@ class Journal(JournalReader):
         """
         self._store.put(ATTEMPT_KEY if self._waits else FINISHED_KEY, reason)
 
+    @property
+    def unstored(self) -> tuple[str, ...]:
+        """Why rows of this campaign could not be stored, one line each: all others are."""
+        return self._store.unstored
+
     # The baseline and the plan
 
     def add_test(self, round: int, repetition: int, test: TestEnd) -> None:

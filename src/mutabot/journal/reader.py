@@ -110,6 +110,10 @@ class JournalReader:
         """The last outcome of each (mutant, round), in the order they came."""
         return self._store.read(Outcome, f"SELECT data FROM outcome WHERE rowid IN ({LAST}) ORDER BY rowid")
 
+    def rounds_known(self) -> dict[str, int]:
+        """In how many rounds each mutant has an outcome; those without any are missing."""
+        return dict(self._store.rows("SELECT mutant, count(DISTINCT round) FROM outcome GROUP BY mutant"))
+
     def reused(self) -> set[tuple[str, int]]:
         """The mutants and rounds whose outcomes were taken over from an earlier campaign."""
         return set(self._store.rows(f"SELECT mutant, round FROM outcome WHERE reused AND rowid IN ({LAST})"))

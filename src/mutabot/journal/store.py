@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Protocol, Self, TypeVar
 
 from mutabot.border.codec import from_data, to_data
+from mutabot.border.storable import printable, storable
 from mutabot.errors import JournalError
 
 from .database import Batch, connect, connect_to_read, guarded
@@ -110,7 +111,7 @@ class Store:
         with guarded(self.path), self._batch.lock:
             if not self._is_whole:
                 self._batch.commit()
-            return self.connection.execute(statement, values).fetchall()
+            return self.connection.execute(statement, stored(values)).fetchall()
 
     def each(self, statement: str) -> Iterator[Any]:
         """What a question is answered with, one row after the other."""
@@ -134,15 +135,20 @@ class Store:
         """Carry out one statement, at once with all that waits; within ``transaction``, as a part of it."""
         with guarded(self.path):
             if self._is_whole:
-                self.connection.execute(statement, values)
+                self.connection.execute(statement, stored(values))
                 return
-            self._batch.add(statement, *values)
+            self._batch.add(statement, *stored(values))
             self._batch.commit()
 
     def add(self, statement: str, *values: Any) -> None:
         """Carry out one statement; it is committed within a second, or with the next that is at once."""
         with guarded(self.path):
-            self._batch.add(statement, *values)
+            self._batch.add(statement, *stored(values))
+
+    @property
+    def unstored(self) -> tuple[str, ...]:
+        """Why rows could not be stored, one line each: all others are."""
+        return tuple(self._batch.unstored)
 
     def flush(self) -> None:
         """Commit all that waits."""
@@ -157,7 +163,7 @@ class Store:
             self.connection.execute("BEGIN IMMEDIATE")
             self._is_whole = True
             try:
-                yield lambda statement, *values: self.connection.execute(statement, values)
+                yield lambda statement, *values: self.connection.execute(statement, stored(values))
             except BaseException:
                 if self.connection.in_transaction:  # SQLite itself rolls back when the disk is full
                     self.connection.execute("ROLLBACK")
@@ -171,6 +177,16 @@ def _no_journal(path: Path) -> JournalError:
     return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it", path=str(path))
 
 
+def stored(values: Iterable[Any]) -> tuple[Any, ...]:
+    """Values of a row, with texts that can be stored."""
+    return tuple(printable(value) if isinstance(value, str) else value for value in values)
+
+
 def dump(value: Any) -> str:
-    """A value as JSON."""
-    return json.dumps(to_data(value), ensure_ascii=False, default=str)
+    """A value as JSON that can be stored."""
+    try:
+        text = json.dumps(to_data(value), ensure_ascii=False, default=str)
+        text.encode()
+    except (ValueError, RecursionError):  # what no other process said: the names of files, for instance
+        return json.dumps(storable(value, str), ensure_ascii=False)
+    return text

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
 from contextlib import closing, suppress
 from pathlib import Path
@@ -48,7 +49,8 @@ def keep_copy(store: Store) -> None:
     store.flush()
     with guarded(store.path):
         try:
-            store.connection.execute("VACUUM INTO ?", (str(new),))
+            # as bytes, since the name of a folder need not be UTF-8
+            store.connection.execute("VACUUM INTO CAST(? AS TEXT)", (os.fsencode(new),))
             _remove(kept)
             new.replace(kept)
         finally:
