@@ -79,7 +79,7 @@ def end_abandoned(home: Path) -> int:
 
 def end_below(folder: Path) -> int:
     """End all that was started below workers whose folders are in this one; returns how many there were."""
-    marks = f"{VARIABLE}={folder}/".encode()
+    marks = os.fsencode(f"{VARIABLE}={folder}/")
     ended = 0
     for process in _processes():
         entries = [entry for entry in _environment(process) if entry.startswith(marks)]

@@ -24,6 +24,7 @@ from mutabot.inside.fork.lifeline import die_with_parent, nobody_listens
 from mutabot.inside.fork.trunk import FAILED as BRANCH_FAILED
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import limit_memory
+from mutabot.inside.node_ids import node_id
 from mutabot.inside.pipe import Held, Pipe
 from mutabot.inside.processes.host import Host
 from mutabot.inside.processes.member import watch_forks
@@ -163,14 +164,16 @@ class Conductor:
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Keep the job's tests, in the job's order."""
-        self._collected = tuple(item.nodeid for item in items)
+        self._collected = tuple(node_id(item) for item in items)
         self.footprints.has_others = len(items) > 1
         self._select(items)
 
     def _select(self, items: list[pytest.Item]) -> None:
         if self.job.tests is None:
             return
-        by_id = {item.nodeid: item for item in items}
+        by_id = {node_id(item): item for item in items}
+        alike = {node_id(item) for item in items if by_id[node_id(item)].nodeid != item.nodeid}
+        self._errors += [f"several tests are called {name} once that is written in UTF-8" for name in alike]
         missing = [test for test in self.job.tests if test not in by_id]
         if missing:
             self._errors.append(f"tests that were there before are gone: {', '.join(missing)}")
@@ -192,7 +195,7 @@ class Conductor:
         if report.failed and call is not None and call.excinfo is not None:
             error = call.excinfo.value
             is_wrapped = isinstance(error, collector.CollectError) and error.__cause__ is not None
-            self.import_failed(error.__cause__ if is_wrapped else error, collector.nodeid)
+            self.import_failed(error.__cause__ if is_wrapped else error, node_id(collector))
         return report
 
     def import_failed(self, error: BaseException | None, node: str) -> None:
@@ -221,7 +224,7 @@ class Conductor:
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """Note what could not be collected."""
         if report.failed:
-            self._errors.append(f"{report.nodeid}: {str(report.longrepr)[-1500:]}")
+            self._errors.append(f"{node_id(report)}: {str(report.longrepr)[-1500:]}")
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:

@@ -16,6 +16,7 @@ from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.looks import Looks
 from mutabot.inside.evidence import Evidence
 from mutabot.inside.footprint.footprints import Footprints
+from mutabot.inside.node_ids import node_id
 from mutabot.inside.processes.members import Members
 from mutabot.inside.readings.probes import Reading
 from mutabot.inside.session import Session
@@ -62,25 +63,25 @@ class Running:
         """One test, its fixtures included."""
         self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
         self.looks.clear()
-        self.session.pipe.send(TestStart(item.nodeid))
+        self.session.pipe.send(TestStart(node_id(item)))
         limit = watched_by_faulthandler(item)
         if limit is not None:
             self.session.pipe.send(limit)
         job = self.session.job
-        seeds.seed_all(seeds.derive(job.seed, job.round, item.nodeid))
+        seeds.seed_all(seeds.derive(job.seed, job.round, node_id(item)))
         self.branch.item = item
         self.footprints.start_test()
         self.start_clocks()
         if self.members is not None:
-            self.members.start_test(item.nodeid)
-        self.session.start_test(item.nodeid)
+            self.members.start_test(node_id(item))
+        self.session.start_test(node_id(item))
         try:
             result = yield
         except BaseException:
             self.branch.leave_if_it_is_one(None)
             raise
-        self.branch.leave_if_it_is_one(lambda: self._test_end(item.nodeid))
-        end = self._test_end(item.nodeid)
+        self.branch.leave_if_it_is_one(lambda: self._test_end(node_id(item)))
+        end = self._test_end(node_id(item))
         if self.members is not None:
             end = self.members.merged(end)
         self.session.end_test()
@@ -99,7 +100,7 @@ class Running:
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: Any) -> None:
         """Pytest-timeout is about to watch a test: its thread leaves the process without a word."""
         if settings.method == "thread":
-            self.session.pipe.send(watched(item.nodeid, settings.timeout, "pytest-timeout"))
+            self.session.pipe.send(watched(node_id(item), settings.timeout, "pytest-timeout"))
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_call(self) -> None:

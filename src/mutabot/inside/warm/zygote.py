@@ -116,7 +116,7 @@ class Zygote:
             self.library.open_to(start)
         except Exception as error:  # whatever it is, there is the plain way
             with suppress(OSError):
-                os.write(report, (str(error) or type(error).__name__)[:_WORDS].encode())
+                os.write(report, (str(error) or type(error).__name__)[:_WORDS].encode("utf-8", "replace"))
             os._exit(1)
 
     def _beget(self) -> bool:
