@@ -293,6 +293,10 @@ class Trunk:
         for child in self._children.values():
             os.close(child.pidfd)
         self._children.clear()
+        if self._bunch is None:  # else those that it was forked from have closed them
+            self._tokens.close()
+            if self.branching.gate is not None:
+                os.close(self.branching.gate)
         isolate_files(self.log)
         foot.restore()
         choices = {mutant.id: self.branching.choices.get(mutant.id, ()) for mutant in mutants}
