@@ -70,6 +70,15 @@ class Called:
 
 
 @dataclass(frozen=True, slots=True)
+class RefusedCall:
+    """The robot refused a call of the original: its site, and its number there in this process, from 1."""
+
+    test: int
+    site: int
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
 class Did:
     """What the mutant did since the last time: counts are to be added up.
 
@@ -167,6 +176,7 @@ Entry = (
     | Node
     | SiteSeen
     | Called
+    | RefusedCall
     | Did
     | MutatedCall
     | Places

@@ -90,7 +90,7 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
                 reason = "no call raises in the baseline"
             if rule.asks_idle and reason is None:
                 try:
-                    answers = _answers(baseline, place) if rule.needs_error else baseline.answers[place]
+                    answers = _answers(baseline, place, of_any=rule.needs_error)
                     mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
                 except NoAnswerError as error:
                     reason = str(error)
@@ -101,15 +101,22 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
     return Plan(mutants, left_out)
 
 
-def _answers(baseline: Baseline, place: Place) -> RecordedAnswers:
-    """What calls of a place returned; where all of them raised, what the same command returned elsewhere."""
-    others = (
+def _answers(baseline: Baseline, place: Place, *, of_any: bool) -> RecordedAnswers:
+    """What calls of a place returned; where all of them raised, what the same command returned elsewhere.
+
+    That is taken for what it answers here if it returned nothing wherever it returned; or, with ``of_any``,
+    whatever it was.
+    """
+    own = baseline.answers[place]
+    if own.first:
+        return own
+    others = [
         answers
         for other, answers in baseline.answers.items()
         if (other.operation, other.pattern) == (place.operation, place.pattern) and answers.first
-    )
-    own = baseline.answers[place]
-    return own if own.first else next(others, own)
+    ]
+    is_told = others and (of_any or all(one.is_nothing for one in others))
+    return others[0] if is_told else own
 
 
 def _subjects(

@@ -42,6 +42,7 @@ class Activation:
         rule: its operator.
         watched: how the robot says that it refuses the last mutated call of the running test.
         time: simulated seconds since the test's first tick; None without a clock.
+        usual: numbers of the calls of its site in the running test that the robot refuses in the original.
     """
 
     mutant: Mutant
@@ -53,6 +54,7 @@ class Activation:
     rule: Operator = field(init=False)
     watched: tuple[Refused, ...] = ()
     time: Callable[[], float | None] = lambda: None
+    usual: frozenset[int] = frozenset()
     _told_by: tuple[Refused, ...] = ()
     _commands: int = 0
     _told: int = 0
@@ -69,11 +71,23 @@ class Activation:
         """What it did before the first test counts in every test."""
         self._early = self.evidence
 
-    def start(self, seed: int, round: int = 0, test: str = "", moment: Moment | None = None) -> None:
+    def start(
+        self,
+        seed: int,
+        round: int = 0,
+        test: str = "",
+        moment: Moment | None = None,
+        usual: frozenset[int] = frozenset(),
+    ) -> None:
         """A new test begins; the mutant's randomness follows from ``seed`` alone.
 
-        ``moment``: at which calls of the test it acts; None for all.
+        Args:
+            seed: of the mutant in this test.
+            round, test: which.
+            moment: at which calls of the test it acts; None for all.
+            usual: numbers of the calls of its site that the robot refuses in the original too.
         """
+        self.usual = usual
         self.evidence = replace(self._early, away=dict(self._early.away))
         self.rule = operator(self.mutant.operator)
         self._middleware = self.rule.middleware(self._subject(), Random(seed))
@@ -107,7 +121,9 @@ class Activation:
         self.evidence.hits += 1
         passage = Passage(kept_call(call) if self._copies else call)
         is_due = self._moment is None or self._moment.holds(number, self.time())
-        performer = _Performer(self, door, passage, is_async, does_nothing=is_due and self.rule.does_nothing)
+        performer = _Performer(
+            self, door, passage, is_async, does_nothing=is_due and self.rule.does_nothing, number=number
+        )
         self._commands, self._told, self._is_passed = 0, 0, False
         middleware = self._middleware if is_due else _not_yet
         passage.call = replace(passage.call, is_refusal=partial(is_refusal, names=self.refusals))
@@ -117,7 +133,7 @@ class Activation:
             reply = await passed(passage, _one_is_due if self._due else middleware, performer.proceed)
             reply = passage.received = mishaps.heard_of(passage.call, reply)
             self.note(passage)
-            self._next += [Deferred(door, held(one), passage, is_async) for one in passage.deferred]
+            self._next += [Deferred(door, held(one), passage, is_async, number) for one in passage.deferred]
             last = passage.answered[-1] if passage.answered else None
             handed = mishaps.hand_over(passage.call, reply, partial(door.result, passage.call, original=last))
         except BaseException as error:
@@ -141,7 +157,9 @@ class Activation:
         self._next = []
         for one in due:
             passage = Passage(one.passage.call, is_late=True)
-            performer = _Performer(self, one.door, passage, one.is_async, does_nothing=False)
+            performer = _Performer(
+                self, one.door, passage, one.is_async, does_nothing=False, number=one.number
+            )
             passage.performed.append(one.call)
             try:
                 await performer.proceed(one.call)
@@ -257,23 +275,29 @@ class Deferred:
         call: the call.
         passage: that of the call in which it was deferred.
         is_async: whether what it returns is to be awaited.
+        number: of the call in whose place it is made, among those of its site.
     """
 
     door: Door
     call: Call
     passage: Passage
     is_async: bool
+    number: int
 
 
 @dataclass(slots=True)
 class _Performer:
-    """Performs calls for a passage, and notes how the robot took the mutated ones."""
+    """Performs calls for a passage, and notes how the robot took the mutated ones.
+
+    A call that the robot refuses in the original too, by its ``number``, is left to the tests.
+    """
 
     activation: Activation
     door: Door
     passage: Passage
     is_async: bool
     does_nothing: bool
+    number: int
     raised: BaseException | None = None
 
     async def proceed(self, call: Call) -> Reply:
@@ -286,7 +310,7 @@ class _Performer:
         self.activation.count(call)
         if mutated:
             self.activation.on_call(True)
-            self.activation.watched = refused_of(call)
+            self.activation.watched = () if self._is_usual else refused_of(call)
         try:
             await mishaps.before(call, self._last_words)
             result = mishaps.timed(call, partial(self.door.perform, call, self.passage.call))()
@@ -307,6 +331,10 @@ class _Performer:
         reply = self.door.reply(call, result)
         return kept_reply(reply) if self.activation._copies else reply
 
+    @property
+    def _is_usual(self) -> bool:
+        return self.number in self.activation.usual
+
     def _last_words(self) -> None:
         """This process is about to die of the mutant: tell what it did."""
         self.activation.note(self.passage)
@@ -318,6 +346,8 @@ class _Performer:
             return
         evidence = self.activation.evidence
         if is_refusal(error, self.activation.refusals):
+            if self._is_usual:
+                return
             evidence.refusals = with_refusal(evidence.refusals, error)
         elif isinstance(error, TypeError) and _raised_at_the_call(error):
             evidence.invalid = True

@@ -37,6 +37,7 @@ from mutabot.border.processes import (
     Node,
     Places,
     Raised,
+    RefusedCall,
     Signalled,
     Used,
 )
@@ -135,6 +136,7 @@ class Member:
         session = self.session
         watch_forks(self._folder, session)
         session.recorder.on_hit = self._hit
+        session.on_refused = self._refused
         session.passing.on_end = self._after
         session.passing.turn = self.turn
         for targets in session.interception.kinds:
@@ -199,6 +201,9 @@ class Member:
 
     def _hit(self, site: int, written: Any, read: Any, answer: Any) -> None:
         self.diary.write(Called(self._test, time.monotonic(), site, written, read, answer))
+
+    def _refused(self, site: int, number: int) -> None:
+        self.diary.write(RefusedCall(self._test, site, number))
 
     def _after(self, call: Call, read: Mapping[str, Value]) -> None:
         self.poll()

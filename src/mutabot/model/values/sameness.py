@@ -1,4 +1,4 @@
-"""Whether two values of a quantity are the same for the robot: then one in the place of the other is no fault.
+"""Whether two values of a quantity are the same for the robot: one in the place of the other is no fault.
 
 Plan, engines and operators of all families ask here, so that what one leaves out no other plants.
 """
@@ -101,8 +101,8 @@ def _is_full_turn(quantity: Quantity, one: float, other: float) -> bool:
 def _turn_of_target(quantity: Quantity) -> float | None:
     """A full turn, where it makes no difference to the robot which of two targets it is sent.
 
-    A program that reads an angle may well tell 180 from −180 degrees. A joint tells them apart as well, and so
-    does whatever has a range of more than one turn: it winds.
+    A program that reads an angle may well tell 180 from −180 degrees. A joint tells them apart as well, and
+    so does whatever has a range of more than one turn: it winds.
     """
     turn = quantity.full_turn
     if turn is None or quantity.kind is not Kind.ROTATION or quantity.mode is not Mode.TO:
