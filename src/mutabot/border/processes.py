@@ -79,6 +79,14 @@ class RefusedCall:
 
 
 @dataclass(frozen=True, slots=True)
+class Live:
+    """A call of the original returned the robot's own memory: its site."""
+
+    test: int
+    site: int
+
+
+@dataclass(frozen=True, slots=True)
 class Did:
     """What the mutant did since the last time: counts are to be added up.
 
@@ -177,6 +185,7 @@ Entry = (
     | SiteSeen
     | Called
     | RefusedCall
+    | Live
     | Did
     | MutatedCall
     | Places

@@ -31,6 +31,7 @@ class TestEnd:
         refused: text of the refusal of a mutated call, or None.
         refused_calls: in the baseline, the calls that the robot refused: site index, and the call's number
             among those of its site, from 1.
+        live: in the baseline, indexes of sites that returned the robot's own memory, not a copy of it.
         caught: whether the program handled that refusal, so that the test ended for another reason.
         hits: calls at the mutant's site (with its operation and pattern).
         acted: hits at which the mutant changed something.
@@ -76,6 +77,7 @@ class TestEnd:
     invalid: bool = False
     refused: str | None = None
     refused_calls: tuple[tuple[int, int], ...] = ()
+    live: tuple[int, ...] = ()
     caught: bool = False
     hits: int = 0
     acted: int = 0

@@ -60,7 +60,8 @@ class Session:
         recording: what the world does while the test runs.
         test: node id of the running test.
         refused_calls: in the baseline, calls of the running test that the robot refused: see ``TestEnd``.
-        on_refused: told of each of them; None if nobody asks.
+        live: in the baseline, sites that returned the robot's own memory: see ``TestEnd``.
+        on_refused, on_live: told of each of them; None if nobody asks.
         parts: the mutants of which its own consists that changed something in it; that of the text has no
             name.
     """
@@ -82,7 +83,9 @@ class Session:
     returns: Returns | None = None
     test: str = ""
     refused_calls: list[tuple[int, int]] = field(default_factory=list)
+    live: set[int] = field(default_factory=set)
     on_refused: Callable[[int, int], None] | None = None
+    on_live: Callable[[int], None] | None = None
     parts: set[str] = field(default_factory=set)
     _doors: list[Door] = field(default_factory=list)
     _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
@@ -198,6 +201,8 @@ class Session:
     @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test."""
+        for activation in self.activations:
+            activation.look_back()
         found = [activation.evidence for activation in self.activations]
         if self.text is not None and self.text.is_mutant:
             found.append(self.text.evidence)
@@ -252,6 +257,8 @@ class Session:
         self.instances.start()
         self.passing.calls.clear()
         self.refused_calls.clear()
+        self.live.clear()
+        self.passing.on_live = self._is_live if is_baseline else None
         self.passing.refused.on_refused = self._refused if is_baseline else None
         self.passing.refused.start(self.job.refused.get(test, ()))
         self.along.start(self.job.moments.get(test, 0))
@@ -370,12 +377,22 @@ class Session:
 
     def _refused(self, made: Made) -> None:
         """The robot refused a call of the original."""
+        self.refused_calls.append((self._index_of(made), made.number))
+        if self.on_refused is not None:
+            self.on_refused(*self.refused_calls[-1])
+
+    def _is_live(self, made: Made) -> None:
+        """A call of the original returned the robot's own memory."""
+        site = self._index_of(made)
+        if site not in self.live and self.on_live is not None:
+            self.on_live(site)
+        self.live.add(site)
+
+    def _index_of(self, made: Made) -> int:
         (span, role), call = made.site, made.call
         pattern = call.pattern.text if call.pattern is not None else None
         seen = SiteSeen(-1, span, call.operation.target, pattern, role is Role.ORACLE)
-        self.refused_calls.append((self.recorder.index_of(seen), made.number))
-        if self.on_refused is not None:
-            self.on_refused(*self.refused_calls[-1])
+        return self.recorder.index_of(seen)
 
     @property
     def _on_end(self) -> Callable[..., None] | None:

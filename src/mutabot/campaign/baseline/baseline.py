@@ -53,6 +53,7 @@ class Baseline:
         dependent: selections of tests that pass only together with others; filled in by the controls.
         strides: after every how many commands probes are read along the way, by (round, test).
         refused: (round, test) to the calls that the robot refuses there: see ``Job.refused``.
+        written_through: places that return the robot's own memory, to which the program writes.
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
         doubted: tests that have failed once where equal runs pass.
         unequal: (round, test) that were not the same to the last bit in all runs of the original.
@@ -78,6 +79,7 @@ class Baseline:
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
     strides: Mapping[tuple[int, str], int] = field(default_factory=dict)
     refused: dict[tuple[int, str], tuple[RefusedAt, ...]] = field(default_factory=dict)
+    written_through: set[Place] = field(default_factory=set)
     restless: set[tuple[int, str]] = field(default_factory=set)
     unequal: set[tuple[int, str]] = field(default_factory=set)
     doubted: set[str] = field(default_factory=set)

@@ -261,6 +261,8 @@ def _no_tests(baseline: Baseline) -> str:
 
 def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, good: list[str]) -> None:
     places = places_of(result, sources)
+    live = {places[index] for end in result.ends for index in end.live}
+    baseline.written_through |= {place for place in live if sources.is_written_through(place.site.span)}
     reaching: dict[Place, list[str]] = {}
     for end in result.ends:
         if end.test not in good:

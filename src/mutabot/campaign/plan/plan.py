@@ -37,6 +37,10 @@ from .demanded import ladders_last, with_demanded
 from .moments import at_moments
 from .planned import Plan
 
+_LOST_WRITE = (
+    "the program writes to what the call returns, which is the robot's own memory: "
+    "a mutant hands out a copy, and what is written to that is lost"
+)
 #: recorded calls per place that are tried out; calls of one place are much alike
 TRIED = 200
 
@@ -86,6 +90,8 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             mutant = replace(
                 mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
             )
+            if place in baseline.written_through and _only_reads(subject):
+                reason = _LOST_WRITE
             if rule.needs_error and not baseline.answers[place].has_raised:
                 reason = "no call raises in the baseline"
             if rule.asks_idle and reason is None:
@@ -209,6 +215,11 @@ def _why_no_time(rule: Operator, vocabulary: Vocabulary, operation: Operation) -
     if rule.asks_wait and vocabulary.wait is None and operation.named is None:
         return "the vocabulary does not say what lets the program's time pass (wait = …)"
     return None
+
+
+def _only_reads(subject: Subject) -> bool:
+    """Whether it is about a quantity that the call reads."""
+    return subject.quantity in subject.read and subject.quantity not in subject.written
 
 
 def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:

@@ -23,8 +23,10 @@ from mutabot.operators.operator import subject_of
 from mutabot.operators.passage import Carried, Passage, passed
 
 from . import mishaps
+from .answers import snapshot
 from .door import Door, here
 from .keeping import held, kept_call, kept_reply
+from .live import HandedCopies, is_live
 from .refusing import answered, heard, is_told_on, refused_of
 
 
@@ -64,6 +66,7 @@ class Activation:
     _moment: Moment | None = None
     _test: tuple[int, str] = (0, "")
     _early: Evidence = field(default_factory=Evidence)
+    _handed: HandedCopies = field(default_factory=HandedCopies)
     _due: list[Deferred] = field(default_factory=list)
     _next: list[Deferred] = field(default_factory=list)
 
@@ -95,6 +98,7 @@ class Activation:
         self._test = (round, test)
         self._moment = moment
         self.watched = ()
+        self._handed = HandedCopies()
         self._due, self._next = [], []
 
     def is_here(self, site: tuple[Span, Role], target: str) -> bool:
@@ -118,6 +122,7 @@ class Activation:
         Returns what the program receives, and the robot's last answer.
         """
         assert self._middleware is not None
+        self.look_back()
         self.evidence.hits += 1
         passage = Passage(kept_call(call) if self._copies else call)
         is_due = self._moment is None or self._moment.holds(number, self.time())
@@ -135,7 +140,7 @@ class Activation:
             self.note(passage)
             self._next += [Deferred(door, held(one), passage, is_async, number) for one in passage.deferred]
             last = passage.answered[-1] if passage.answered else None
-            handed = mishaps.hand_over(passage.call, reply, partial(door.result, passage.call, original=last))
+            handed = mishaps.hand_over(passage.call, reply, partial(self._result, performer, last))
         except BaseException as error:
             if passage.received is None:
                 self.note(passage)
@@ -166,6 +171,24 @@ class Activation:
             finally:
                 if not one.passage.acted_at_once:
                     self._acts(passage)
+
+    def look_back(self) -> None:
+        """Look whether the program has written to what it got in the place of the robot's own memory."""
+        if self._handed.look() and self.evidence.failure is None:
+            self.evidence.failure = (
+                f"the program writes to what {self.operation.name} returns, which is the robot's own memory; "
+                "with the mutant it wrote to a copy, so the robot did not get it"
+            )
+
+    def _result(self, performer: _Performer, last: Reply | None, reply: Reply) -> Any:
+        """What the program gets of a reply: the robot's own answer where nothing in it is changed."""
+        call = performer.passage.call
+        if performer.is_answered and reply.payload is performer.kept:
+            reply = replace(reply, payload=performer.answer)
+        result = performer.door.result(call, reply, original=last)
+        if performer.is_live and result is not performer.answer:
+            self._handed.note(performer.answer, result, (call.pattern or call.operation).result)
+        return result
 
     @property
     def _copies(self) -> bool:
@@ -248,12 +271,12 @@ class Activation:
             return (dict(passage.call.values), [dict(call.values) for call in passage.performed])
         if passage.changed_command:
             after = passage.performed[0].values.get(name) if passage.performed else None
-            return (passage.call.values.get(name), after)
+            return (snapshot(passage.call.values.get(name)), snapshot(after))
         reply = passage.received
         received = reply.values.get(name) if reply is not None else None
         if reply is not None and reply.error:
             received = f"raises {reply.error}"
-        return (passage.answered[-1].values.get(name), received)
+        return (snapshot(passage.answered[-1].values.get(name)), snapshot(received))
 
 
 async def _not_yet(call: Call, proceed: Proceed) -> Reply:
@@ -290,6 +313,12 @@ class _Performer:
     """Performs calls for a passage, and notes how the robot took the mutated ones.
 
     A call that the robot refuses in the original too, by its ``number``, is left to the tests.
+
+    Attributes:
+        raised: what the robot raised.
+        answer: what it returned last, and whether it has.
+        kept: the same, or the copy that the operator saw.
+        is_live: whether that is the robot's own memory.
     """
 
     activation: Activation
@@ -299,6 +328,10 @@ class _Performer:
     does_nothing: bool
     number: int
     raised: BaseException | None = None
+    answer: Any = None
+    is_answered: bool = False
+    kept: Any = None
+    is_live: bool = False
 
     async def proceed(self, call: Call) -> Reply:
         if self.does_nothing:
@@ -328,8 +361,12 @@ class _Performer:
                 self.activation.on_call(False)
         if mutated and self.activation.watched:
             self.activation.refused_as(answered(call, result))
+        meant = call.pattern or call.operation
+        self.is_live = bool(meant.result) and is_live(result, meant.result)
         reply = self.door.reply(call, result)
-        return kept_reply(reply) if self.activation._copies else reply
+        reply = kept_reply(reply) if self.activation._copies else reply
+        self.answer, self.is_answered, self.kept = result, True, reply.payload
+        return reply
 
     @property
     def _is_usual(self) -> bool:

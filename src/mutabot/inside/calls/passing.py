@@ -32,6 +32,7 @@ from mutabot.operators.passage import Carried, run
 from .activation import Activation
 from .answers import Returned
 from .door import Door, here
+from .live import is_live
 from .refusing import Made, RefusedCalls
 from .trace import Recorder
 
@@ -89,6 +90,7 @@ class Passing:
         trunk: set while this process runs the original and forks a branch per mutant.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
         activations: the mutants of calls that are at work: none for the original.
+        on_live: told in the baseline of each call that returned the robot's own memory; None in other runs.
         refused: the calls of the running test that the robot refuses in the original.
         calls: how often each site has been called in the running test, by operation and pattern.
     """
@@ -116,6 +118,7 @@ class Passing:
         self.activations: list[Activation] = []
         self.oracle_nodes: tuple[str, ...] = ()
         self._operator = ""
+        self.on_live: Callable[[Made], None] | None = None
         self.refused = RefusedCalls()
         self.calls: Counter[tuple[Span, str, str | None]] = Counter()
 
@@ -260,6 +263,10 @@ class Passing:
             if isinstance(error, StopIteration):
                 raise Carried(error) from None
             raise
+        if self.on_live is not None:
+            meant = call.pattern or door.operation
+            if meant.result and is_live(result, meant.result):
+                self.on_live(made)
         self.refused.returned(made, result)
         return door.reply(call, result)
 

@@ -34,6 +34,7 @@ from mutabot.border.processes import (
     Ended,
     Exceeded,
     Found,
+    Live,
     Node,
     Places,
     Raised,
@@ -136,7 +137,7 @@ class Member:
         session = self.session
         watch_forks(self._folder, session)
         session.recorder.on_hit = self._hit
-        session.on_refused = self._refused
+        session.on_refused, session.on_live = self._refused, self._is_live
         session.passing.on_end = self._after
         session.passing.turn = self.turn
         for targets in session.interception.kinds:
@@ -204,6 +205,9 @@ class Member:
 
     def _refused(self, site: int, number: int) -> None:
         self.diary.write(RefusedCall(self._test, site, number))
+
+    def _is_live(self, site: int) -> None:
+        self.diary.write(Live(self._test, site))
 
     def _after(self, call: Call, read: Mapping[str, Value]) -> None:
         self.poll()

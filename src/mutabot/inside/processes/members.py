@@ -23,6 +23,7 @@ from mutabot.border.processes import (
     Entry,
     Exceeded,
     Found,
+    Live,
     Node,
     Places,
     Raised,
@@ -52,7 +53,7 @@ class Account:
         ended: whether it ended in an orderly way.
         raised: what ended it otherwise.
         is_in_call: whether a mutated call has begun in it and not ended.
-        called, refused, did, used, exceeded: what it told during the running test.
+        called, refused, live, did, used, exceeded: what it told during the running test.
     """
 
     began: Began
@@ -63,6 +64,7 @@ class Account:
     is_in_call: bool = False
     called: list[Called] = field(default_factory=list)
     refused: list[RefusedCall] = field(default_factory=list)
+    live: list[Live] = field(default_factory=list)
     did: list[Did] = field(default_factory=list)
     used: Used | None = None
     exceeded: str | None = None
@@ -88,6 +90,7 @@ class Account:
         """The test is over."""
         self.called.clear()
         self.refused.clear()
+        self.live.clear()
         self.did.clear()
         self.used, self.exceeded = None, None
         if self.raised is not None and self.raised.in_thread:
@@ -177,6 +180,8 @@ class Members:
                 member.called.append(entry)
             case RefusedCall():
                 member.refused.append(entry)
+            case Live():
+                member.live.append(entry)
             case Did():
                 member.did.append(entry)
             case MutatedCall():
@@ -212,6 +217,7 @@ class Members:
         return replace(
             end,
             refused_calls=(*end.refused_calls, *refused),
+            live=tuple(sorted({*end.live, *(one.sites[call.site] for one in here for call in one.live)})),
             trace=tuple(trace[:TRACE_LIMIT]) if self._session.job.record else (),
             truncated=end.truncated or len(trace) > TRACE_LIMIT,
             operations=end.operations + max(len(called), sum(one.operations for one in used)),

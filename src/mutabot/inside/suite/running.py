@@ -174,6 +174,7 @@ class Running:
             invalid=evidence.invalid or is_no_program(evidence, cause),
             refused=refusal,
             refused_calls=tuple(session.refused_calls),
+            live=tuple(sorted(session.live)),
             caught=is_caught and self._outcome == FAILED and not ended_by_refusal,
             hits=evidence.hits,
             acted=evidence.acted,
