@@ -201,12 +201,16 @@ class Session:
     @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test."""
-        for activation in self.activations:
-            activation.look_back()
+        self.look_back()
         found = [activation.evidence for activation in self.activations]
         if self.text is not None and self.text.is_mutant:
             found.append(self.text.evidence)
         return together(found)
+
+    def look_back(self, *, at_all: bool = False) -> None:
+        """Look whether the program has written to copies that mutants handed out; ``at_all`` of them."""
+        for activation in self.activations:
+            activation.look_back(at_all=at_all)
 
     @property
     def commands(self) -> int:
@@ -320,6 +324,7 @@ class Session:
 
     def take_probes(self) -> Reading:
         """Read all probes: at the end of a test, before its fixtures take the world down."""
+        self.look_back(at_all=True)
         if self.returns is not None:
             self.returns.stop()
         self.along.stop()

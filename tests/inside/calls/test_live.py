@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from types import SimpleNamespace
 from typing import Any
 
@@ -92,6 +93,16 @@ def test_a_write_to_an_alias_is_seen_however_late() -> None:
     assert copies.look()
 
 
+def test_of_many_that_the_program_keeps_the_last_are_looked_at_and_in_the_end_all() -> None:
+    robot, copies = Robot(), HandedCopies()
+    log = [[float(number)] for number in range(100)]
+    for one in log:
+        copies.note(robot.numbers, one, FIRST)
+    log[3][0] = -1.0
+    assert not copies.look()
+    assert copies.look(at_all=True)
+
+
 def test_a_write_to_a_part_of_a_copy_is_seen() -> None:
     robot, copies = Robot(), HandedCopies()
     handed = SimpleNamespace(position=np.ones(3))
@@ -107,6 +118,38 @@ def test_a_part_that_is_no_copy_may_be_written_to() -> None:
     copies.note(SimpleNamespace(x=0.0, more=own), SimpleNamespace(x=1.0, more=own), ())
     own[0] = 0.5
     assert not copies.look()
+
+
+class Pose:
+    def __init__(self) -> None:
+        self.x = 0.5
+        self._norm: float | None = None
+        self.note: str | None = None
+
+    @cached_property
+    def doubled(self) -> float:
+        return 2.0 * self.x
+
+    @property
+    def norm(self) -> float:
+        if self._norm is None:
+            self._norm = abs(self.x)
+        return self._norm
+
+
+def test_what_an_object_remembers_by_itself_is_no_write() -> None:
+    copies, handed = HandedCopies(), Pose()
+    copies.note(Pose(), handed, ())
+    assert handed.doubled + handed.norm == 1.5
+    assert not copies.look()
+
+
+@pytest.mark.parametrize(("name", "value"), [("x", 0.25), ("note", "hot"), ("new", 1)])
+def test_an_attribute_that_the_program_sets_is_one(name: str, value: Any) -> None:
+    copies, handed = HandedCopies(), Pose()
+    copies.note(Pose(), handed, ())
+    setattr(handed, name, value)
+    assert copies.look()
 
 
 def test_copies_that_the_program_has_no_more_are_not_kept() -> None:

@@ -172,9 +172,9 @@ class Activation:
                 if not one.passage.acted_at_once:
                     self._acts(passage)
 
-    def look_back(self) -> None:
+    def look_back(self, *, at_all: bool = False) -> None:
         """Look whether the program has written to what it got in the place of the robot's own memory."""
-        if self._handed.look() and self.evidence.failure is None:
+        if self._handed.look(at_all=at_all) and self.evidence.failure is None:
             self.evidence.failure = (
                 f"the program writes to what {self.operation.name} returns, which is the robot's own memory; "
                 "with the mutant it wrote to a copy, so the robot did not get it"

@@ -10,12 +10,16 @@ import copy
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.model import Quantity
 from mutabot.model.values.path import Path, Step
 
+#: copies that are looked at after each call
+_LAST = 8
+_MISSING = object()
 #: values that nobody can write to
 _FIXED = (int, float, complex, str, bytes, bool, type(None), frozenset, range)
 
@@ -114,15 +118,19 @@ class HandedCopies:
                 known.add(id(after))
                 self._handed.append(_Handed(after, _content(after)))
 
-    def look(self) -> bool:
-        """Whether the program has written to one by now; those that it has no more are forgotten."""
-        kept = []
-        while self._handed and not self.written:
-            one = self._handed.pop()
-            self.written = not _is_equal(one.before, _content(one.value))
+    def look(self, *, at_all: bool = False) -> bool:
+        """Whether the program has written to one by now; those that it has no more are forgotten.
+
+        Without ``at_all`` only the last ones are looked at: a program may keep every reading that it takes.
+        """
+        start = 0 if at_all else max(0, len(self._handed) - _LAST)
+        waiting = self._handed[start:]
+        del self._handed[start:]
+        while waiting and not self.written:
+            one = waiting.pop(0)  # what it is a part of comes before a part, and goes before it
+            self.written = not _is_as_before(one)
             if sys.getrefcount(one.value) > _IN_RECORD:
-                kept.append(one)
-        self._handed = [] if self.written else kept[::-1]
+                self._handed.append(one)
         return self.written
 
 
@@ -152,13 +160,25 @@ def _slots(kind: type) -> tuple[str, ...]:
     return (slots,) if isinstance(slots, str) else tuple(slots)
 
 
-def _is_equal(one: Any, other: Any) -> bool:
-    """Whether two contents hold the same objects, or equal plain values."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(_is_alike(one[key], other[key]) for key in one)
-    if isinstance(one, list) and isinstance(other, list):
-        return len(one) == len(other) and all(map(_is_alike, one, other))
-    return _is_alike(one, other)
+def _is_as_before(one: _Handed) -> bool:
+    """Whether an object holds the same objects as before, or equal plain values."""
+    before, now = one.before, _content(one.value)
+    if isinstance(before, dict) and isinstance(now, dict):
+        return all(
+            _is_alike(before.get(key, _MISSING), now.get(key, _MISSING))
+            for key in {**before, **now}
+            if before.get(key) is not None or not _is_noted_by_itself(one.value, key)
+        )
+    if isinstance(before, list) and isinstance(now, list):
+        return len(before) == len(now) and all(map(_is_alike, before, now))
+    return _is_alike(before, now)
+
+
+def _is_noted_by_itself(value: Any, key: Any) -> bool:
+    """Whether an attribute that was not there yet is what an object remembers of its own: no write."""
+    if isinstance(value, dict) or not isinstance(key, str):
+        return False
+    return key.startswith("_") or isinstance(getattr(type(value), key, None), cached_property)
 
 
 def _is_alike(one: Any, other: Any) -> bool:

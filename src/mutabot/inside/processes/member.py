@@ -149,6 +149,7 @@ class Member:
     def turn(self) -> None:
         """Look whether another test has begun."""
         if self._now.number != self._test:
+            self.session.look_back(at_all=True)
             self.poll()
             self._use()
             self._test = self._now.number
@@ -254,6 +255,7 @@ class Member:
         if self._is_over or _member is not self:
             return
         self._is_over = True
+        self.session.look_back(at_all=True)
         self.poll()
         self._use()
         if self.session.text is not None:
