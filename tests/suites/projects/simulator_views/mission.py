@@ -1,6 +1,5 @@
 def place_box(sim):
-    position = sim.box()
-    position[2] = 0.25
+    sim.box()[2] = 0.25
 
 
 def nudge_box(sim):
