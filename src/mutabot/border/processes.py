@@ -70,6 +70,23 @@ class Called:
 
 
 @dataclass(frozen=True, slots=True)
+class RefusedCall:
+    """The robot refused a call of the original: its site, and its number there in this process, from 1."""
+
+    test: int
+    site: int
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Live:
+    """A call of the original returned the robot's own memory: its site."""
+
+    test: int
+    site: int
+
+
+@dataclass(frozen=True, slots=True)
 class Did:
     """What the mutant did since the last time: counts are to be added up.
 
@@ -167,6 +184,8 @@ Entry = (
     | Node
     | SiteSeen
     | Called
+    | RefusedCall
+    | Live
     | Did
     | MutatedCall
     | Places

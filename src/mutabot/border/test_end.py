@@ -29,6 +29,9 @@ class TestEnd:
         failure: the simulator's failure, or None.
         invalid: whether the mutated call rejected its arguments' types.
         refused: text of the refusal of a mutated call, or None.
+        refused_calls: in the baseline, the calls that the robot refused: site index, and the call's number
+            among those of its site, from 1.
+        live: in the baseline, indexes of sites that returned the robot's own memory, not a copy of it.
         caught: whether the program handled that refusal, so that the test ended for another reason.
         hits: calls at the mutant's site (with its operation and pattern).
         acted: hits at which the mutant changed something.
@@ -73,6 +76,8 @@ class TestEnd:
     failure: str | None = None
     invalid: bool = False
     refused: str | None = None
+    refused_calls: tuple[tuple[int, int], ...] = ()
+    live: tuple[int, ...] = ()
     caught: bool = False
     hits: int = 0
     acted: int = 0

@@ -8,9 +8,12 @@ from pathlib import Path
 
 from mutabot.border.lines import SiteSeen
 from mutabot.languages.front_end import Name
+from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.registry import front_end_of
-from mutabot.model import Role, Site
+from mutabot.model import Role, Site, Span
 from mutabot.model.alternative import Extent
+
+from .writes import written_through
 
 
 @dataclass(slots=True)
@@ -23,6 +26,7 @@ class Sources:
 
     root: Path
     _files: dict[str, Mapping[Extent, Name]] = field(default_factory=dict)
+    _written: dict[str, frozenset[Extent]] = field(default_factory=dict)
 
     def site(self, seen: SiteSeen) -> Site:
         """The site at which something was seen."""
@@ -33,6 +37,20 @@ class Sources:
         extent = (span.line, span.column, span.end_line, span.end_column)
         text, occurrence = names.get(extent, Name(f"line {span.line}", 1))
         return Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
+
+    def is_written_through(self, span: Span) -> bool:
+        """Whether the file writes to what an expression of it gives, as far as its text says."""
+        if span.file not in self._written:
+            self._written[span.file] = self._written_in(span.file)
+        return (span.line, span.column, span.end_line, span.end_column) in self._written[span.file]
+
+    def _written_in(self, file: str) -> frozenset[Extent]:
+        if front_end_of(file) is not PYTHON:
+            return frozenset()
+        try:
+            return written_through((self.root / file).read_text(encoding="utf-8"))
+        except (OSError, SyntaxError, ValueError):
+            return frozenset()
 
     def _names_in(self, file: str) -> Mapping[Extent, Name]:
         """Names of all that may be a site; none for a file that cannot be read."""

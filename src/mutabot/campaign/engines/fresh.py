@@ -83,6 +83,7 @@ def task(
         stop_at_kill=stop and not request.every_test,
         budgets=budgets,
         moments=moments_in(baseline.strides, round),
+        refused=baseline.refused_in(round, tests),
         instrumentation=baseline.program.instrumentation([mutant], active=True),
     )
     least = request.configuration.timeout_seconds

@@ -254,6 +254,7 @@ class _Trunk:
             record=True,
             budgets=budgets,
             moments=moments_in(baseline.strides, round),
+            refused=baseline.refused_in(round, in_order),
             branching=branching,
             instrumentation=text,
         )

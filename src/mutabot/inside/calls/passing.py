@@ -32,6 +32,8 @@ from mutabot.operators.passage import Carried, run
 from .activation import Activation
 from .answers import Returned
 from .door import Door, here
+from .live import is_live
+from .refusing import Made, RefusedCalls
 from .trace import Recorder
 
 #: whether an operation is already under way here: only the outermost is a site
@@ -78,7 +80,7 @@ class Passing:
         recorder: traces the calls.
         instances: notes which objects are used.
         along: reads probes along the way.
-        on_error: told of each unmutated call that raised, with what it raised.
+        on_error: told of each unmutated call that raised, after what it raised.
         locate_definition: finds the site of a function that is called back; None likewise.
 
     Attributes:
@@ -88,6 +90,8 @@ class Passing:
         trunk: set while this process runs the original and forks a branch per mutant.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
         activations: the mutants of calls that are at work: none for the original.
+        on_live: told in the baseline of each call that returned the robot's own memory; None in other runs.
+        refused: the calls of the running test that the robot refuses in the original.
         calls: how often each site has been called in the running test, by operation and pattern.
     """
 
@@ -97,7 +101,7 @@ class Passing:
         recorder: Recorder,
         instances: Instances,
         along: Along,
-        on_error: Callable[[BaseException, Call], None],
+        on_error: Callable[[BaseException, Made], None],
         on_end: Callable[[Call, Mapping[str, Value]], None] | None = None,
         locate_definition: Callable[[CodeType], tuple[Span, Role] | None] = lambda code: None,
     ) -> None:
@@ -114,6 +118,8 @@ class Passing:
         self.activations: list[Activation] = []
         self.oracle_nodes: tuple[str, ...] = ()
         self._operator = ""
+        self.on_live: Callable[[Made], None] | None = None
+        self.refused = RefusedCalls()
         self.calls: Counter[tuple[Span, str, str | None]] = Counter()
 
     def activate(self, activation: Activation) -> None:
@@ -197,7 +203,7 @@ class Passing:
                 if mutant is None:
                     for activation in self.activations:
                         activation.passed_by(call)
-                    reply = await self._perform(door, call, is_async)
+                    reply = await self._perform(door, Made(site, call, number), is_async)
                     result = reply.payload
                 else:
                     result, reply = await mutant.perform(door, call, is_async, number)
@@ -243,18 +249,25 @@ class Passing:
                 return activation
         return None
 
-    async def _perform(self, door: Door, call: Call, is_async: bool) -> Reply:
+    async def _perform(self, door: Door, made: Made, is_async: bool) -> Reply:
         """Let the robot do what the program says."""
         __tracebackhide__ = True
+        call = made.call
+        self.refused.begins(made)
         try:
             result = door.perform(call, call)
             if is_async:
                 result = await result
         except BaseException as error:
-            self._on_error(error, call)
+            self._on_error(error, made)
             if isinstance(error, StopIteration):
                 raise Carried(error) from None
             raise
+        if self.on_live is not None:
+            meant = call.pattern or door.operation
+            if meant.result and is_live(result, meant.result):
+                self.on_live(made)
+        self.refused.returned(made, result)
         return door.reply(call, result)
 
     def _note(self, site: tuple[Span, Role], call: Call, reply: Reply | None, began: float | None) -> None:

@@ -174,6 +174,8 @@ class Running:
             failure=evidence.failure or (cause.failure if cause else None),
             invalid=evidence.invalid or is_no_program(evidence, cause),
             refused=refusal,
+            refused_calls=tuple(session.refused_calls),
+            live=tuple(sorted(session.live)),
             caught=is_caught and self._outcome == FAILED and not ended_by_refusal,
             hits=evidence.hits,
             acted=evidence.acted,

@@ -32,8 +32,10 @@ _TURN = Quantity("angle", Path("angle"), Kind.ROTATION, "z", "deg", None, Mode.T
 _LIFT = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.5))
 _PUSH = Quantity("push", Path("push"), Kind.TRANSLATION, "x", "m", None, Mode.BY, range=(-1.0, 1.0))
 _LIMITED = replace(_PUSH, clip=(-1.0, 1.0))
+_FACING = replace(_TURN, range=None)
 _MOVE = Operation("robot:Arm.move_by", (_DY, _YAW))
 _TURN_TO = Operation("robot:Arm.turn_to", (_TURN,))
+_FACE = Operation("robot:Arm.face", (_FACING,))
 _STEP = Operation("env:Env.step", (_PUSH,))
 _CLIPPED = Operation("env:Env.step", (_LIMITED,))
 _ROTVEC = Quantity("rotation", Path("rotation"), Kind.ROTATION_VECTOR, unit="rad")
@@ -95,6 +97,11 @@ class Reverse(WrittenValueOperator):
             Subject(_ORIENT, quantity=_ROTVEC),
             {"rotation": [0.0, math.pi, 0.0]},
             away="half a turn the other way is the same orientation",
+        ),
+        Example(
+            Subject(_FACE, quantity=_FACING),
+            {"angle": 180},
+            away="the targets 180 and −180 degrees are the same",
         ),
         Example(
             Subject(_HIDDEN, quantity=_GOAL),
