@@ -32,6 +32,8 @@ except ImportError as error:  # said in words a user can act on
         f"pip install 'mutabot[cluster]' ({error})"
     ) from error
 
+from . import guard
+
 #: seconds that a scheduler may take to answer
 PATIENCE = 10.0
 #: seconds between two looks at who is connected; without an answer for so many, the scheduler is gone
@@ -39,8 +41,19 @@ _PERIOD, _SILENCE = 0.5, 45.0
 #: threads that fetch answers
 _FETCHERS = 4
 #: how a function of ours is called: one that went as itself would end a worker that cannot import it
-_CALL = "__import__('importlib').import_module('{}').{}(*given)"
-_KINDS = ["dask", "msgpack", "error"]
+_CALL = "exec(code, names := {'given': given}) or names['answer']"
+_RAISED = b"!"
+#: characters of what a worker says that are shown
+_WORDS = 1000
+#: answers with what was raised as data: nothing that a worker sends is unpickled here
+_CODE = """
+try:
+    from importlib import import_module
+    answer = import_module({!r}).{}(*given)
+except BaseException as error:
+    said = (str(error).strip().splitlines() or [""])[0][:1000]
+    answer = b"!" + (type(error).__name__ + ": " + said).encode("utf-8", "replace")
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,11 +64,13 @@ class News:
         asked: the number of what was asked.
         data: the answer; None if there is none.
         why: why not, in words.
+        is_foreign: whether it is nothing that our functions answer.
     """
 
     asked: int
     data: bytes | None
     why: str = ""
+    is_foreign: bool = False
 
 
 class Link:
@@ -74,6 +89,7 @@ class Link:
     _numbers = count(1)
 
     def __init__(self, settings: ClusterSettings, address: str) -> None:
+        guard.install()
         self.address = address
         self.news: queue.SimpleQueue[News] = queue.SimpleQueue()
         _be_quiet()
@@ -107,7 +123,7 @@ class Link:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # large messages are meant
             future = self._client.submit(
-                eval, _CALL.format(function.__module__, function.__name__), {"given": arguments},
+                eval, _CALL, {"given": arguments, "code": _CODE.format(function.__module__, function.__name__)},
                 key=f"mutabot-{self._client.id}-{number}", pure=False, workers=[worker],
                 allow_other_workers=False,
             )  # fmt: skip
@@ -138,10 +154,9 @@ class Link:
 
     def _fetched(self, number: int, future: Any) -> None:
         try:
-            found = future.result(timeout=_SILENCE)
-            news = News(number, bytes(found))
+            news = _news(number, future.result(timeout=_SILENCE))
         except Exception as error:  # whatever a worker raises is only told
-            news = News(number, None, f"{type(error).__name__}: {error}".splitlines()[0])
+            news = News(number, None, shown(guard.words(error)))
         if self._asked.pop(number, None) is not None:
             self.news.put(news)
 
@@ -155,14 +170,26 @@ class Link:
         self._heard = time.monotonic()
 
 
+def _news(number: int, found: Any) -> News:
+    if type(found) is not bytes:
+        return News(number, None, "it answered with an object", is_foreign=True)
+    if found.startswith(_RAISED):
+        return News(number, None, shown(found[1:_WORDS].decode("utf-8", "replace")))
+    return News(number, found)
+
+
+def shown(text: str) -> str:
+    """What a worker says, as one line that does nothing to a terminal."""
+    return "".join(one if one.isprintable() else "�" for one in text[:_WORDS])
+
+
 def _client(settings: ClusterSettings, address: str) -> Any:
     try:
         security = _security(settings, address)
         open_client: Any = distributed.Client
         return open_client(
-            address, security=security, timeout=PATIENCE, set_as_default=False, deserializers=_KINDS,
-            name="mutabot",
-        )  # fmt: skip
+            address, security=security, timeout=PATIENCE, set_as_default=False, name="mutabot"
+        )
     except (OSError, ValueError, TypeError, RuntimeError) as error:
         raise ClusterError(_why_not(settings, address, error)) from error
 
