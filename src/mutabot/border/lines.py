@@ -275,8 +275,8 @@ Line = (
     | SessionEnd
 )
 
-
-_LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Line)}
+#: the kinds of line by their names
+LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Line)}
 
 
 def line_to_data(line: Line) -> dict[str, Any]:
@@ -287,6 +287,6 @@ def line_to_data(line: Line) -> dict[str, Any]:
 
 def line_from_data(data: dict[str, Any]) -> Line:
     """The report line in such data. Raises KeyError for a type that is not known."""
-    kind = _LINES[data["type"]]
+    kind = LINES[data["type"]]
     line: Line = from_data(kind, {key: value for key, value in data.items() if key != "type"})
     return line

@@ -1,7 +1,7 @@
 """What somebody else on this machine tries against a cluster: run as a script, perhaps as another user.
 
-Arguments: a user's number or ``-``, the file to write by code that the cluster is made to run, the port of the
-scheduler, all ports, and perhaps the files of a certificate (authority, certificate, key).
+Arguments: a user's number or ``-``, the file to write by code that the cluster is made to run, the port of
+the scheduler, all ports, and perhaps the files of a certificate (authority, certificate, key).
 """
 
 from __future__ import annotations

@@ -71,7 +71,9 @@ def listening() -> list[tuple[IPv4Address | IPv6Address, int]]:
         if descriptor.is_symlink() and (found := re.fullmatch(r"socket:\[(\d+)\]", os.readlink(descriptor)))
     }
     rows = [
-        line.split() for name in ("tcp", "tcp6") for line in Path(f"/proc/net/{name}").read_text().splitlines()
+        line.split()
+        for name in ("tcp", "tcp6")
+        for line in Path(f"/proc/net/{name}").read_text().splitlines()
     ]
     return [_place(row[1]) for row in rows if row[3] == _LISTENS and row[9] in inodes]
 
@@ -81,7 +83,9 @@ def _place(text: str) -> tuple[IPv4Address | IPv6Address, int]:
     address, _, port = text.partition(":")
     words = bytes.fromhex(address)
     parts = (words[start : start + 4] for start in range(0, len(words), 4))
-    return ip_address(b"".join(part[:: -1 if sys.byteorder == "little" else 1] for part in parts)), int(port, 16)
+    return ip_address(b"".join(part[:: -1 if sys.byteorder == "little" else 1] for part in parts)), int(
+        port, 16
+    )
 
 
 def intrude(opened: Opened, file: Path, *given: str, user: str = "-") -> str:
@@ -98,7 +102,9 @@ def test_every_port_is_on_the_loopback(opened: Opened) -> None:
     assert {str(address) for address, _ in opened.listening if not address.is_loopback} == set()
 
 
-@pytest.mark.parametrize("path", ["/", "/status", "/info/main/workers.html", "/metrics", "/health", "/json/identity.json"])
+@pytest.mark.parametrize(
+    "path", ["/", "/status", "/info/main/workers.html", "/metrics", "/health", "/json/identity.json"]
+)
 def test_no_port_is_a_dashboard(path: str, opened: Opened) -> None:
     found = {}
     for port in opened.ports:
@@ -166,7 +172,10 @@ def test_nothing_is_left_of_a_cluster_that_cannot_be_made(
     project = write(tmp_path / "project")
     with pytest.raises(ClusterError):
         of_cluster.Cluster(
-            on_cluster(request_for(project), "local:1"), ClusterSettings("local:1"), None, print  # type: ignore[arg-type]
+            on_cluster(request_for(project), "local:1"),
+            ClusterSettings("local:1"),
+            None,
+            print,  # type: ignore[arg-type]
         )
     assert not list(tmp_path.glob("mutabot-cluster-*"))
 

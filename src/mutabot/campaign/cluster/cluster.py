@@ -76,8 +76,8 @@ class Cluster:
             self.link = Link(self._settings, self._address())
             if not is_private(self.link.address):
                 tell(
-                    f"the connection to {self.link.address} is not encrypted: whoever can reach or read it can "
-                    "run programs on its workers; tls:// closes it (docs/cluster.md, TLS)"
+                    f"the connection to {self.link.address} is not encrypted: whoever can reach its port "
+                    "can run programs on the workers; tls:// closes it (docs/cluster.md, TLS)"
                 )
             self.roster = Roster(self.link, self._versions, settings.mixed, tell)
             self._meet()

@@ -1,10 +1,10 @@
 """Nothing that workers send is unpickled here: what Dask would unpickle becomes words.
 
-Dask's client unpickles results, exceptions, the types of results, and warnings of workers. The list of
-deserializers that it takes does not close this: messages on the stream from the scheduler, parts that a message
-marks as pickled, and the type of data that Dask serializes itself are unpickled whatever that list says. So the
-functions themselves are replaced, in this whole process, once it connects to a cluster. They raise nothing: an
-error in them would make the client deaf to all other answers.
+Dask's client unpickles results, exceptions, the types of results, and warnings of workers. Its option
+``deserializers`` does not close this: messages on the stream from the scheduler, parts that a message marks as
+pickled, and the type of data that Dask serializes itself are unpickled whatever it says. So the functions
+themselves are replaced, in this whole process, once it connects to a cluster. They raise nothing: an error in
+them would make the client deaf to all other answers.
 """
 
 from __future__ import annotations
@@ -61,15 +61,15 @@ def install() -> None:
         found = importlib.import_module(module)
         if not hasattr(found, name):
             raise ClusterError(
-                f"this version of distributed has no {module}.{name}: workers could run programs on this machine. "
-                "Install another version of mutabot or distributed"
+                f"this version of distributed has no {module}.{name}, so workers could run programs on this "
+                "machine: install another version of mutabot or distributed"
             )
         setattr(found, name, replacement)
 
 
-def words(error: BaseException) -> str:
-    """What an exception says, in one line."""
-    said = str(error).strip().splitlines()
+def words(error: object) -> str:
+    """What an exception says, in one line; of other objects, what they are."""
+    said = str(error).strip().splitlines() if isinstance(error, Exception) else []
     return f"{type(error).__name__}: {said[0]}" if said else type(error).__name__
 
 

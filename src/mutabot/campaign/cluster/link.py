@@ -43,6 +43,8 @@ _FETCHERS = 4
 #: how a function of ours is called: one that went as itself would end a worker that cannot import it
 _CALL = "exec(code, names := {'given': given}) or names['answer']"
 _RAISED = b"!"
+#: by which the scheduler tells that there is nobody to run something
+_LOSSES = {"KilledWorker", "NoValidWorkerError"}
 #: characters of what a worker says that are shown
 _WORDS = 1000
 #: answers with what was raised as data: nothing that a worker sends is unpickled here
@@ -120,10 +122,11 @@ class Link:
     def ask(self, worker: str, function: Callable[..., bytes], *arguments: Any) -> int:
         """Let a worker run a function; returns the number by which its answer comes."""
         number = next(self._numbers)
+        code = _CODE.format(function.__module__, function.__name__)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # large messages are meant
             future = self._client.submit(
-                eval, _CALL, {"given": arguments, "code": _CODE.format(function.__module__, function.__name__)},
+                eval, _CALL, {"given": arguments, "code": code},
                 key=f"mutabot-{self._client.id}-{number}", pure=False, workers=[worker],
                 allow_other_workers=False,
             )  # fmt: skip
@@ -156,7 +159,7 @@ class Link:
         try:
             news = _news(number, future.result(timeout=_SILENCE))
         except Exception as error:  # whatever a worker raises is only told
-            news = News(number, None, shown(guard.words(error)))
+            news = News(number, None, shown(guard.words(error)), _is_foreign(error))
         if self._asked.pop(number, None) is not None:
             self.news.put(news)
 
@@ -166,16 +169,22 @@ class Link:
                 self._call_once()
 
     def _call_once(self) -> None:
-        self._there = dict(self._client.nthreads())
+        found = self._client.nthreads()
+        self._there = {str(address): count for address, count in found.items() if type(count) is int}
         self._heard = time.monotonic()
 
 
 def _news(number: int, found: Any) -> News:
     if type(found) is not bytes:
-        return News(number, None, "it answered with an object", is_foreign=True)
+        return News(number, None, f"it answered with {guard.words(found)}", is_foreign=True)
     if found.startswith(_RAISED):
         return News(number, None, shown(found[1:_WORDS].decode("utf-8", "replace")))
     return News(number, found)
+
+
+def _is_foreign(error: Exception) -> bool:
+    """Whether a worker raised that: what our functions raise comes as data, and losses are nobody's fault."""
+    return isinstance(error, guard.Unreadable) and type(error).__name__ not in _LOSSES
 
 
 def shown(text: str) -> str:
@@ -187,9 +196,7 @@ def _client(settings: ClusterSettings, address: str) -> Any:
     try:
         security = _security(settings, address)
         open_client: Any = distributed.Client
-        return open_client(
-            address, security=security, timeout=PATIENCE, set_as_default=False, name="mutabot"
-        )
+        return open_client(address, security=security, timeout=PATIENCE, set_as_default=False, name="mutabot")
     except (OSError, ValueError, TypeError, RuntimeError) as error:
         raise ClusterError(_why_not(settings, address, error)) from error
 
