@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -129,6 +131,20 @@ def cluster(folder: Path, workers: int) -> Iterator[ClusterSettings]:
         yield ClusterSettings(there.start(), ca=own.ca, cert=own.cert, key=own.key)
     finally:
         there.close()
+
+
+def strange_worker(there: ClusterSettings, folder: Path, how: str) -> subprocess.Popen[bytes]:
+    """A worker that runs some code before all else."""
+    code = (
+        f"import sys\n{how}\n"
+        "from distributed.cli.dask_worker import main\n"
+        "sys.argv[:] = ['dask-worker', *sys.argv[1:]]\n"
+        "main()\n"
+    )
+    own = ["--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder)]
+    own += ["--host", "127.0.0.1", "--protocol", "tls", "--dashboard-address", "127.0.0.1:0"]
+    own += ["--tls-ca-file", str(there.ca), "--tls-cert", str(there.cert), "--tls-key", str(there.key)]
+    return subprocess.Popen([sys.executable, "-c", code, there.address, *own], stderr=subprocess.DEVNULL)
 
 
 def processes(mark: bytes, word: str = "") -> list[int]:

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import urllib.error
 import urllib.request
+from array import array
 from collections.abc import Iterator
 from dataclasses import dataclass
 from ipaddress import IPv4Address, IPv6Address, ip_address
@@ -68,24 +69,21 @@ def listening() -> list[tuple[IPv4Address | IPv6Address, int]]:
         found[1]
         for pid in own()
         for descriptor in Path(f"/proc/{pid}/fd").iterdir()
-        if descriptor.is_symlink() and (found := re.fullmatch(r"socket:\[(\d+)\]", os.readlink(descriptor)))
+        if descriptor.is_symlink()
+        and (found := re.fullmatch(r"socket:\[(\d+)\]", str(descriptor.readlink())))
     }
-    rows = [
-        line.split()
-        for name in ("tcp", "tcp6")
-        for line in Path(f"/proc/net/{name}").read_text().splitlines()
-    ]
+    tables = [Path(f"/proc/net/{name}").read_text() for name in ("tcp", "tcp6")]
+    rows = [line.split() for table in tables for line in table.splitlines()]
     return [_place(row[1]) for row in rows if row[3] == _LISTENS and row[9] in inodes]
 
 
 def _place(text: str) -> tuple[IPv4Address | IPv6Address, int]:
-    """The address and port in a row of the kernel's table, which holds words of four bytes in its own order."""
+    """The address and port in a row of the kernel's table: words of four bytes in the machine's order."""
     address, _, port = text.partition(":")
-    words = bytes.fromhex(address)
-    parts = (words[start : start + 4] for start in range(0, len(words), 4))
-    return ip_address(b"".join(part[:: -1 if sys.byteorder == "little" else 1] for part in parts)), int(
-        port, 16
-    )
+    words = array("I", bytes.fromhex(address))
+    if sys.byteorder == "little":
+        words.byteswap()
+    return ip_address(words.tobytes()), int(port, 16)
 
 
 def intrude(opened: Opened, file: Path, *given: str, user: str = "-") -> str:
@@ -112,10 +110,10 @@ def test_no_port_is_a_dashboard(path: str, opened: Opened) -> None:
             with urllib.request.urlopen(f"http://127.0.0.1:{port}{path}", timeout=30) as answer:
                 found[port] = answer.status
         except urllib.error.HTTPError as error:
-            assert error.code == 404
+            found[port] = error.code
         except OSError:
             continue
-    assert found == {}
+    assert set(found.values()) <= {404}
 
 
 def test_whoever_has_the_certificate_gets_in(opened: Opened, tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from mutabot.errors import ClusterError, ConfigurationError, UsageError
 from mutabot.settings.cluster import ClusterSettings, cluster_settings
 from tests.campaign.project import CONFIGURATION
 
-from .clusters import cluster, processes, until, write, write_slow
+from .clusters import cluster, processes, strange_worker, until, write, write_slow
 
 
 @pytest.mark.parametrize(
@@ -81,20 +81,6 @@ def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
         ClusterError, match=r"no scheduler answers at tcp://127\.0\.0\.1:9: .*is the port right"
     ):
         link.Link(ClusterSettings("tcp://127.0.0.1:9"), "tcp://127.0.0.1:9")
-
-
-def strange_worker(there: ClusterSettings, folder: Path, how: str) -> subprocess.Popen[bytes]:
-    """A worker that runs some code before all else."""
-    code = (
-        f"import sys\n{how}\n"
-        "from distributed.cli.dask_worker import main\n"
-        "sys.argv[:] = ['dask-worker', *sys.argv[1:]]\n"
-        "main()\n"
-    )
-    own = ["--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder)]
-    own += ["--host", "127.0.0.1", "--protocol", "tls", "--dashboard-address", "127.0.0.1:0"]
-    own += ["--tls-ca-file", str(there.ca), "--tls-cert", str(there.cert), "--tls-key", str(there.key)]
-    return subprocess.Popen([sys.executable, "-c", code, there.address, *own], stderr=subprocess.DEVNULL)
 
 
 NO_ROOM = """

@@ -1,8 +1,8 @@
 """Nothing that workers send is unpickled here: what Dask would unpickle becomes words.
 
 Dask's client unpickles results, exceptions, the types of results, and warnings of workers. Its option
-``deserializers`` does not close this: messages on the stream from the scheduler, parts that a message marks as
-pickled, and the type of data that Dask serializes itself are unpickled whatever it says. So the functions
+``deserializers`` does not close this: messages on the stream from the scheduler, parts that a message marks
+as pickled, and the type of data that Dask serializes itself are unpickled whatever it says. So the functions
 themselves are replaced, in this whole process, once it connects to a cluster. They raise nothing: an error in
 them would make the client deaf to all other answers.
 """
@@ -27,12 +27,18 @@ class Unreadable(Exception):  # noqa: N818  # it is a value
     """Stands for an object that was not unpickled, or for one of its parts.
 
     Attributes:
+        kind: the name of its class.
         said: its texts, as far as they are plain.
     """
+
+    kind = said = ""
 
     def __init__(self, *given: Any, **_: Any) -> None:
         super().__init__()
         self.said = ": ".join(one[:_SAID] for one in given if type(one) is str)[:_SAID]
+        # an exception comes with what makes it, which comes first
+        kinds = (one.__name__ for one in given if isinstance(one, type))
+        self.kind = next(kinds, type(self).__name__)
 
     def __setstate__(self, state: Any) -> None:
         """Take nothing over."""
@@ -70,7 +76,8 @@ def install() -> None:
 def words(error: object) -> str:
     """What an exception says, in one line; of other objects, what they are."""
     said = str(error).strip().splitlines() if isinstance(error, Exception) else []
-    return f"{type(error).__name__}: {said[0]}" if said else type(error).__name__
+    kind = error.kind if isinstance(error, Unreadable) and error.kind else type(error).__name__
+    return f"{kind}: {said[0]}" if said else kind
 
 
 def _loaded(data: Any, **given: Any) -> Any:

@@ -184,7 +184,7 @@ def _news(number: int, found: Any) -> News:
 
 def _is_foreign(error: Exception) -> bool:
     """Whether a worker raised that: what our functions raise comes as data, and losses are nobody's fault."""
-    return isinstance(error, guard.Unreadable) and type(error).__name__ not in _LOSSES
+    return isinstance(error, guard.Unreadable) and error.kind not in _LOSSES
 
 
 def shown(text: str) -> str:
