@@ -287,8 +287,8 @@ Line = (
     | Untrusted
 )
 
-
-_LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Line)}
+#: the kinds of line by their names
+LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Line)}
 
 
 def line_to_data(line: Line) -> dict[str, Any]:
@@ -304,6 +304,6 @@ def line_from_data(data: dict[str, Any]) -> Line:
     """
     if not isinstance(data, dict):
         raise TypeError(f"a report line is an object, not {type(data).__name__}")
-    kind = _LINES[data["type"]]
+    kind = LINES[data["type"]]
     line: Line = from_data(kind, {key: value for key, value in data.items() if key != "type"})
     return line

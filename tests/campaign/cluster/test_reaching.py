@@ -21,7 +21,7 @@ from mutabot.errors import ClusterError, ConfigurationError, UsageError
 from mutabot.settings.cluster import ClusterSettings, cluster_settings
 from tests.campaign.project import CONFIGURATION
 
-from .clusters import cluster, processes, until, write, write_slow
+from .clusters import cluster, processes, strange_worker, until, write, write_slow
 
 
 @pytest.mark.parametrize(
@@ -83,18 +83,6 @@ def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
         link.Link(ClusterSettings("tcp://127.0.0.1:9"), "tcp://127.0.0.1:9")
 
 
-def strange_worker(address: str, folder: Path, how: str) -> subprocess.Popen[bytes]:
-    """A worker that runs some code before all else."""
-    code = (
-        f"import sys\n{how}\n"
-        "from distributed.cli.dask_worker import main\n"
-        "sys.argv[:] = ['dask-worker', *sys.argv[1:]]\n"
-        "main()\n"
-    )
-    own = ["--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder)]
-    return subprocess.Popen([sys.executable, "-c", code, address, *own], stderr=subprocess.DEVNULL)
-
-
 NO_ROOM = """
 from mutabot.campaign.cluster.store import Store
 def take(*given):
@@ -111,9 +99,9 @@ Store.take = take
 def test_a_worker_that_cannot_take_part_is_told_and_lives_on(
     how: str, has_bundle: bool, says: str, tmp_path: Path
 ) -> None:
-    with cluster(tmp_path, 0) as address, strange_worker(address, tmp_path, how) as process:
+    with cluster(tmp_path, 0) as settings, strange_worker(settings, tmp_path, how) as process:
         try:
-            there = link.Link(ClusterSettings(address), address)
+            there = link.Link(settings, settings.address)
             roster = Roster(there, {}, True, lambda text: None)
             if has_bundle:
                 roster.bundle = Bundle.make(write(tmp_path / "project"))
