@@ -1,4 +1,4 @@
-"""A mutant has one number, by which every command calls it, whatever is selected; and text needs no vocabulary."""
+"""A mutant has one number, whatever is selected; and mutants of the text alone need no vocabulary."""
 
 from __future__ import annotations
 

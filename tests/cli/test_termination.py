@@ -1,4 +1,4 @@
-"""SIGTERM, which build servers and ``timeout`` send, ends a campaign as Ctrl-C does: what was found is kept."""
+"""SIGTERM, as of build servers and ``timeout``, ends a campaign as Ctrl-C does: what was found is kept."""
 
 from __future__ import annotations
 

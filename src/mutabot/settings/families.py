@@ -30,7 +30,7 @@ def asked_for(names: Iterable[str]) -> tuple[str, ...]:
 
 
 def need_vocabulary(families: Iterable[str]) -> bool:
-    """Whether there are mutants of calls among these families: those of the program text need no vocabulary."""
+    """Whether these families have mutants of calls: those of the program text need no vocabulary."""
     return any(family not in OF_TEXT for family in families)
 
 

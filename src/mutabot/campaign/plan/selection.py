@@ -14,7 +14,6 @@ from mutabot.model.selector import fits, is_like
 _LONGEST = 200
 
 
-
 def select(
     mutants: Sequence[Mutant],
     only: Iterable[str] = (),

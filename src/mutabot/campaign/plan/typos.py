@@ -1,4 +1,4 @@
-"""Typing mistakes in ``--only`` and ``--skip`` that need no plan to be seen: they are told before the baseline."""
+"""Typing mistakes in ``--only`` and ``--skip`` that are seen without a plan: told before the baseline."""
 
 from __future__ import annotations
 
