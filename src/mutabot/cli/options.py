@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from mutabot import __version__
+from mutabot import __version__, limits
 from mutabot.families import FAMILIES
 
 _KINDS = Path(__file__).parent.parent / "campaign" / "engines" / "kinds"
@@ -19,6 +20,12 @@ def _print_version(wanted: bool) -> None:
     if wanted:
         typer.echo(f"mutabot {__version__}")
         raise typer.Exit
+
+
+def _number(value: float | None) -> float | None:
+    if value is not None and math.isnan(value):
+        raise typer.BadParameter("nan is no number")
+    return value
 
 
 Version = Annotated[
@@ -64,7 +71,8 @@ Order = Annotated[
     typer.Option("--order", metavar="1|2", min=1, max=2, help="Mutants at once: 2 plants pairs of them."),
 ]
 Pairs = Annotated[
-    int | None, typer.Option("--pairs", metavar="N", min=1, help="How many pairs --order 2 plants.")
+    int | None,
+    typer.Option("--pairs", metavar="N", min=1, max=limits.PAIRS, help="How many pairs --order 2 plants."),
 ]
 Selection = Annotated[
     Path | None, typer.Option("--selection", metavar="FILE", help="File with one mutant id per line.")
@@ -81,10 +89,18 @@ OnePerSite = Annotated[
     bool, typer.Option("--one-per-site", help="Only one mutant per family and site, chosen at random.")
 ]
 Rounds = Annotated[
-    int | None, typer.Option("--rounds", metavar="N", min=1, help="Repetitions, each with its own seeds.")
+    int | None,
+    typer.Option(
+        "--rounds", metavar="N", min=1, max=limits.ROUNDS, help="Repetitions, each with its own seeds."
+    ),
 ]
-Seed = Annotated[int | None, typer.Option("--seed", metavar="N", min=0, help="The campaign's seed.")]
-Jobs = Annotated[int | None, typer.Option("-j", "--jobs", metavar="N", min=1, help="Runs at work at a time.")]
+Seed = Annotated[
+    int | None, typer.Option("--seed", metavar="N", min=0, max=limits.SEED, help="The campaign's seed.")
+]
+Jobs = Annotated[
+    int | None,
+    typer.Option("-j", "--jobs", metavar="N", min=1, max=limits.JOBS, help="Runs at work at a time."),
+]
 Engine = Annotated[
     str,
     typer.Option(
@@ -149,6 +165,7 @@ Verify = Annotated[
         "--verify",
         metavar="N",
         min=0,
+        max=limits.VERIFIED,
         help="Run N random outcomes once more in fresh processes; exit with 4 if one ends otherwise.",
     ),
 ]
@@ -160,9 +177,14 @@ Repeats = Annotated[
     bool, typer.Option("--repeats/--no-repeats", help="Run kills that may be chance once more.")
 ]
 BaselineRuns = Annotated[
-    int | None, typer.Option("--baseline", metavar="N", min=1, help="Run the original N times per round.")
+    int | None,
+    typer.Option(
+        "--baseline", metavar="N", min=1, max=limits.BASELINES, help="Run the original N times per round."
+    ),
 ]
-Round = Annotated[int | None, typer.Option("--round", metavar="N", min=1, help="Only this round.")]
+Round = Annotated[
+    int | None, typer.Option("--round", metavar="N", min=1, max=limits.ROUNDS, help="Only this round.")
+]
 Cluster = Annotated[
     str | None,
     typer.Option(
@@ -201,6 +223,7 @@ MinScore = Annotated[
         metavar="PERCENT",
         min=0,
         max=100,
+        callback=_number,
         help="Exit with 1 if a score is under this many percent.",
     ),
 ]

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from mutabot import limits
 from mutabot.errors import ConfigurationError, nearest_name
-from mutabot.families import FAMILIES, USUAL
+from mutabot.families import FAMILIES, OF_TEXT, USUAL
+from mutabot.limits import shortened
 from mutabot.model import Moment
 from mutabot.model.graded.demand import Demand
 from mutabot.model.moment import EVERY
@@ -19,14 +22,20 @@ from mutabot.model.moment import EVERY
 from .cluster import ClusterTable
 from .demands import check_demands
 from .document import Document
-from .families import why_unknown
+from .families import need_vocabulary, why_unknown
 from .mistakes import Check, raise_errors
 from .toml_lines import KeyPath
 
+_NO_VOCABULARY = (
+    "the key 'vocabulary' is missing or empty; mutants of calls need one, those of the program text "
+    f"({', '.join(OF_TEXT)}) do not"
+)
 _PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
 _INIT = "run `mutabot init` to propose one"
-_MEMORY = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
+_MEMORY = re.compile(r"\s*(\d{1,18}(?:\.\d{1,18})?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
 _PREFIXES = {"": 0, "k": 1, "m": 2, "g": 3, "t": 4}
+#: signs of a path, and bytes of a name in it, that a file system takes
+_LONGEST_PATH, _LONGEST_NAME = 4000, 255
 _LEAST_MEMORY = 100_000_000
 _WILD = re.compile(r"[*?\[]")
 
@@ -34,7 +43,7 @@ _WILD = re.compile(r"[*?\[]")
 def parse_memory(value: Any) -> Any:
     """Bytes in a text such as ``4 GB`` or ``512 MiB``; whole numbers are bytes already."""
     if isinstance(value, str) and _MEMORY.fullmatch(value) is None:
-        raise _fault(f"{value!r} is no amount of memory; write it like '4 GB'")
+        raise _fault(f"{shortened(value)!r} is no amount of memory; write it like '4 GB'")
     value = _bytes_in(value)
     if isinstance(value, int) and not isinstance(value, bool) and value < _LEAST_MEMORY:
         raise _fault(f"{value} bytes are too little for Python and pytest; write it like '4 GB'")
@@ -53,7 +62,7 @@ def _bytes_in(value: Any) -> Any:
 def _parse_size(value: Any) -> Any:
     """The same for room on a disk, of which there may be none at all."""
     if isinstance(value, str) and _MEMORY.fullmatch(value) is None:
-        raise _fault(f"{value!r} is no amount of room; write it like '200 MB', or 0 for none")
+        raise _fault(f"{shortened(value)!r} is no amount of room; write it like '200 MB', or 0 for none")
     if isinstance(value, int) and not isinstance(value, bool) and value < 0:
         raise _fault(f"{value} bytes are less than nothing; write it like '200 MB', or 0 for none")
     return _bytes_in(value)
@@ -127,25 +136,26 @@ class Settings(BaseModel):
 
         tests = ["tests", "acceptance/test_cell.py"]
     """
-    vocabulary: _SomeTexts
+    vocabulary: _Texts = ()
     """Vocabulary files of the project, or names of vocabularies that come with
-    mutabot; see [vocabulary](vocabulary.md).
+    mutabot; see [vocabulary](vocabulary.md). Mutants of calls need one; those of the program text
+    (`classical`, `text`) do not.
 
         vocabulary = ["robot.toml"]
     """
-    rounds: Annotated[int, Field(ge=1)] = 1
+    rounds: Annotated[int, Field(ge=1, le=limits.ROUNDS)] = 1
     """How often everything is repeated, each time with other
     seeds. `--rounds` goes before it.
 
         rounds = 5
     """
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: Annotated[int, Field(ge=0, le=limits.SEED)] = 1
     """The campaign's seed, from which those of all rounds and tests
     come. `--seed` goes before it.
 
         seed = 42
     """
-    jobs: Annotated[int, Field(ge=1)] | None = None
+    jobs: Annotated[int, Field(ge=1, le=limits.JOBS)] | None = None
     """Runs at a time. Without it, one per core that
     may be used. A run that only waits, as for a message that never comes, lends its place to another one;
     with 1, there is never more than one. `--jobs` goes before it.
@@ -153,18 +163,18 @@ class Settings(BaseModel):
         jobs = 1
     """
     selection: str | None = None
-    """File with the ids of the mutants to run, one per line; they are
-    numbered in its order. Without it, all are run. `--selection` goes before it.
+    """File with the ids of the mutants to run, one per line. Without it, all are
+    run. `--selection` goes before it.
 
         selection = "published.txt"
     """
-    timeout_factor: Annotated[float, Field(gt=1)] = 10.0
+    timeout_factor: Annotated[float, Field(gt=1, le=limits.FACTOR)] = 10.0
     """How many times the operations and the simulated
     time of the original a mutant may use in a test.
 
         timeout_factor = 3.0
     """
-    timeout_seconds: Annotated[float, Field(gt=0)] = 60.0
+    timeout_seconds: Annotated[float, Field(gt=0, le=limits.SECONDS)] = 60.0
     """Seconds of wall clock that every test gets at
     least, be the original ever so quick: the safety net for mutants that neither operations nor simulated
     time can end.
@@ -178,14 +188,14 @@ class Settings(BaseModel):
 
         private_files = false
     """
-    evidence: Annotated[int, BeforeValidator(_parse_size)] = 200_000_000
+    evidence: Annotated[int, Field(le=limits.BYTES), BeforeValidator(_parse_size)] = 200_000_000
     """How much is kept of what the robot did: where tool and objects were, what was
     commanded and read, of the original and of mutants that differ from it; see
     [evidence](evidence.md). If room is short, that of survivors stays. 0 records nothing.
 
         evidence = "1 GB"
     """
-    memory: Annotated[int, BeforeValidator(parse_memory)] = 4_000_000_000
+    memory: Annotated[int, Field(le=limits.BYTES), BeforeValidator(parse_memory)] = 4_000_000_000
     """Address space of a process, as
     a text with a unit or in bytes.
 
@@ -237,13 +247,13 @@ class Settings(BaseModel):
 
         order = 2
     """
-    pairs: Annotated[int, Field(ge=1)] = 200
+    pairs: Annotated[int, Field(ge=1, le=limits.PAIRS)] = 200
     """How many pairs are planted where `order` is 2, chosen by
     the seed. `--pairs` goes before it.
 
         pairs = 1000
     """
-    baseline_repetitions: Annotated[int, Field(ge=1)] | None = None
+    baseline_repetitions: Annotated[int, Field(ge=1, le=limits.BASELINES)] | None = None
     """How often the original is run per round; without it, as often as the engine
     needs. More runs find more of the tests that fail at random. `--baseline` goes before it.
 
@@ -277,8 +287,10 @@ class Configuration(Settings):
     demands: tuple[Demand, ...] = ()
 
 
-def load_configuration(folder: Path) -> Configuration:
+def load_configuration(folder: Path, families: Collection[str] = ()) -> Configuration:
     """The configuration of the project in ``folder``.
+
+    ``families``: those that are asked for instead of those that it names.
 
     Raises ConfigurationError or UnknownNameError: the first mistake, with a message that tells about all.
     """
@@ -298,6 +310,8 @@ def load_configuration(folder: Path) -> Configuration:
     paths.refuse_overlap(program, oracle)
     paths.check_tests(settings.tests, "tests" in raw)
     paths.check_rest(settings)
+    if not settings.vocabulary and need_vocabulary(families or settings.families):
+        check.error((*place, *(("vocabulary",) if "vocabulary" in raw else ())), _NO_VOCABULARY)
     check.table(ClusterTable, settings.cluster, (*place, "cluster"))
     demands = check_demands(settings.demand, check, (*place, "demand"))
     raise_errors(check.errors)
@@ -362,6 +376,8 @@ class _Paths:
         path = PurePosixPath(name)
         if not name.strip():
             self.check.error(where, "is an empty path")
+        elif len(name) > _LONGEST_PATH or any(len(os.fsencode(part)) > _LONGEST_NAME for part in path.parts):
+            self.check.error(where, f"{shortened(name)!r} is too long for a path")
         elif "\0" in name:
             self.check.error(where, f"{name!r} is no path")
         elif path.is_absolute() or name.startswith("~"):

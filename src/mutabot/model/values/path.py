@@ -24,7 +24,7 @@ from mutabot.errors import PathError, nearest_name
 
 _STEP = re.compile(r"\.(?P<attribute>[^\W\d]\w*)|\[(?P<item>[^\[\]]*)\]")
 _NAME = re.compile(r"[^\W\d]\w*")
-_SLICE = re.compile(r"\s*(-?\d+)?\s*:\s*(-?\d+)?\s*(?::\s*(-?\d+)?\s*)?")
+_SLICE = re.compile(r"\s*(-?\d{1,9})?\s*:\s*(-?\d{1,9})?\s*(?::\s*(-?\d{1,9})?\s*)?")
 
 
 @dataclass(frozen=True, slots=True)
