@@ -30,6 +30,15 @@ class JournalReader:
 
     def __init__(self, store: Store) -> None:
         self.path, self._store = store.path, store
+        self._unfit: dict[str, None] = {}
+
+    @property
+    def set_aside(self) -> list[str]:
+        """Rows that were not written by Mutabot, or that hold what cannot be, in words: nobody believes them.
+
+        What a row holds is looked at when it is read.
+        """
+        return [*self._store.unmarked, *self._unfit]
 
     @staticmethod
     def open(path: Path) -> JournalReader:
@@ -164,8 +173,6 @@ class JournalReader:
 
     def known(self) -> list[tuple[Mutant, bool]]:
         """Mutants of earlier campaigns, and whether something has changed since that they depend on."""
-        if not self._store.rows("SELECT 1 FROM sqlite_master WHERE name = 'known'"):
-            return []
         rows = self._store.rows("SELECT data, outdated FROM known ORDER BY rowid")
         return [(from_data(Mutant, json.loads(data)), bool(outdated)) for data, outdated in rows]
 
@@ -176,7 +183,5 @@ class JournalReader:
 
     def text(self, digest: str) -> bytes | None:
         """What stood in a Python file with this digest, or None if that is not known any more."""
-        if not self._store.rows("SELECT 1 FROM sqlite_master WHERE name = 'text'"):
-            return None
         rows = self._store.rows("SELECT data FROM text WHERE digest = ?", digest)
         return zlib.decompress(rows[0][0]) if rows else None
