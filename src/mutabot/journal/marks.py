@@ -13,10 +13,13 @@ from hashlib import blake2b
 from typing import Any
 
 from .database import Connection
+from .fitting import is_round
 from .schema import COLUMNS
 
 _FUNCTION = "mutabot_mark"
 _SIZE = 12
+#: characters of a name that are shown
+_LONGEST = 150
 #: by which column people know a row
 _NAMES = {"meta": "key", "test": "test", "mutant": "id", "left_out": "id", "source": "file", "known": "id"}
 #: what people call rows of a table
@@ -120,7 +123,7 @@ def remove(connection: Connection, found: Unmarked) -> None:
             connection.execute(f"DELETE FROM {table} WHERE rowid = ?", (row,))
     for table in found.gone:
         connection.execute(
-            f"DELETE FROM mark WHERE \"table\" = ? AND row NOT IN (SELECT rowid FROM {table})", (table,)
+            f'DELETE FROM mark WHERE "table" = ? AND row NOT IN (SELECT rowid FROM {table})', (table,)
         )
 
 
@@ -143,12 +146,13 @@ def name_of(table: str, values: tuple[Any, ...]) -> str:
     """What people know a row by, not longer than a line."""
     known = dict(zip(COLUMNS[table], values, strict=True))
     if "round" in known and "mutant" in known:
-        name = f"{known['mutant']} in round {known['round'] + 1 if _is_round(known['round']) else '?'}"
-    else:
-        name = str(known[_NAMES.get(table, COLUMNS[table][0])])
-    name = name.encode("utf-8", "replace").decode()
-    return repr(name[:100])[1:-1]
+        round = known["round"]
+        where = f" in round {round + 1}" if is_round(round) else ""
+        return f"{named(known['mutant'])}{where}"
+    return named(known[_NAMES.get(table, COLUMNS[table][0])])
 
 
-def _is_round(value: Any) -> bool:
-    return isinstance(value, int) and 0 <= value < 1 << 31
+def named(value: Any) -> str:
+    """A name from a journal as it can be printed, not longer than a line."""
+    text = value if isinstance(value, str) else repr(value)
+    return repr(text[:_LONGEST].encode("utf-8", "replace").decode())[1:-1]

@@ -37,6 +37,7 @@ class Mirrored:
         self.altered: list[str] = []
         self._apart = False  # for the rest of a transaction, the file cannot be written
         self._is_marked = False
+        self._identity_known, self._known = (0, 0), -1
         self._file = connect(path)
         self._copy = sqlite3.connect("", isolation_level=None, check_same_thread=False)
         self._copy.text_factory = decode

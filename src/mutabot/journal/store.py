@@ -13,9 +13,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Protocol, Self, TypeVar
 
-from mutabot.border.codec import from_data, to_data
+from mutabot.border.codec import to_data
 
 from .database import Batch, Connection, connect_to_read, guarded
+from .fitting import load
 from .lock import WriterLock
 from .marks import leave_out
 from .mirrored import Mirrored
@@ -129,14 +130,10 @@ class Store:
         with guarded(self.path):
             yield from self.connection.execute(statement)
 
-    def read(self, kind: type[T], statement: str) -> list[T]:
-        """The objects whose data a question of one column is answered with."""
-        return [from_data(kind, json.loads(data)) for (data,) in self.rows(statement)]
-
     def fact(self, key: str) -> Any:
         """The value of a key of meta; None if it is not there."""
         rows = self.rows("SELECT value FROM meta WHERE key = ?", key)
-        return json.loads(rows[0][0]) if rows else None
+        return load(rows[0][0]) if rows else None
 
     def put(self, key: str, value: Any) -> None:
         """Add or replace the value of a key of meta."""
