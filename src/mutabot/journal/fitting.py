@@ -188,5 +188,5 @@ def inflated(data: Any) -> bytes:
     inflater = zlib.decompressobj()
     text = inflater.decompress(data, _LARGEST)
     if not inflater.eof:
-        raise ValueError
+        raise ValueError(f"more than {_LARGEST} bytes, or cut off")
     return text

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from hashlib import blake2b
 from typing import Any
 
-from .database import Connection
+from .database import Connection, decode
 from .fitting import is_round
 from .schema import COLUMNS
 
@@ -35,7 +35,7 @@ _WORDS = {
 
 def mark_of(*values: Any) -> bytes:
     """The mark of a row: its table and all its values."""
-    text = "\0".join(map(str, values))
+    text = "\0".join([decode(one) if isinstance(one, bytes) else str(one) for one in values])
     return blake2b(text.encode("utf-8", "surrogateescape"), digest_size=_SIZE).digest()
 
 
@@ -45,7 +45,8 @@ def mark_rows(connection: sqlite3.Connection) -> None:
     # Without this, a row that is replaced goes without a trigger.
     connection.execute("PRAGMA recursive_triggers = ON")
     for table, columns in COLUMNS.items():
-        new = ", ".join(f'new."{column}"' for column in columns)
+        # as bytes: a text from elsewhere may be no UTF-8
+        new = ", ".join(f'CAST(new."{column}" AS BLOB)' for column in columns)
         remove = f"DELETE FROM mark WHERE \"table\" = '{table}' AND row = "
         add = f"INSERT INTO mark VALUES ('{table}', new.rowid, {_FUNCTION}('{table}', {new}));"
         for event, actions in (

@@ -79,7 +79,7 @@ class JournalReader:
             if isinstance(key, str) and not key.startswith("journal:"):
                 with self._checked("meta", key):
                     found[key] = fact(key, load(text))
-        return found
+        return {key: value for key, value in found.items() if value is not None}
 
     @property
     def vocabulary(self) -> Vocabulary | None:

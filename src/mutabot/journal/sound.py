@@ -6,18 +6,19 @@ whoever wrote it liked, so there may be none.
 
 from __future__ import annotations
 
-import json
 import sqlite3
-from contextlib import closing
+from contextlib import closing, suppress
 from functools import cache
 from pathlib import Path
 
 from mutabot.errors import JournalError
 
+from .fitting import UNFIT, load
 from .schema import SCHEMA_VERSION, TABLES, VERSION_KEY
 
 #: things in a file that are looked at: a journal has fewer
 _MOST = 100
+_MOST_VERSIONS = 1_000_000
 _Thing = tuple[str, str, str | None]
 
 
@@ -41,9 +42,10 @@ def check_schema(path: Path, connection: sqlite3.Connection) -> None:
     strange = sorted(f"{kind} {name}" for kind, name, _ in found - _made())
     if "table meta" not in strange:
         version = _version(connection)
-        if version != str(SCHEMA_VERSION):
+        # a version that cannot be read is one row that is damaged, if all tables are ours
+        if version != SCHEMA_VERSION and (version is not None or strange):
             raise JournalError(
-                f"{path} was written by another version of mutabot (journal version {version}, this one "
+                f"{path} was written by another version of mutabot (journal version {version or '?'}, this one "
                 f"reads {SCHEMA_VERSION}); run the campaign again",
                 path=str(path),
             )
@@ -55,12 +57,12 @@ def check_schema(path: Path, connection: sqlite3.Connection) -> None:
         )
 
 
-def _version(connection: sqlite3.Connection) -> str:
+def _version(connection: sqlite3.Connection) -> int | None:
     row = connection.execute("SELECT value FROM main.meta WHERE key = ?", (VERSION_KEY,)).fetchone()
-    try:
-        return "?" if row is None else str(json.loads(row[0]))[:20]
-    except (ValueError, TypeError, RecursionError):
-        return "?"
+    with suppress(*UNFIT):
+        found = load(row[0]) if row is not None else None
+        return found if isinstance(found, int) and abs(found) < _MOST_VERSIONS else None
+    return None
 
 
 def no_journal(path: Path) -> JournalError:
