@@ -368,7 +368,7 @@ def test_a_writer_ended_by_sigkill_loses_the_last_second_at_most(path: Path) -> 
 def test_a_full_disk_is_a_clear_error_and_keeps_what_was_there(path: Path) -> None:
     with Journal.create(path, meta={}) as journal:
         journal.add_outcome(KILLED)
-        journal._store.connection.execute("PRAGMA max_page_count = 1")
+        journal._store.connection._file.execute("PRAGMA max_page_count = 1")
         big = Outcome("n", 0, Verdict.ERROR, message="x" * 1_000_000)
         journal.add_outcome(big)
         with pytest.raises(JournalError, match="disk is full") as error:
@@ -424,7 +424,7 @@ def test_a_journal_of_another_schema_version_is_refused(path: Path) -> None:
     with connection:
         connection.execute("UPDATE meta SET value = '99' WHERE key = 'journal:version'")
     connection.close()
-    with pytest.raises(JournalError, match="version 99, this one reads 2"):
+    with pytest.raises(JournalError, match="version 99, this one reads 3"):
         Journal.open(path)
 
 

@@ -12,6 +12,7 @@ from mutabot.families import GRADED
 from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
+    ALTERED,
     BUDGET,
     CONFIRMATION,
     DRAWING,
@@ -135,6 +136,8 @@ class Results:
         budget: how limited time was used; None if it was not limited.
         estimates: what the scores of all mutants would be, where the time was not enough for them.
         shard: which part of its plan the campaign has run; None for all of it.
+        set_aside: what the journal holds that Mutabot has not written or that cannot be, in words. Nothing
+            of it is believed: its outcomes count as not run.
     """
 
     meta: Mapping[str, Any]
@@ -158,6 +161,12 @@ class Results:
     budget: Budgeted | None = None
     estimates: tuple[Estimate, ...] = ()
     shard: ShardOf | None = None
+    set_aside: tuple[str, ...] = ()
+
+    @property
+    def altered(self) -> tuple[str, ...]:
+        """What something else changed in the journal while the campaign ran, and was restored, in words."""
+        return tuple(self.meta.get(ALTERED) or ())
 
     @property
     def everything(self) -> tuple[MutantResult, ...]:
@@ -272,9 +281,9 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
             presumed=mutant.id in presumed,
         )
 
-    return Results(
+    found = Results(
         meta=meta,
-        state=_state(journal, shard, is_whole=is_whole),
+        state="",
         rounds=rounds,
         mutants=tuple(result(mutant) for mutant in mutants if mutant.id not in graded),
         graded=tuple(result(mutant) for mutant in mutants if mutant.id in graded),
@@ -295,6 +304,10 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         estimates=estimates,
         shard=shard,
     )
+    # what rows hold is known now that they are read
+    set_aside = tuple(journal.set_aside)
+    state = _state(journal, shard, is_whole=is_whole and not set_aside)
+    return replace(found, state=state, set_aside=set_aside)
 
 
 @dataclass(frozen=True, slots=True)

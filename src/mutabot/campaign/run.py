@@ -85,6 +85,8 @@ def run_campaign(request: Request, progress: Progress) -> Path:
             with suppress(JournalError):  # on a full disk not even this can be written
                 journal.finish(_reason(error))
             raise
+        finally:
+            _note_others(journal, progress)
     return request.journal_path
 
 
@@ -106,7 +108,7 @@ def _run(
     whole = plan_of(request, baseline)
     plan = selected(campaign, whole)
     part = part_of(plan, request.shard, baseline)
-    _write_beginning(journal, request, results, plan, whole)
+    _write_beginning(journal, request, results, plan, whole, progress)
     write_shard(journal, request.shard, part)
     if request.fresh:
         journal.forget(mutant.id for mutant in part.mutants)
@@ -159,6 +161,18 @@ def _end(journal: Journal, part: Plan, request: Request, progress: Progress, *, 
     alone, _ = apart(part.mutants)  # of ladders, not every mutant is run
     is_known = all(known.get(mutant.id, 0) >= request.rounds for mutant in alone)
     return "complete" if is_known and not journal.unstored else INCOMPLETE
+
+
+def _note_others(journal: Journal, progress: Progress) -> None:
+    """Say what others did to the journal while the campaign ran."""
+    if journal.lost:
+        times = f", {len(journal.lost)} times" if len(journal.lost) > 1 else ""
+        progress.note(
+            f"the journal {journal.lost[0]} while the campaign ran{times}: it was written again, nothing is "
+            "lost. Does a test, or a mutant of the program, delete or replace files in .mutabot?"
+        )
+    for line in journal.altered:
+        progress.note(f"the journal was changed by something else and was restored: {line}")
 
 
 def _remember(journal: Journal, opened: Executor) -> None:
@@ -260,10 +274,21 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
 
 
 def _write_beginning(
-    journal: Journal, request: Request, results: Sequence[Result], plan: Plan, whole: Plan
+    journal: Journal,
+    request: Request,
+    results: Sequence[Result],
+    plan: Plan,
+    whole: Plan,
+    progress: Progress,
 ) -> None:
     """From here on the journal is that of this campaign."""
     journal.begin(_meta(request))
+    if journal.set_aside:
+        count = len(journal.set_aside)
+        progress.note(
+            f"{count} {'row' if count == 1 else 'rows'} in the journal, such as {journal.set_aside[0]}, "
+            "mutabot had not written, or they were damaged: nothing of them is reused"
+        )
     for result in results:
         for end in result.ends:
             journal.add_test(result.task.key.round, result.task.key.repetition, without_recording(end))

@@ -19,6 +19,8 @@ SHARD = "shard"
 REMARKS = "remarks"
 #: how a campaign ended of which all has run, but not every outcome is in the journal
 INCOMPLETE = "incomplete"
+#: rows of the journal that something else changed while the campaign ran, and that were restored, in words
+ALTERED = "altered"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sqlite3
 from contextlib import closing, suppress
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 from mutabot.errors import JournalError
 
 from .database import connect, guarded
+from .sound import check_schema
 from .store import Store
 
 
@@ -49,8 +49,8 @@ def keep_copy(store: Store) -> None:
     store.flush()
     with guarded(store.path):
         try:
-            # as bytes, since the name of a folder need not be UTF-8
-            store.connection.execute("VACUUM INTO CAST(? AS TEXT)", (os.fsencode(new),))
+            with closing(sqlite3.connect(new)) as target:
+                store.connection.backup(target)
             _remove(kept)
             new.replace(kept)
         finally:
@@ -70,7 +70,7 @@ def _is_empty(path: Path) -> bool:
 def _is_journal(path: Path) -> bool:
     try:
         with closing(connect(path)) as connection:
-            Store(path, connection).check_version()
+            check_schema(path, connection)
             (sound,) = connection.execute("PRAGMA quick_check(1)").fetchone()
     except (JournalError, sqlite3.DatabaseError) as error:
         cause = error.__cause__ if isinstance(error, JournalError) else error

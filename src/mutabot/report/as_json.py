@@ -13,6 +13,7 @@ from mutabot.analysis.score import KillRate, RoundScores, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.border.codec import to_data
 from mutabot.journal.records import (
+    ALTERED,
     BUDGET,
     CONFIRMATION,
     DRAWING,
@@ -38,7 +39,7 @@ FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
 _ELSEWHERE = {
     "vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS,
-    SINCE, BUDGET, SHARD,
+    SINCE, BUDGET, SHARD, ALTERED,
 }  # fmt: skip
 
 
@@ -97,6 +98,8 @@ def results_data(results: Results) -> dict[str, Any]:
         "confirmation": dict(results.confirmation) if results.confirmation is not None else None,
         "repeats": repeats_data(results.repeats),
         "shard": _shard(results.shard),
+        "set_aside": list(results.set_aside),
+        "altered": list(results.altered),
     }
 
 
