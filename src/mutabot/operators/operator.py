@@ -172,6 +172,10 @@ class Operator(Rule):
         """Whether it asks for this subject where a quantity is now; by default as ``asks_where`` says."""
         return self.asks_where
 
+    def needs_sign(self, subject: Subject) -> bool:
+        """Whether the subject has a direction is known only if a negative value of it was recorded."""
+        return False
+
     def is_chance(self, subject: Subject) -> bool:
         """Whether only chance says at which calls it acts, so that nobody can tell beforehand."""
         return False

@@ -36,6 +36,7 @@ from mutabot.operators.passage import Passage, rehearse
 from .demanded import ladders_last, with_demanded
 from .moments import at_moments
 from .planned import Plan
+from .signs import NO_SIGN, has_negative
 
 #: recorded calls per place that are tried out; calls of one place are much alike
 TRIED = 200
@@ -83,6 +84,8 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             reason = reason or _why_no_time(rule, vocabulary, operation)
             if rule.needs_where(subject) and not _is_told(subject, vocabulary):
                 reason = f"{subject.current or 'no reading'} does not tell where it is"
+            if reason is None and rule.needs_sign(subject) and not has_negative(baseline, place, subject):
+                reason = NO_SIGN
             mutant = replace(
                 mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
             )
