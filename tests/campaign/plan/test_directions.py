@@ -19,6 +19,8 @@ from mutabot.model.named import Form, Named
 
 SPEED = Quantity("speed", Path("speed"), Kind.SPEED, unit="m/s")
 RATIO = Quantity("power", Path("power"), Kind.RATIO, unit="percent")
+COMPONENT = Path.parse("message.twist.linear.x", rooted=True)
+VECTOR = Path.parse("xd[0:6]", rooted=True)
 TWIST = {"linear.x": 0.5, "linear.y": -0.1, "linear.z": 0.0, "angular.z": 0.25}
 
 
@@ -90,8 +92,8 @@ def test_a_speed_of_which_nothing_is_said_is_left_out_with_what_to_say() -> None
     plan = plan_of([SPEED], {"speed": 0.5})
     assert not reversals(plan)
     assert reason(plan) == (
-        "no negative value was recorded, so it may be a mere magnitude; if it has a direction, give it an axis, "
-        "or a range or clip that goes below 0"
+        "no negative value was recorded, so it may be a mere magnitude; if it has a direction, give it an "
+        "axis, or a range or clip that goes below 0"
     )
 
 
