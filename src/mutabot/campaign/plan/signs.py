@@ -11,8 +11,8 @@ from mutabot.operators import Subject
 
 #: why a speed or ratio is not reversed
 NO_SIGN = (
-    "no negative value was recorded, so it may be a mere magnitude; if it has a direction, give it an axis, or "
-    "a range or clip that goes below 0"
+    "no negative value was recorded, so it may be a mere magnitude; if it has a direction, give it an axis, "
+    "or a range or clip that goes below 0"
 )
 
 

@@ -321,6 +321,8 @@ def value_text(value: Any, digits: int = 4) -> str:
         return f"{value:.{digits}g}"
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{key}: {value_text(item, digits)}" for key, item in value.items()) + "}"
+    if isinstance(value, list | tuple) and not value:
+        return "[]"
     if isinstance(value, list | tuple):
         return "(" + ", ".join(value_text(item, digits) for item in value) + ")"
     return str(value)
