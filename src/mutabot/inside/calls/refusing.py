@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from enum import Enum
 from fnmatch import fnmatchcase
 from functools import cache
 from typing import Any
@@ -11,6 +10,7 @@ from typing import Any
 from mutabot.errors import PathError
 from mutabot.model import Call, Path
 from mutabot.model.named import Form, Refused
+from mutabot.model.values.members import is_member, member_of
 
 
 def refused_of(call: Call) -> tuple[Refused, ...]:
@@ -60,10 +60,18 @@ def _found(refused: Refused, start: Any) -> str | None:
         value = path.get(start)
     except PathError:  # another kind of answer, or of message
         return None
-    value = _plain(value)
-    if not any(_same(value, wanted) for wanted in refused.values):
+    if not any(_means(wanted, value) for wanted in refused.values):
         return None
+    value = value.value if is_member(value) else _plain(value)
     return " ".join(part for part in (str(path).lstrip("."), str(value)) if part)
+
+
+def _means(wanted: Any, value: Any) -> bool:
+    """Whether a value of the vocabulary stands for one of the robot's."""
+    if not is_member(value):
+        return _same(_plain(value), wanted)
+    member = member_of(type(value), wanted)
+    return member is not None and bool(member == value)
 
 
 def _same(value: Any, wanted: Any) -> bool:
@@ -75,8 +83,6 @@ def _same(value: Any, wanted: Any) -> bool:
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, Enum):
-        return value.value
     return value.tolist() if hasattr(value, "dtype") and hasattr(value, "tolist") else value
 
 
