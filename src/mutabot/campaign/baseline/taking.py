@@ -260,6 +260,9 @@ def _no_tests(baseline: Baseline) -> str:
 
 def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, good: list[str]) -> None:
     places = places_of(result, sources)
+    for seen in result.sites:
+        place = places[seen.index]
+        baseline.unread[place] = sources.is_unused(seen) and baseline.unread.get(place, True)
     reaching: dict[Place, list[str]] = {}
     for end in result.ends:
         if end.test not in good:

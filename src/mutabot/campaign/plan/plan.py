@@ -86,6 +86,8 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
                 reason = f"{subject.current or 'no reading'} does not tell where it is"
             if reason is None and rule.needs_sign(subject) and not has_negative(baseline, place, subject):
                 reason = NO_SIGN
+            if reason is None and baseline.unread.get(place, False) and rule.only_reads(subject):
+                reason = "nobody reads what the call returns: it is a statement by itself"
             mutant = replace(
                 mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
             )
