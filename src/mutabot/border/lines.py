@@ -15,13 +15,18 @@ from .test_end import TestEnd
 
 @dataclass(frozen=True, slots=True)
 class SiteSeen:
-    """A site was reached for the first time in this session; traces refer to it by ``index``."""
+    """A site was reached for the first time in this session; traces refer to it by ``index``.
+
+    ``direct`` is whether the call that stands there is that of the operation itself, rather than of something
+    that leads to it; only the baseline finds out.
+    """
 
     index: int
     span: Span
     operation: str
     pattern: str | None
     oracle: bool
+    direct: bool = False
 
 
 @dataclass(frozen=True, slots=True)

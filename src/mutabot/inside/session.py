@@ -248,8 +248,11 @@ class Session:
         if self.text is not None:
             self.text.pipe = pipe
 
-    def start_test(self, test: str) -> None:
-        """A test begins, before its fixtures."""
+    def start_test(self, test: str, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
+        """A test begins, before its fixtures.
+
+        ``fixtures`` tells what objects they hold; None in a process below the tests.
+        """
         self._end_imports()
         self.test = test
         self.parts.clear()
@@ -258,7 +261,7 @@ class Session:
         is_baseline = self.job.record and self.job.mutant is None and self.job.branching is None
         self.recorder.answers = Answers.of(self.job.vocabulary) if is_baseline else None
         self.recorder.start()
-        self.instances.start()
+        self.instances.start(fixtures)
         self.passing.calls.clear()
         self.refused_calls.clear()
         self.live.clear()
@@ -330,7 +333,7 @@ class Session:
         self.along.stop()
         self.recording.stop()
         reading, self.rehearsal = rehearse(self._read_probes)
-        self.instances.start()  # what the program is done with may go
+        self.instances.let_go()  # what the program is done with may go
         return reading
 
     def _read_probes(self, *, along: bool = False) -> Reading:

@@ -32,6 +32,8 @@ def call(*refused: Refused, named: Named | None = None) -> Call:
         (STATUS, SimpleNamespace(status=5), "answered status 5"),
         (STATUS, SimpleNamespace(status=np.uint8(6)), "answered status 6"),
         (STATUS, SimpleNamespace(status=State.STUCK), "answered status 5"),
+        (Refused(".status", ("STUCK",)), SimpleNamespace(status=State.STUCK), "answered status 5"),
+        (Refused(".status", ("FINE",)), SimpleNamespace(status=State.STUCK), None),
         (STATUS, SimpleNamespace(status=4), None),
         (STATUS, SimpleNamespace(), None),
         (STATUS, None, None),

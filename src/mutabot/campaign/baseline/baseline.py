@@ -66,6 +66,7 @@ class Baseline:
         sharing: per round, what its tests share.
         early: places that are reached before any test begins, while the program or a test file is imported:
             a mutant there needs a process of its own.
+        unread: whether nobody uses what the calls of a place return.
         widened: mutants, by id and round, that left something behind in a test which leaves nothing behind
             in the original: judged by the whole suite.
     """
@@ -74,6 +75,7 @@ class Baseline:
     ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
     hits: dict[Place, list[Hit]] = field(default_factory=dict)
     answers: dict[Place, RecordedAnswers] = field(default_factory=dict)
+    unread: dict[Place, bool] = field(default_factory=dict)
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)

@@ -269,6 +269,9 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
     places = places_of(result, sources)
     live = {places[index] for end in result.ends for index in end.live}
     baseline.written_through |= {place for place in live if sources.is_written_through(place.site.span)}
+    for seen in result.sites:
+        place = places[seen.index]
+        baseline.unread[place] = sources.is_unused(seen) and baseline.unread.get(place, True)
     reaching: dict[Place, list[str]] = {}
     for end in result.ends:
         if end.test not in good:

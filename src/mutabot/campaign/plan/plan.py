@@ -36,6 +36,7 @@ from mutabot.operators.passage import Passage, rehearse
 from .demanded import ladders_last, with_demanded
 from .moments import at_moments
 from .planned import Plan
+from .signs import NO_SIGN, has_negative
 
 _LOST_WRITE = (
     "the program writes to what the call returns, which is the robot's own memory: "
@@ -87,6 +88,10 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             reason = reason or _why_no_time(rule, vocabulary, operation)
             if rule.needs_where(subject) and not _is_told(subject, vocabulary):
                 reason = f"{subject.current or 'no reading'} does not tell where it is"
+            if reason is None and rule.needs_sign(subject) and not has_negative(baseline, place, subject):
+                reason = NO_SIGN
+            if reason is None and baseline.unread.get(place, False) and rule.only_reads(subject):
+                reason = "nobody reads what the call returns: it is a statement by itself"
             mutant = replace(
                 mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
             )

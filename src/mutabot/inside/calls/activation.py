@@ -23,7 +23,7 @@ from mutabot.operators.operator import subject_of
 from mutabot.operators.passage import Carried, Passage, passed
 
 from . import mishaps
-from .answers import snapshot
+from .answers import LOST, snapshot
 from .door import Door, here
 from .keeping import held, kept_call, kept_reply
 from .live import HandedCopies, is_live
@@ -249,7 +249,8 @@ class Activation:
             last = door.last_answer(call)
             if last is not None:
                 return last
-        return Reply({}, restore(idle.first(*self._test), here(call)))
+        first = idle.first(*self._test)
+        return Reply().never() if first == LOST else Reply({}, restore(first, here(call)))
 
     def note(self, passage: Passage) -> None:
         """What became of a call that is over, or of whose mutant this process dies."""

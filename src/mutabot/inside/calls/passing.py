@@ -151,10 +151,11 @@ class Passing:
             site = self._site(sys._getframe(1), where)
             if site is None:
                 return wrapped(*args, **kwargs)
+            is_direct = self._recorder.answers is not None and self._is_direct(sys._getframe(1), where)
             wrapped = _bound(wrapped, instance)
             is_async = inspect.iscoroutinefunction(wrapped)
             means = where.means if where is not None else None
-            on_its_way = self._pass(door, site, is_async, wrapped, instance, args, kwargs, means)
+            on_its_way = self._pass(door, site, is_direct, is_async, wrapped, instance, args, kwargs, means)
             if is_async:
                 return on_its_way
             return run(on_its_way, operator=self._operator)
@@ -169,15 +170,26 @@ class Passing:
             return site[0], Role.ORACLE
         return site
 
+    def _is_direct(self, frame: FrameType | None, where: Where | None) -> bool:
+        """Whether the program itself makes the call, rather than a library that it calls."""
+        if where is not None and where.code is not None:
+            return False
+        while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "mutabot":
+            frame = frame.f_back
+        return frame is not None and self._locate_definition(frame.f_code) is not None
+
     def _is_oracle(self, node: str) -> bool:
         return any(fnmatchcase(node, name) for name in self.oracle_nodes)
 
-    async def _pass(self, door: Door, site: tuple[Span, Role], is_async: bool, *made: Any) -> Any:
+    async def _pass(
+        self, door: Door, site: tuple[Span, Role], is_direct: bool, is_async: bool, *made: Any
+    ) -> Any:
         """The phases of one call.
 
         Args:
             door: its operation's.
             site: where it stands.
+            is_direct: whether the call that stands there is that of the operation itself.
             is_async: whether what the operation returns is to be awaited.
             made: the call as Python made it, and what can befall it: what the handler was given.
         """
@@ -214,7 +226,7 @@ class Passing:
                 return result
             finally:
                 # 5. Whatever came of it is noted.
-                self._note(site, call, reply, began)
+                self._note(site, call, reply, began, is_direct)
         finally:
             try:  # noqa: SIM105  # quicker than a context manager, at every call
                 _under_way.reset(token)
@@ -270,14 +282,28 @@ class Passing:
         self.refused.returned(made, result)
         return door.reply(call, result)
 
-    def _note(self, site: tuple[Span, Role], call: Call, reply: Reply | None, began: float | None) -> None:
+    def _note(
+        self, site: tuple[Span, Role], call: Call, reply: Reply | None, began: float | None, is_direct: bool
+    ) -> None:
         """Trace a call that is over; ``reply`` is the robot's last one, None if the call raised."""
         span, role = site
         pattern = call.pattern.text if call.pattern is not None else None
         read = reply.values if reply is not None else {}
         is_wanted = self._recorder.answers is not None and reply is not None
-        returned = Returned(reply.payload, here(call)) if reply is not None and is_wanted else None
-        self._recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned, began)
+        returned = None
+        if reply is not None and is_wanted:
+            returned = Returned(reply.payload, here(call), _can_be_lost(call))
+        self._recorder.hit(
+            span,
+            role,
+            call.operation.target,
+            pattern,
+            call.values,
+            read,
+            returned,
+            began,
+            is_direct=is_direct,
+        )
         if call.is_command:
             self._along.after(len(self._recorder.trace))
         if self.on_end is not None:
@@ -291,6 +317,13 @@ def _bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:
     function = getattr(wrapped, "__wrapped__")  # noqa: B009  # its stubs do not name it
     bind = getattr(type(function), "__get__", None)
     return wrapped if bind is None else cast("Callable[..., Any]", bind(function, instance, type(instance)))
+
+
+def _can_be_lost(call: Call) -> bool:
+    """Whether it sends the goal of an action to a server that may never answer."""
+    named, means = call.operation.named, call.payload.means
+    is_goal = named is not None and named.form is Form.GOAL
+    return is_goal and means is not None and means.lost is not None
 
 
 def _marks_time(door: Door) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from enum import Enum
 from fnmatch import fnmatchcase
 from functools import cache
 from typing import Any
@@ -13,6 +12,7 @@ from mutabot.border.job import RefusedAt
 from mutabot.errors import PathError
 from mutabot.model import Call, Path, Role, Span
 from mutabot.model.named import Form, Refused
+from mutabot.model.values.members import is_member, member_of
 
 #: a call of a test: its site, operation and pattern, and its number among those of the site
 _Key = tuple[Span, str, str | None]
@@ -127,10 +127,18 @@ def _found(refused: Refused, start: Any) -> str | None:
         value = path.get(start)
     except PathError:  # another kind of answer, or of message
         return None
-    value = _plain(value)
-    if not any(_same(value, wanted) for wanted in refused.values):
+    if not any(_means(wanted, value) for wanted in refused.values):
         return None
+    value = value.value if is_member(value) else _plain(value)
     return " ".join(part for part in (str(path).lstrip("."), str(value)) if part)
+
+
+def _means(wanted: Any, value: Any) -> bool:
+    """Whether a value of the vocabulary stands for one of the robot's."""
+    if not is_member(value):
+        return _same(_plain(value), wanted)
+    member = member_of(type(value), wanted)
+    return member is not None and bool(member == value)
 
 
 def _same(value: Any, wanted: Any) -> bool:
@@ -142,8 +150,6 @@ def _same(value: Any, wanted: Any) -> bool:
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, Enum):
-        return value.value
     return value.tolist() if hasattr(value, "dtype") and hasattr(value, "tolist") else value
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Generator
+from functools import partial
 from typing import Any
 
 import pytest
@@ -24,6 +25,7 @@ from mutabot.inside.watchdogs import drop_idle_watchdog, watched, watched_by_fau
 
 from .branch import BranchOfTest
 from .classify import Ending, classify, unexpected_pass
+from .fixtures import objects_of_fixtures
 from .outcomes import FAILED, PASSED, is_expected_failure, outcome_so_far
 
 
@@ -74,7 +76,7 @@ class Running:
         self.start_clocks()
         if self.members is not None:
             self.members.start_test(node_id(item))
-        self.session.start_test(node_id(item))
+        self.session.start_test(node_id(item), partial(objects_of_fixtures, item))
         try:
             result = yield
         except BaseException:
