@@ -47,10 +47,15 @@ def end_left_over(folder: Path) -> int:
     return ended
 
 
-def started_below(folder: Path) -> list[int]:
-    """The processes that were started below the worker of this folder."""
-    entry = _mark(folder)
-    return [pid for pid in _processes() if entry in _environment(pid)]
+def by_mark() -> dict[Path, list[int]]:
+    """The processes that were started below workers, by the folder of the worker."""
+    found: dict[Path, list[int]] = {}
+    start = f"{VARIABLE}=".encode()
+    for pid in _processes():
+        for entry in _environment(pid):
+            if entry.startswith(start):
+                found.setdefault(Path(os.fsdecode(entry[len(start) :])), []).append(pid)
+    return found
 
 
 def claim(folder: Path) -> None:
