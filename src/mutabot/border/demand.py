@@ -103,10 +103,10 @@ def _are_kept() -> bool:
 
 def _names(folder: str) -> list[str]:
     with suppress(OSError):
-        return os.listdir(folder)
+        return os.listdir(folder)  # noqa: PTH208  # three times as fast
     return []
 
 
 def _read(path: str) -> str:
-    with open(path, encoding="ascii", errors="replace") as file:
+    with open(path, encoding="ascii", errors="replace") as file:  # noqa: PTH123  # likewise
         return file.read()

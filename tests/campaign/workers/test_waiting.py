@@ -14,9 +14,9 @@ from typing import Any
 
 import pytest
 
+from mutabot.border import demand
 from mutabot.border.processes import VARIABLE
 from mutabot.campaign.run import run_campaign
-from mutabot.border import demand
 from mutabot.campaign.workers import waiting
 from mutabot.campaign.workers.waiting import Waiting
 from mutabot.campaign.workers.workers import Workers
@@ -71,7 +71,7 @@ class Process:
 
 @contextmanager
 def running(*codes: str, on: int | None = None, mark: Path | None = None) -> Iterator[list[int]]:
-    """Processes that run these programs, on one processor if it is named, known by ``mark`` alone if given."""
+    """Processes that run these programs, on one processor if that is named, known by ``mark`` alone."""
     environment = None if mark is None else {VARIABLE: str(mark)}
     processes = []
     try:

@@ -23,7 +23,7 @@ from .remains import by_mark
 PERIOD = 1.0
 #: looks in a row that must find a worker waiting
 _LOOKS = 3
-#: the share of a processor under which a worker asks for none: nodes that poll, and announce themselves, take some
+#: share of a processor under which a worker only waits: nodes that poll, and announce themselves, take some
 _SHARE = 0.25
 #: the share of the time in which some task may have had no processor while processors are not short
 _SHORT = 0.2

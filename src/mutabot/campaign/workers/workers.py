@@ -20,6 +20,7 @@ from mutabot.border.lines import Line, TestStart
 from mutabot.border.processes import acted_in
 from mutabot.border.starter import is_supported
 from mutabot.border.test_end import TestEnd
+from mutabot.border.time_used import MOST, TimeUsed
 from mutabot.errors import JournalError
 
 from .forkserver import LOOKS, Copy, ForkServer
@@ -242,7 +243,7 @@ class Workers:
                     yield key.data.task, line
         now = time.monotonic()
         for worker in list(self._workers):
-            if now >= worker.deadline(self._pause) and not worker.has_ended:
+            if now >= worker.deadline(self._pause) and not worker.has_ended and worker.is_out_of_time():
                 worker.expire()
             if worker.has_ended:
                 yield from self._finish(worker)
@@ -287,7 +288,7 @@ class _Worker:
         self._lines = LineReader(pipe)
         self._home, self._process = home, process
         self._started = time.monotonic()
-        self.until = self._started + task.startup
+        self._allow(task.startup)
 
     @property
     def pid(self) -> int:
@@ -319,10 +320,22 @@ class _Worker:
     def _take(self, line: Line) -> None:
         self.result.take(line)
         if isinstance(line, TestEnd):
-            self.until = time.monotonic() + self.task.startup
+            self._allow(self.task.startup)
         elif isinstance(line, TestStart) or self.task.is_trunk:
             running = self.result.running or ""
-            self.until = time.monotonic() + self.task.deadlines.get(running, self.task.deadline)
+            self._allow(self.task.deadlines.get(running, self.task.deadline))
+
+    def _allow(self, seconds: float) -> None:
+        """From now on it may take so long."""
+        self._limit, self._used = seconds, TimeUsed.from_now([self.pid])
+        self.until = self._used.began + seconds
+
+    def is_out_of_time(self) -> bool:
+        """Whether it has used its time, now that the wall clock has run out; if not, it gets what is left."""
+        left = self._used.left(self._limit, [self.pid])
+        if left > 0:
+            self.until = time.monotonic() + max(left, LOOKS)
+        return left <= 0
 
     def deadline(self, pause: Pause | None) -> float:
         """When (``time.monotonic``) its time is up. A trunk in a pause has nothing to tell."""
@@ -331,7 +344,9 @@ class _Worker:
         return max(self.until, pause.lasted_until() + self.task.deadline)
 
     def expire(self) -> None:
-        """The wall clock ran out: end the process group."""
+        """Its time is up: end the process group."""
+        self.result.hindered = self._used.hindrance([self.pid])
+        self.result.is_starved = time.monotonic() >= self._used.began + MOST * self._limit
         if self.result.running is not None:
             limit = self.task.deadlines.get(self.result.running, self.task.deadline)
             self.result.overdue = f"no end after {limit:.0f} s of wall clock"
@@ -349,7 +364,8 @@ class _Worker:
         """Collect the rest of a process that has ended: its last lines, and what became of it."""
         self.result.exit_code = self._end()
         lines = self.read()
-        self.result.find_overdue(time.monotonic())
+        if self.result.find_overdue(time.monotonic()):
+            self.result.hindered = self._used.hindrance()
         if self.result.end is None:
             self.result.acted += acted_in(self._home.folder)
         self.result.wall = time.monotonic() - self._started + self._process.startup
