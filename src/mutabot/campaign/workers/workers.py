@@ -44,6 +44,7 @@ class Workers:
         on_unshared: told why tasks that might begin as copies of a fork server, or warm, do not, once that is
             known.
         pause: while it is on, no task begins, and no trunk branches; None if nobody can pause.
+        on_left: told once what tests had left running, and was ended.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
@@ -63,6 +64,7 @@ class Workers:
         jobs: int,
         on_unshared: Callable[[str], None] = lambda reason: None,
         pause: Pause | None = None,
+        on_left: Callable[[list[str]], None] = lambda left: None,
     ) -> None:
         self._root = root
         self._arguments = tuple(arguments)
@@ -73,6 +75,7 @@ class Workers:
         self._servers: list[ForkServer] = []
         self._on_unshared = on_unshared
         self._pause = pause
+        self._on_left, self._has_told_left = on_left, False
         self._may_share = True
         self._warm: WarmServer | None = None
         self._may_begin_warm = True
@@ -98,7 +101,9 @@ class Workers:
     ) -> None:
         for worker in self._workers:
             worker.kill()
+        for worker in self._workers:
             worker.close(self._selector)
+            self._tell_left(worker.left)
         self._workers.clear()
         for server in list(self._servers):
             self._end_server(server)
@@ -220,7 +225,13 @@ class Workers:
     def _end_server(self, server: ForkServer) -> None:
         self._selector.unregister(server.pipe)
         self._servers.remove(server)
-        server.close()
+        self._tell_left(server.close())
+
+    def _tell_left(self, left: list[str] | None) -> None:
+        """Say once that tests leave something running."""
+        if left and not self._has_told_left:
+            self._has_told_left = True
+            self._on_left(left)
 
     def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Line]]:
         """Until something happens, or might: ``next_task`` has no place yet."""
@@ -269,6 +280,7 @@ class Workers:
     def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Line]]:
         self._workers.remove(worker)
         lines, result = worker.finish(self._selector)
+        self._tell_left(worker.left)
         for line in lines:
             yield worker.task, line
         if result.end is None:
@@ -287,6 +299,7 @@ class _Worker:
         self.pipe = pipe
         self._lines = LineReader(pipe)
         self._home, self._process = home, process
+        self.left: list[str] | None = None
         self._started = time.monotonic()
         self._allow(task.startup)
 
@@ -353,7 +366,7 @@ class _Worker:
         else:
             self.result.overdue = f"no test begun or finished within {self.task.startup:.0f} s"
         self.result.where = stack.ask(
-            self._process.pid, str(self._home.folder / stack.FILE), self.task.job.root
+            self._process.tests, str(self._home.folder / stack.FILE), self.task.job.root
         )
         self._process.end()
 
@@ -385,5 +398,7 @@ class _Worker:
     def _end(self) -> int:
         """End it and all that was started below it; returns its exit code."""
         code = self._process.end()
-        end_left_over(self._home.processes)
+        if self.left is None:
+            left = self._process.left
+            self.left = end_left_over(self._home.processes) if left is None else left
         return code
