@@ -140,6 +140,7 @@ class BranchDied:
         test: the test it was in.
         exit_code: its exit code, negative for a signal.
         overdue: which wall-clock limit it exceeded, in words, or None.
+        hindered, is_starved: as in ``Result``.
         where: where it was then, if that is known.
     """
 
@@ -148,6 +149,8 @@ class BranchDied:
     exit_code: int
     overdue: str | None = None
     where: str | None = None
+    hindered: str | None = None
+    is_starved: bool = False
 
 
 @dataclass(frozen=True, slots=True)

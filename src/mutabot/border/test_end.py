@@ -26,6 +26,8 @@ class TestEnd:
         message: first lines of the exception's text.
         place: ``file:line`` where the failure was noticed.
         timeout: which limit was exceeded, or None.
+        hindered: why the limit of wall clock that it exceeded says little, as the machine was busy, in words;
+            else None.
         failure: the simulator's failure, or None.
         invalid: whether the mutated call rejected its arguments' types.
         refused: text of the refusal of a mutated call, or None.
@@ -102,6 +104,7 @@ class TestEnd:
     checks: tuple[Check, ...] = ()
     more_checks: int = 0
     recording: str | None = None
+    hindered: str | None = None
 
     @property
     def lasting(self) -> str:

@@ -296,6 +296,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "engine": outcome.engine,
         "stuck": outcome.stuck,
         "repeats": outcome.repeats,
+        "beside": outcome.beside,
         "figures": [{**to_data(one), "is_better": one.is_better} for one in outcome.figures],
         "looked": [to_data(one) for one in outcome.looked],
         "diverged": [{**to_data(one), "worst": one.worst} for one in outcome.diverged],

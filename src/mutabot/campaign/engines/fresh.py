@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.observed import observation, places_of
@@ -12,6 +12,7 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.moments import moments_in
 from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model.outcome import in_words
 
 from .engine import Trial
 from .judge import Death, Run, judged
@@ -22,23 +23,69 @@ REPLAY = "replay"
 WALL_FACTOR = 10.0
 
 
+@dataclass(slots=True)
+class Hindered:
+    """Runs that a limit of wall clock ended on a busy machine: nobody can say what that means."""
+
+    trials: list[Trial] = field(default_factory=list)
+    ends: dict[tuple[str, int], tuple[Outcome, str]] = field(default_factory=dict)
+
+    def add(self, mutant: Mutant, outcome: Outcome, why: str) -> None:
+        """One that ended so, and what the machine did meanwhile."""
+        self.trials.append((mutant, outcome.round))
+        self.ends[mutant.id, outcome.round] = outcome, why
+
+
 def replay(campaign: Campaign, trials: Iterable[Trial], engine: str = REPLAY) -> Iterator[Outcome]:
-    """Outcomes of mutants in rounds, as they come; any ``engine`` but replay begins its processes warm."""
+    """Outcomes of mutants in rounds, as they come; any ``engine`` but replay begins its processes warm.
+
+    What a limit of wall clock ended on a busy machine is run once more alone, see ``replay_alone``.
+    """
+    hindered = Hindered()
+    yield from _replayed(campaign, trials, engine, hindered)
+    yield from replay_alone(campaign, hindered, engine)
+
+
+def replay_alone(campaign: Campaign, hindered: Hindered, engine: str = REPLAY) -> Iterator[Outcome]:
+    """What was hindered, run once more with nothing of ours beside it: that counts, however it ends."""
+    if not hindered.trials:
+        return
+    changed = 0
+    for outcome in _replayed(campaign, hindered.trials, engine, None):
+        first, why = hindered.ends[outcome.mutant, outcome.round]
+        changed += outcome.verdict is not first.verdict
+        yield replace(outcome, beside=f"{in_words(first)}; {why}")
+    count = len(hindered.trials)
+    campaign.progress.note(
+        f"{count} {'run' if count == 1 else 'runs'} that ended by the wall clock while the machine was busy "
+        f"{'was' if count == 1 else 'were'} run once more alone; {changed} of {count} ended otherwise"
+    )
+
+
+def _replayed(
+    campaign: Campaign, trials: Iterable[Trial], engine: str, hindered: Hindered | None
+) -> Iterator[Outcome]:
+    """The same; ``hindered`` takes those that are to be run alone. None: all are run alone."""
     baseline = campaign.baseline
     uncovered: list[Outcome] = []
     widened: list[Trial] = []
     tasks = _tasks(campaign, trials, uncovered)
-    for result in campaign.executor.run(replace(one, begins_warm=engine != REPLAY) for one in tasks):
+    tasks = (
+        replace(one, begins_warm=engine != REPLAY, alone=one.alone or hindered is None) for one in tasks
+    )
+    for result in campaign.executor.run(tasks):
         yield from _drain(uncovered)
         run = replace(run_of(result, campaign.sources), engine=engine)
         outcome = judged(campaign, run)
-        if outcome.verdict is Verdict.SURVIVED and baseline.must_widen(run.mutant, run.round, run.ends):
+        if hindered is not None and run.hindered is not None:
+            hindered.add(run.mutant, outcome, run.hindered)
+        elif outcome.verdict is Verdict.SURVIVED and baseline.must_widen(run.mutant, run.round, run.ends):
             widened.append((run.mutant, run.round))
         else:
             yield outcome
     yield from _drain(uncovered)
     if widened:
-        yield from replay(campaign, widened, engine)
+        yield from _replayed(campaign, widened, engine, hindered)
 
 
 def longest_first(campaign: Campaign, trials: list[Trial]) -> list[Trial]:
@@ -154,4 +201,6 @@ def _death(result: Result) -> Death | None:
         acted=not {result.running, ""}.isdisjoint(result.acted),
         in_mutated_call=result.in_mutated_call,
         where=result.where,
+        hindered=result.hindered,
+        is_starved=result.is_starved,
     )

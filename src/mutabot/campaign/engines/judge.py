@@ -34,6 +34,8 @@ class Death:
         acted: whether its mutant had changed anything by then.
         in_mutated_call: whether it was in the midst of a mutated call.
         where: where it was when its time was up, if that is known.
+        hindered: why that says little of it, as the machine was busy, in words; None if it was not.
+        is_starved: whether it was ended although it had not had its time.
     """
 
     text: str
@@ -43,6 +45,8 @@ class Death:
     acted: bool = False
     in_mutated_call: bool = False
     where: str | None = None
+    hindered: str | None = None
+    is_starved: bool = False
 
 
 @dataclass(slots=True)
@@ -71,6 +75,12 @@ class Run:
     shared: float | None = None
     engine: str = "replay"
     problem: str | None = None
+
+    @property
+    def hindered(self) -> str | None:
+        """Why a limit of wall clock that ended it says little of its mutant, in words; None if none did."""
+        deaths = [self.death.hindered] if self.death is not None else []
+        return next((why for why in (*deaths, *(end.hindered for end in self.ends)) if why is not None), None)
 
 
 def judged(campaign: Campaign, run: Run) -> Outcome:
@@ -192,6 +202,8 @@ def _kills(run: Run, message: str | None) -> tuple[Kill, ...]:
 
 
 def _ruling_on_death(death: Death, acted: bool) -> Ruling:
+    if death.is_starved:
+        return Verdict.UNSTABLE, None, f"{death.text}, of which it had too little: {death.hindered}"
     if death.overdue and (acted or death.acted):
         return Verdict.TIMEOUT, None, death.text
     if death.in_mutated_call and death.signal in OWN_FAULT:

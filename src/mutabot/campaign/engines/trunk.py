@@ -58,12 +58,14 @@ class Trunks:
     Attributes:
         suspects: (round, test) that ended otherwise in a trunk than in the baseline.
         orders: per round, the tests of the trunk in its order.
+        hindered: why a limit of wall clock that ended them says little, by mutant and round.
     """
 
     def __init__(self, campaign: Campaign, left: Remainder, engine: str) -> None:
         self._campaign, self._left, self._engine = campaign, left, engine
         self.suspects: list[tuple[int, str]] = []
         self.orders: dict[int, tuple[str, ...]] = {}
+        self.hindered: dict[tuple[str, int], str] = {}
         self._trunks: dict[int, _Trunk] = {}
 
     def run(
@@ -102,7 +104,9 @@ class Trunks:
             self._left.early.append((mutant, round))
             return
         if round not in self._trunks:
-            self._trunks[round] = _Trunk(self._campaign, round, self._left, self.suspects, self._engine)
+            self._trunks[round] = _Trunk(
+                self._campaign, round, self._left, self.suspects, self._engine, self.hindered
+            )
         forbidding = baseline.why_not_branch(round, tests)
         if forbidding is not None:
             self._left.leave(mutant, round, *forbidding)
@@ -159,9 +163,10 @@ class _Trunk:
         left: Remainder,
         suspects: list[tuple[int, str]],
         engine: str,
+        hindered: dict[tuple[str, int], str],
     ) -> None:
         self._campaign, self._round, self._left, self._suspects = campaign, round, left, suspects
-        self._engine = engine
+        self._engine, self._hindered = engine, hindered
         self._baseline, self._sources = campaign.baseline, campaign.sources
         self._open: dict[str, _Branches] = {}
         self._needed: set[str] = set()
@@ -222,7 +227,7 @@ class _Trunk:
         return found
 
     def _empty(self) -> _Trunk:
-        return _Trunk(self._campaign, self._round, self._left, self._suspects, self._engine)
+        return _Trunk(self._campaign, self._round, self._left, self._suspects, self._engine, self._hindered)
 
     def _wall(self, test: str) -> float:
         return self._baseline.ends[self._round, test].wall
@@ -326,6 +331,8 @@ class _Trunk:
             acted=line.test in branches.acted,
             in_mutated_call=line.test in branches.calling,
             where=line.where,
+            hindered=line.hindered,
+            is_starved=line.is_starved,
         )
         yield from self._settle(line.mutant)
 
@@ -391,5 +398,7 @@ class _Trunk:
         survived = outcome.verdict is Verdict.SURVIVED
         if survived and self._baseline.must_widen(run.mutant, run.round, run.ends):
             return  # to replay
+        if run.hindered is not None:
+            self._hindered[mutant, self._round] = run.hindered
         del self._open[mutant]
         yield outcome

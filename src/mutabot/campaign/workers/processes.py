@@ -18,6 +18,8 @@ from shutil import disk_usage
 
 from mutabot.border.frame import MOST_BYTES, unframed, unreadable
 from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE, Job, job_file, write_job
+from mutabot.border.keeper import FILE as KEEPER
+from mutabot.border.keeper import LEFT
 from mutabot.border.lines import Line, Untrusted
 from mutabot.border.processes import FOLDER
 from mutabot.border.starter import Starter
@@ -25,6 +27,8 @@ from mutabot.border.starter import Starter
 from .removal import remove_folder
 
 _LOG_BYTES = 4000
+#: seconds that a keeper may take to end all it looks after
+_PATIENCE = 15.0
 #: bytes that must be free on the disk for a process to print what it prints
 _ROOM = 1 << 14
 #: bytes that are read of one pipe before others are looked at; more than what a pipe holds
@@ -100,10 +104,10 @@ def refuse_full_disk(folder: Path) -> None:
 
 
 class Spawned:
-    """A fresh process, the leader of a process group of its own; ``starter``: what may begin it warm.
+    """A fresh process, with a keeper above it that ends all it starts; ``starter``: what may begin it warm.
 
     Attributes:
-        pid: its number.
+        pid: the keeper's number.
         pidfd: becomes readable when it ends.
         startup: seconds spent on it before it began; none.
     """
@@ -119,10 +123,13 @@ class Spawned:
         descriptors: tuple[int, ...] = (),
         starter: Starter | None = None,
     ) -> None:
-        warm = starter.at_work() if starter is not None else contextlib.nullcontext()
+        self._left = home.folder / LEFT
+        keeper = [sys.executable, "-I", "-S", KEEPER, str(os.getpid())]
+        warm = starter.at_work(keeper) if starter is not None else contextlib.nullcontext()
+        kept = keeper if starter is None else []
         with home.log_file.open("wb") as log, warm:
             self._process = subprocess.Popen(
-                command(arguments, home.folder),
+                [*kept, *command(arguments, home.folder)],
                 cwd=root,
                 env=environment(home.job_file, writing),
                 stdin=subprocess.DEVNULL,
@@ -139,14 +146,33 @@ class Spawned:
         """Its exit code, negative for a signal; None while it runs."""
         return self._process.poll()
 
+    @property
+    def tests(self) -> int:
+        """The number of the process that runs the tests; the keeper's if there is none."""
+        with contextlib.suppress(OSError, ValueError, IndexError):
+            return int(Path(f"/proc/{self.pid}/task/{self.pid}/children").read_text("ascii").split()[0])
+        return self.pid
+
+    @property
+    def left(self) -> list[str] | None:
+        """What it had left running when it ended, and was ended; None if the keeper did not see to that."""
+        try:
+            return self._left.read_text("utf-8", "replace").splitlines()
+        except OSError:
+            return None
+
     def kill(self) -> None:
-        """End it and all it has started."""
-        kill_group(self.pid)
+        """End it and all it has started, without waiting for that."""
+        self._process.terminate()
 
     def end(self) -> int:
         """End it, and whatever it left behind, if it has not ended yet; returns its exit code."""
         self.kill()
-        return self._process.wait()
+        try:
+            return self._process.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:  # the keeper was stopped
+            self._process.kill()
+            return self._process.wait()
 
     def release(self) -> None:
         """Let go of what is held of it."""

@@ -20,6 +20,7 @@ from mutabot.border.lines import Line, TestStart, Untrusted
 from mutabot.border.processes import acted_in
 from mutabot.border.starter import is_supported
 from mutabot.border.test_end import TestEnd
+from mutabot.border.time_used import MOST, TimeUsed
 from mutabot.errors import JournalError
 
 from .forkserver import LOOKS, Copy, ForkServer
@@ -47,6 +48,7 @@ class Workers:
         on_unshared: told why tasks that might begin as copies of a fork server, or warm, do not, once that is
             known.
         pause: while it is on, no task begins, and no trunk branches; None if nobody can pause.
+        on_left: told once what tests had left running, and was ended.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
@@ -65,6 +67,7 @@ class Workers:
         jobs: int,
         on_unshared: Callable[[str], None] = lambda reason: None,
         pause: Pause | None = None,
+        on_left: Callable[[list[str]], None] = lambda left: None,
     ) -> None:
         self._root = root
         self._arguments = tuple(arguments)
@@ -75,6 +78,7 @@ class Workers:
         self._servers: list[ForkServer] = []
         self._on_unshared = on_unshared
         self._pause = pause
+        self._on_left, self._has_told_left = on_left, False
         self._may_share = True
         self._warm: WarmServer | None = None
         self._may_begin_warm = True
@@ -101,7 +105,9 @@ class Workers:
     ) -> None:
         for worker in self._workers:
             worker.kill()
+        for worker in self._workers:
             worker.close(self._selector)
+            self._tell_left(worker.left)
         self._workers.clear()
         for server in list(self._servers):
             self._end_server(server)
@@ -237,7 +243,15 @@ class Workers:
     def _end_server(self, server: ForkServer) -> None:
         self._selector.unregister(server.pipe)
         self._servers.remove(server)
-        self._note_remains(server.close())
+        left, remains = server.close()
+        self._tell_left(left)
+        self._note_remains(remains)
+
+    def _tell_left(self, left: list[str] | None) -> None:
+        """Say once that tests leave something running."""
+        if left and not self._has_told_left:
+            self._has_told_left = True
+            self._on_left(left)
 
     def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Line]]:
         """Until something happens, or might: ``next_task`` has no place yet."""
@@ -261,7 +275,7 @@ class Workers:
                 key.data.stop_listening_if_over(self._selector)
         now = time.monotonic()
         for worker in list(self._workers):
-            if now >= worker.deadline(self._pause) and not worker.has_ended:
+            if now >= worker.deadline(self._pause) and not worker.has_ended and worker.is_out_of_time():
                 worker.expire()
             if worker.has_ended:
                 yield from self._finish(worker)
@@ -287,6 +301,7 @@ class Workers:
     def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Line]]:
         self._workers.remove(worker)
         lines, result, remains = worker.finish(self._selector)
+        self._tell_left(worker.left)
         self._note_remains(remains)
         for line in lines:
             yield worker.task, line
@@ -307,8 +322,9 @@ class _Worker:
         self._lines = LineReader(pipe, home.key)
         self._is_heard = False
         self._home, self._process = home, process
+        self.left: list[str] | None = None
         self._started = time.monotonic()
-        self.until = self._started + task.startup
+        self._allow(task.startup)
 
     @property
     def pid(self) -> int:
@@ -347,10 +363,22 @@ class _Worker:
     def _take(self, line: Line) -> None:
         self.result.take(line)
         if isinstance(line, TestEnd):
-            self.until = time.monotonic() + self.task.startup
+            self._allow(self.task.startup)
         elif isinstance(line, TestStart) or self.task.is_trunk:
             running = self.result.running or ""
-            self.until = time.monotonic() + self.task.deadlines.get(running, self.task.deadline)
+            self._allow(self.task.deadlines.get(running, self.task.deadline))
+
+    def _allow(self, seconds: float) -> None:
+        """From now on it may take so long."""
+        self._limit, self._used = seconds, TimeUsed.from_now([self.pid])
+        self.until = self._used.began + seconds
+
+    def is_out_of_time(self) -> bool:
+        """Whether it has used its time, now that the wall clock has run out; if not, it gets what is left."""
+        left = self._used.left(self._limit, [self.pid])
+        if left > 0:
+            self.until = time.monotonic() + max(left, LOOKS)
+        return left <= 0
 
     def deadline(self, pause: Pause | None) -> float:
         """When (``time.monotonic``) its time is up. A trunk in a pause has nothing to tell."""
@@ -359,14 +387,16 @@ class _Worker:
         return max(self.until, pause.lasted_until() + self.task.deadline)
 
     def expire(self) -> None:
-        """The wall clock ran out: end the process group."""
+        """Its time is up: end the process group."""
+        self.result.hindered = self._used.hindrance([self.pid])
+        self.result.is_starved = time.monotonic() >= self._used.began + MOST * self._limit
         if self.result.running is not None:
             limit = self.task.deadlines.get(self.result.running, self.task.deadline)
             self.result.overdue = f"no end after {limit:.0f} s of wall clock"
         else:
             self.result.overdue = f"no test begun or finished within {self.task.startup:.0f} s"
         self.result.where = stack.ask(
-            self._process.pid, str(self._home.folder / stack.FILE), self.task.job.root
+            self._process.tests, str(self._home.folder / stack.FILE), self.task.job.root
         )
         self._process.end()
 
@@ -383,7 +413,8 @@ class _Worker:
         if not self._home.is_whole:
             lines.append(_HOME_LOST)
             self._take(_HOME_LOST)
-        self.result.find_overdue(time.monotonic())
+        if self.result.find_overdue(time.monotonic()):
+            self.result.hindered = self._used.hindrance()
         if self.result.end is None:
             self.result.acted += acted_in(self._home.folder)
         self.result.wall = time.monotonic() - self._started + self._process.startup
@@ -404,5 +435,7 @@ class _Worker:
     def _end(self) -> int:
         """End it and all that was started below it; returns its exit code."""
         code = self._process.end()
-        end_left_over(self._home.processes)
+        if self.left is None:
+            left = self._process.left
+            self.left = end_left_over(self._home.processes) if left is None else left
         return code

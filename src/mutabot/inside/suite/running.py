@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Generator
 from functools import partial
@@ -12,6 +13,7 @@ import pytest
 from mutabot.border.footprint import Footprint
 from mutabot.border.lines import TestStart
 from mutabot.border.test_end import TestEnd
+from mutabot.border.time_used import TimeUsed
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.looks import Looks
@@ -55,10 +57,12 @@ class Running:
         self._outcome = PASSED
         self._reading = Reading()
         self._started = (0.0, 0.0)
+        self._used = TimeUsed.from_now()
 
     def start_clocks(self) -> None:
         """What the test takes is counted from now on."""
         self._started = (time.perf_counter(), time.process_time())
+        self._used = TimeUsed.from_now([os.getpid()])
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
@@ -152,6 +156,11 @@ class Running:
             self.session.evidence,
         )
 
+    def _hindered(self, ending: Ending | None) -> str | None:
+        """What the machine had to do with a time-out of the suite's own."""
+        is_overdue = ending is not None and ending.timeout is not None
+        return self._used.hindrance([os.getpid()]) if is_overdue else None
+
     def _test_end(self, test: str) -> TestEnd:
         session, evidence, ending = self.session, self.session.evidence, self._ending
         wall, cpu = time.perf_counter() - self._started[0], time.process_time() - self._started[1]
@@ -202,6 +211,7 @@ class Running:
             checks=self.looks.checks if self.session.job.record else (),
             more_checks=self.looks.more,
             recording=session.recording.text(session.recorder.told()),
+            hindered=self._hindered(ending),
         )
 
     def _footprint(self) -> Footprint | None:
