@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from mutabot.errors import UsageError
 
@@ -15,13 +16,14 @@ _ADDRESS = re.compile(r"(tcp|tls)://[^/:]+:\d+|(tcp|tls)://\[[0-9a-fA-F:]+\]:\d+
 
 
 class ClusterTable(BaseModel):
-    """``[tool.mutabot.cluster]``: files for TLS, relative to the project."""
+    """``[tool.mutabot.cluster]``: files for TLS, and further ones for workers, relative to the project."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     ca: str | None = None
     cert: str | None = None
     key: str | None = None
+    files: Annotated[tuple[str, ...], Field(strict=False)] = ()
 
 
 @dataclass(frozen=True, slots=True)
