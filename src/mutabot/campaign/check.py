@@ -14,6 +14,7 @@ from mutabot.campaign.engines.engine import Remainder
 from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.families import CATALOGUE
+from mutabot.journal.tracked import refuse_tracked
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.named import MAIN
 from mutabot.operators import load_all
@@ -26,6 +27,7 @@ from .request import CheckReport, Progress, Request
 
 def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running mutants."""
+    refuse_tracked(request.journal_path)
     shipment = Shipment.of_configuration(request.configuration) if request.configuration.cluster else None
     with at_it(request, progress) as opened:
         with OpenedFiles(request.root, shipment.folders_left_out if shipment is not None else ()) as watch:

@@ -19,6 +19,7 @@ from mutabot.errors import JournalError
 from .database import Batch, connect, connect_to_read, guarded
 from .lock import WriterLock
 from .schema import SCHEMA_VERSION, VERSION_KEY
+from .tracked import refuse_tracked
 
 T = TypeVar("T")
 
@@ -56,6 +57,7 @@ class Store:
         """Open an existing journal of this version to read it."""
         if not path.is_file():
             raise _no_journal(path)
+        refuse_tracked(path)
         with guarded(path):
             connection, copy = connect_to_read(path)
             store = cls(path, connection, copy=copy)

@@ -16,11 +16,12 @@ from functools import cached_property
 from pathlib import Path, PurePosixPath
 
 from mutabot.campaign.reuse.snapshot import _is_folder_of_project
+from mutabot.errors import ClusterError
 from mutabot.journal.files import HOME
+from mutabot.repository import GitError, repository_of, tracked, unignored
 from mutabot.settings.configuration import Configuration
 
 from .private import may_be_secret
-from .tracked import repository_of, tracked, unignored
 
 #: files, in the project and above it, by which pytest finds its bearings
 BEARINGS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "setup.cfg", "conftest.py")
@@ -66,6 +67,14 @@ class Shipment:
 
         Raises ClusterError where git cannot tell what it tracks.
         """
+        try:
+            return cls._of(root, [*named], [*further])
+        except GitError as error:
+            why = "workers are sent the files that git tracks, and these cannot be listed"
+            raise ClusterError(f"{why}: {error}") from error
+
+    @classmethod
+    def _of(cls, root: Path, named: list[str], further: list[str]) -> Shipment:
         repository = repository_of(root)
         known = tracked(root) if repository is not None else []
         chosen = {name for name in known if _is_there(root, name)}

@@ -1,4 +1,4 @@
-"""Which files of a folder git tracks: what its owner has chosen to give away with the project."""
+"""Which files git tracks, asked of git itself: it alone reads every repository. Nothing is written."""
 
 from __future__ import annotations
 
@@ -6,15 +6,17 @@ import os
 import subprocess
 from pathlib import Path
 
-from mutabot.errors import ClusterError
-
-#: variables by which git would look at another repository than the one that the folder lies in
+#: variables by which git would look at another repository than the one that a folder lies in
 _OF_A_REPOSITORY = {
     "GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX", "GIT_COMMON_DIR", "GIT_NAMESPACE",
     "GIT_OBJECT_DIRECTORY", "GIT_ALTERNATE_OBJECT_DIRECTORIES", "GIT_INTERNAL_SUPER_PREFIX",
     "GIT_CEILING_DIRECTORIES", "GIT_LITERAL_PATHSPECS", "GIT_GLOB_PATHSPECS", "GIT_NOGLOB_PATHSPECS",
     "GIT_ICASE_PATHSPECS",
 }  # fmt: skip
+
+
+class GitError(Exception):
+    """Git cannot tell; the text says why."""
 
 
 def repository_of(folder: Path) -> Path | None:
@@ -25,15 +27,17 @@ def repository_of(folder: Path) -> Path | None:
 def tracked(folder: Path, *names: str) -> list[str]:
     """The files below a folder that git tracks, relative to it, those of submodules included.
 
-    ``names``: only these files in the folder itself. Raises ClusterError where git cannot tell.
+    ``names``: only these files, and what is below them if they are folders. Raises GitError.
     """
-    return _listed(folder, "--cached", *(("--", *names) if names else ("--recurse-submodules",)))
+    if not names:
+        return _listed(folder, "--cached", "--recurse-submodules")
+    return _listed(folder, "--cached", "--", *(f":(literal){name}" for name in names))
 
 
 def unignored(folder: Path) -> list[str]:
     """The files below a folder that git does not track, bar those that it is told to ignore.
 
-    Raises ClusterError where git cannot tell.
+    Raises GitError.
     """
     return _listed(folder, "--others", "--exclude-standard")
 
@@ -45,11 +49,8 @@ def _listed(folder: Path, *options: str) -> list[str]:
     try:
         done = subprocess.run(command, capture_output=True, check=False, env=environment)
     except OSError as error:
-        raise ClusterError(f"{_TOLD}: git cannot be started: {error.strerror}") from error
+        raise GitError(f"git cannot be started: {error.strerror}") from error
     if done.returncode:
         said = os.fsdecode(done.stderr).strip().splitlines()
-        raise ClusterError(f"{_TOLD}: git says: {said[0] if said else f'exit code {done.returncode}'}")
+        raise GitError(f"git says: {said[0] if said else f'exit code {done.returncode}'}")
     return list(dict.fromkeys(os.fsdecode(name) for name in done.stdout.split(b"\0") if name))
-
-
-_TOLD = "workers are sent the files that git tracks, and these cannot be listed"
