@@ -76,6 +76,6 @@ def _why(journal: Path, folder: Path, names: list[str]) -> str:
     what = HOME if option else first
     return (
         f"the journal {journal} is not used, since git tracks {first}{more}: whoever commits a journal "
-        f"decides what it says. Take it out of the repository with `git rm --cached {option}{what}`, add {HOME}/ to "
-        ".gitignore, and keep journals for CI in a cache outside of the checkout"
+        f"decides what it says. Take it out of the repository with `git rm --cached {option}{what}`, add "
+        f"{HOME}/ to .gitignore, and keep journals for CI in a cache outside of the checkout"
     )
