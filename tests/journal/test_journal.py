@@ -19,11 +19,11 @@ from analysis import samples
 from mutabot.border.test_end import TestEnd
 from mutabot.errors import JournalError
 from mutabot.journal.database import Batch, connect, guarded
+from mutabot.journal.files import previous_of
 from mutabot.journal.journal import Journal
 from mutabot.journal.lock import is_written
 from mutabot.journal.records import Kept
 from mutabot.journal.store import Store
-from mutabot.journal.succession import previous_of
 from mutabot.model import By, Outcome, Verdict
 
 KILLED = Outcome("m", 0, Verdict.KILLED, By.CHECK, test="t", example=(1, -1), divergence=("a", "b"))

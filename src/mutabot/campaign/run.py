@@ -16,6 +16,8 @@ from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.program_text import family_of
 from mutabot.campaign.budget.budget import OUT_OF_TIME, run_within
+from mutabot.campaign.cluster.shipping import Shipment
+from mutabot.campaign.cluster.telling import lacking
 from mutabot.campaign.engines.choice import first_engine, run_mutants
 from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
@@ -104,6 +106,7 @@ def _run(
     before = Snapshot.take(request.root)
     with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress, evidence)
+    _note_lacking(request, watch.opened, progress)
     baseline = campaign.baseline
     whole = plan_of(request, baseline)
     plan = selected(campaign, whole)
@@ -304,6 +307,14 @@ def _write_beginning(
     journal.set_known((mutant, True) for mutant in carried)
     if plan.drawing is not None:
         journal.set_meta(DRAWING, to_data(plan.drawing))
+
+
+def _note_lacking(request: Request, opened: Collection[str] | None, progress: Progress) -> None:
+    """Name what tests need and workers will not have, before anything is sent."""
+    if request.cluster is not None:
+        missed = lacking(Shipment.of_configuration(request.configuration), opened)
+        if missed is not None:
+            progress.note(missed)
 
 
 def _note_unstable(baseline: Baseline, progress: Progress) -> None:

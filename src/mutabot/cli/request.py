@@ -93,7 +93,10 @@ def _certified(configuration: Configuration, address: str, **given: Any) -> dict
     """What is known of a cluster, with the certificate files of the configuration where it may need them."""
     files: dict[str, str] = {}
     if not address.startswith(("tcp://", "local:")):
-        files = {name: str(configuration.root / file) for name, file in configuration.cluster.items()}
+        table = configuration.cluster
+        files = {
+            name: str(configuration.root / table[name]) for name in ("ca", "cert", "key") if name in table
+        }
     return {"address": address, **files, **given}
 
 

@@ -39,6 +39,7 @@ from .schema import (
 )
 from .store import Store, dump
 from .succession import keep_copy, make_way
+from .tracked import refuse_tracked
 
 
 class Journal(JournalReader):
@@ -69,6 +70,7 @@ class Journal(JournalReader):
         to version), ``root``, ``seed``, ``rounds``, ``engine``, ``jobs``, ``started``, ``vocabulary`` (what
         ``to_data`` makes of one).
         """
+        refuse_tracked(path)
         with guarded(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             lock = WriterLock.take(path)

@@ -22,6 +22,7 @@ from .lock import WriterLock
 from .marks import leave_out
 from .mirrored import Mirrored
 from .sound import check_schema, no_journal
+from .tracked import refuse_tracked
 
 T = TypeVar("T")
 
@@ -61,6 +62,7 @@ class Store:
         """Open an existing journal of this version to read it."""
         if not path.is_file():
             raise no_journal(path)
+        refuse_tracked(path)
         with guarded(path):
             connection, copy = connect_to_read(path)
             store = cls(path, connection, copy=copy)

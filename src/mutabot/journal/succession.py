@@ -9,13 +9,9 @@ from pathlib import Path
 from mutabot.errors import JournalError
 
 from .database import connect, guarded
+from .files import previous_of
 from .sound import check_schema
 from .store import Store
-
-
-def previous_of(path: Path) -> Path:
-    """Where the last complete campaign before this journal's is kept: ``journal.previous.sqlite``."""
-    return path.with_name(f"{path.stem}.previous{path.suffix}")
 
 
 def make_way(path: Path) -> bool:

@@ -266,10 +266,13 @@ class Settings(BaseModel):
         demand = [{ site = "mission.py:38", quantity = "y", notice = "5 mm" }]
     """
     cluster: dict[str, Any] = {}
-    """Files in PEM format for a [cluster](cluster.md#tls) with TLS. `--tls-ca`,
-    `--tls-cert` and `--tls-key` go before them; which cluster it is says `--cluster`.
+    """For a [cluster](cluster.md): `files` are sent to workers beside
+    [what git tracks](cluster.md#what-is-shipped); folders and patterns may be named. `ca`, `cert` and
+    `key` are files in PEM format for [TLS](cluster.md#tls); `--tls-ca`, `--tls-cert` and `--tls-key` go
+    before them. Which cluster it is says `--cluster`. Where this table stands, `mutabot check` lists what
+    is sent.
 
-        cluster = { ca = "ca.pem", cert = "cert.pem", key = "key.pem" }
+        cluster = { files = ["data/table.json"], ca = "ca.pem", cert = "cert.pem", key = "key.pem" }
     """
 
 
@@ -312,7 +315,9 @@ def load_configuration(folder: Path, families: Collection[str] = ()) -> Configur
     paths.check_rest(settings)
     if not settings.vocabulary and need_vocabulary(families or settings.families):
         check.error((*place, *(("vocabulary",) if "vocabulary" in raw else ())), _NO_VOCABULARY)
-    check.table(ClusterTable, settings.cluster, (*place, "cluster"))
+    cluster = check.table(ClusterTable, settings.cluster, (*place, "cluster"))
+    if cluster is not None:
+        paths.check_shipped(cluster.files)
     demands = check_demands(settings.demand, check, (*place, "demand"))
     raise_errors(check.errors)
     changed = {"program": program, "oracle": oracle, "root": folder.resolve(), "file": document.file}
@@ -430,11 +435,28 @@ class _Paths:
         if settings.selection is not None and self.is_inside(where, settings.selection):
             self.exists(where, settings.selection)
 
-    def _expanded(self, where: KeyPath, pattern: str) -> list[str]:
+    def check_shipped(self, files: tuple[str, ...]) -> None:
+        """Note each path or pattern of files for workers that fits nothing."""
+        for index, name in enumerate(files):
+            where = (*self.place, "cluster", "files", index)
+            if not self.is_inside(where, name):
+                continue
+            if not _WILD.search(name) or (self.root / name).exists():
+                self.exists(where, name)
+            elif self._matches(where, name) == []:
+                self.check.error(where, f"{name!r} matches nothing")
+
+    def _matches(self, where: KeyPath, pattern: str) -> list[Path] | None:
+        """What a pattern fits; None if it is none, which is noted."""
         try:
-            matches = list(self.root.glob(pattern))
+            return list(self.root.glob(pattern))
         except ValueError as error:
             self.check.error(where, f"{pattern!r} is no pattern of paths: {error}")
+            return None
+
+    def _expanded(self, where: KeyPath, pattern: str) -> list[str]:
+        matches = self._matches(where, pattern)
+        if matches is None:
             return []
         relative = [match.relative_to(self.root) for match in matches]
         found = [path.as_posix() for path in relative if _is_source(self.root, path)]

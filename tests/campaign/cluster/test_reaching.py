@@ -15,6 +15,7 @@ from mutabot.campaign.cluster import link
 from mutabot.campaign.cluster.bundle import Bundle
 from mutabot.campaign.cluster.local import LocalCluster, address_in
 from mutabot.campaign.cluster.roster import Roster
+from mutabot.campaign.cluster.shipping import Shipment
 from mutabot.cli.app import main
 from mutabot.cli.request import request_of
 from mutabot.errors import ClusterError, ConfigurationError, UsageError
@@ -104,7 +105,7 @@ def test_a_worker_that_cannot_take_part_is_told_and_lives_on(
             there = link.Link(settings, settings.address)
             roster = Roster(there, {}, True, lambda text: None)
             if has_bundle:
-                roster.bundle = Bundle.make(write(tmp_path / "project"))
+                roster.bundle = Bundle.make(Shipment.of(write(tmp_path / "project")))
             assert until(lambda: roster.update() is not None and there.workers)
             assert until(lambda: _has_refused(roster))
             (why,) = roster.refusals.values()

@@ -30,6 +30,7 @@ from mutabot.journal.records import (
     Repeats,
     Verification,
 )
+from mutabot.journal.tracked import refuse_tracked
 
 from .differences import Part, refuse_strangers
 
@@ -80,6 +81,7 @@ def found_in(path: Path) -> Path:
 
 
 def _opened(stack: ExitStack, path: Path, target: Path) -> Part:
+    refuse_tracked(path)
     if is_written(path):
         raise MergeError(f"{path} is being written by a `mutabot run`: merge it when that has ended")
     opened = path
