@@ -64,8 +64,12 @@ class RefusedCalls:
 
     def begins(self, made: Made) -> None:
         """A call of the original's is made: as with mutated ones, what is refused from now on is this."""
-        if self.on_refused is not None:
-            self._watched[made.call.operation.target] = (made, refused_of(made.call))
+        if self.on_refused is None:
+            return
+        self._watched.pop(made.call.operation.target, None)
+        refused = refused_of(made.call)
+        if any(one.topic is not None for one in refused):  # nothing of the program's is kept without need
+            self._watched[made.call.operation.target] = (made, refused)
 
     def returned(self, made: Made, result: Any) -> None:
         """A call of the original's has returned: its answer may say that the robot refuses it."""
