@@ -19,11 +19,12 @@ _MOST = 12
 
 def is_member(value: Any) -> bool:
     """Whether a value is a member of an enumeration."""
-    return isinstance(value, Enum) or _is_of_pybind11(type(value))
+    kind: Any = type(value)
+    return isinstance(value, Enum) or _is_of_pybind11(kind)
 
 
 @cache
-def _is_of_pybind11(kind: type[Any]) -> bool:
+def _is_of_pybind11(kind: Any) -> bool:
     members = getattr(kind, "__members__", None)
     return (
         isinstance(members, Mapping)
@@ -54,7 +55,8 @@ def written_of(member: Any, values: Sequence[Any], path: str) -> Any:
 
     Raises PathError if its enumeration has no member for one of the values, or one member for two of them.
     """
-    found = _members(type(member), tuple(map(_Typed, values)), path)
+    kind: Any = type(member)
+    found = _members(kind, tuple(map(_Typed, values)), path)
     for value, one in zip(values, found, strict=True):
         if one == member:
             return value
@@ -80,7 +82,7 @@ class _Typed:
 
 
 @cache
-def _members(kind: type[Any], values: tuple[_Typed, ...], path: str) -> tuple[Any, ...]:
+def _members(kind: Any, values: tuple[_Typed, ...], path: str) -> tuple[Any, ...]:
     """The members that these values stand for. Raises PathError."""
     found: list[Any] = []
     for one in values:
