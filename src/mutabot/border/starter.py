@@ -135,17 +135,17 @@ class Starter:
         subprocess._fork_exec = fork_exec  # type: ignore[attr-defined]
 
     @contextmanager
-    def at_work(self, before: Sequence[str]) -> Iterator[None]:
+    def at_work(self, before: Sequence[str] = ()) -> Iterator[None]:
         """Take it over for a moment. What goes the plain way gets these words before its command line."""
         import subprocess  # noqa: PLC0415
 
         module: Any = subprocess
         plain = module._fork_exec
-        program = (os.fsencode(before[0]),)
+        program = (os.fsencode(before[0]),) if before else None
 
         def fork_exec(command: list[Any], executables: Any, *arguments: Any) -> int:
             pid = self.start((command, executables, *arguments))
-            return plain([*before, *command], program, *arguments) if pid is None else pid
+            return plain([*before, *command], program or executables, *arguments) if pid is None else pid
 
         module._fork_exec = fork_exec
         try:

@@ -124,7 +124,7 @@ def check_gone(heartbeat: Path) -> None:
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_a_controller_that_is_ended_leaves_none(tmp_path: Path, heartbeat: Path, number: int) -> None:
     folder = project(tmp_path, MISSION, TEST_HANGS, heartbeat)
-    controller = subprocess.Popen([sys.executable, "-m", "mutabot", "run", "-C", str(folder)])
+    controller = subprocess.Popen([sys.executable, "-m", "mutabot", "run"], cwd=folder)
     try:
         wait_until(heartbeat.exists)
         controller.send_signal(number)
@@ -140,7 +140,8 @@ def test_a_test_that_ends_its_parent_ends_itself(tmp_path: Path, heartbeat: Path
     tests = TESTS.replace("arm = Arm()", f"exec({code!r})")
     folder = project(tmp_path, MISSION, tests, heartbeat)
     ended = subprocess.run(
-        [sys.executable, "-m", "mutabot", "run", "-C", str(folder)],
+        [sys.executable, "-m", "mutabot", "run"],
+        cwd=folder,
         capture_output=True,
         text=True,
         check=False,

@@ -70,9 +70,7 @@ def _replayed(
     uncovered: list[Outcome] = []
     widened: list[Trial] = []
     tasks = _tasks(campaign, trials, uncovered)
-    tasks = (
-        replace(one, begins_warm=engine != REPLAY, alone=one.alone or hindered is None) for one in tasks
-    )
+    tasks = (replace(one, begins_warm=engine != REPLAY, alone=one.alone or hindered is None) for one in tasks)
     for result in campaign.executor.run(tasks):
         yield from _drain(uncovered)
         run = replace(run_of(result, campaign.sources), engine=engine)
