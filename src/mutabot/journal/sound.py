@@ -45,7 +45,7 @@ def check_schema(path: Path, connection: sqlite3.Connection) -> None:
         # a version that cannot be read is one row that is damaged, if all tables are ours
         if version != SCHEMA_VERSION and (version is not None or strange):
             raise JournalError(
-                f"{path} was written by another version of mutabot (journal version {version or '?'}, this one "
+                f"{path} was written by another version of mutabot (journal version {version}, this one "
                 f"reads {SCHEMA_VERSION}); run the campaign again",
                 path=str(path),
             )
