@@ -78,7 +78,7 @@ class Mirrored:
         try:
             cursor = self._change(statement, values)
             self._commit()
-        except sqlite3.Error:
+        except BaseException:  # also what Python says of values
             self._roll_back()
             raise
         return cursor

@@ -123,7 +123,12 @@ class Members:
         self._present = [one for one in self._members.values() if one.is_alive]
 
     def merged(self, end: TestEnd) -> TestEnd:
-        """The end of the running test with what members did in it."""
+        """The end of the running test with what members did in it; an error if that cannot be known."""
+        end = self._with_members(end)
+        doubt = self._host.diaries.doubt
+        return end if doubt is None else replace(end, failure=end.failure or doubt)
+
+    def _with_members(self, end: TestEnd) -> TestEnd:
         self._take_all()
         here = sorted(self._here(), key=lambda one: (one.name, one.began.time))
         if not here:
