@@ -16,7 +16,16 @@ import pytest
 
 from mutabot.border.codec import to_data
 from mutabot.border.job import Branching, Job
-from mutabot.border.lines import BranchEnd, CopyEnded, SessionEnd, SiteSeen, TestStart, line_to_data
+from mutabot.border.lines import (
+    Acted,
+    BranchEnd,
+    CalledAtImport,
+    CopyEnded,
+    SessionEnd,
+    SiteSeen,
+    TestStart,
+    line_to_data,
+)
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.observed import observation
 from mutabot.campaign.baseline.places import Place
@@ -42,6 +51,7 @@ END = TestEnd(
     trace=([0, [0.5], None, None], [0, {"dx": -0.5}, [0.25], None]),
     returned=(["arm", [1.5]], ["run", {"raised": "no way"}]), moments=([1, {"robot:Arm.x": 0.5}, True],),
 )  # fmt: skip
+SITE_LINE, END_LINE = 0, 4
 GROUND = Ground("digest", "/of/the/controller", "", (), {})
 
 
@@ -67,6 +77,8 @@ def good(ticket: str = "ticket") -> dict[str, Any]:
     """The data of an answer that fits."""
     lines = (
         SiteSeen(0, SPAN, "robot:Arm.move_by", None, False),
+        CalledAtImport(([0, [0.25], None, None],)),
+        Acted(""),
         TestStart(TEST),
         END,
         SessionEnd(0, (TEST,)),
@@ -92,7 +104,6 @@ def test_what_a_worker_saw_arrives() -> None:
     assert found.end == SessionEnd(0, (TEST,))
 
 
-END_LINE, SITE_LINE = 2, 0
 _WRONG: dict[str, bytes] = {
     "no JSON": b"{",
     "no UTF-8": b'{"log": "\xff"}',
@@ -101,32 +112,32 @@ _WRONG: dict[str, bytes] = {
     "deep": b'{"lines":' + b"[" * 100_000 + b"]" * 100_000 + b"}",
     "a number of 5,000 digits": b'{"exit_code":' + b"9" * 5000 + b"}",
     "a number that is no fraction": changed(
-        lambda a: a["lines"][2]["trace"].append([0, [10**400], None, None])
+        lambda a: a["lines"][END_LINE]["trace"].append([0, [10**400], None, None])
     ),
     "an answer to something else": packed(good("another")),
     "an unknown field": changed(lambda a: a.update(verdict="killed")),
     "a time that is none": changed(lambda a: a.update(wall=float("nan"))),
-    "a time before its beginning": changed(lambda a: a["lines"][2].update(wall=-1.0)),
+    "a time before its beginning": changed(lambda a: a["lines"][END_LINE].update(wall=-1.0)),
     "true for a number": changed(lambda a: a.update(exit_code=True)),
-    "a huge count": changed(lambda a: a["lines"][2].update(hits=2**70)),
+    "a huge count": changed(lambda a: a["lines"][END_LINE].update(hits=2**70)),
     "a text for a list": changed(lambda a: a.update(lines="abc")),
     "a line of no kind": changed(lambda a: a["lines"].append({"type": "Verdict"})),
     "a line that is no object": changed(lambda a: a["lines"].append(7)),
     "a kind that is no text": changed(lambda a: a["lines"].append({"type": ["TestEnd"]})),
-    "a line without its test": changed(lambda a: a["lines"][2].pop("test")),
+    "a line without its test": changed(lambda a: a["lines"][END_LINE].pop("test")),
     "a line of fork servers": changed(lambda a: a["lines"].append(line_to_data(CopyEnded(1, 1)))),
     "an outcome of a mutant of others": changed(
         lambda a: a["lines"].append(line_to_data(BranchEnd(mutant(2).id, END)))
     ),
-    "a test of others": changed(lambda a: a["lines"][2].update(test="tests/test_other.py::test")),
-    "an outcome that there is not": changed(lambda a: a["lines"][2].update(outcome="great")),
-    "a file of others": changed(lambda a: a["lines"][0]["span"].update(file="/etc/passwd")),
-    "a file above": changed(lambda a: a["lines"][0]["span"].update(file="../secret.py")),
-    "a call at no site": changed(lambda a: a["lines"][2]["trace"].append([5, None, None, None])),
-    "a call that is none": changed(lambda a: a["lines"][2]["trace"].append(5)),
-    "a moment that is none": changed(lambda a: a["lines"][2].update(moments=[[1]])),
-    "a value that was not returned": changed(lambda a: a["lines"][2].update(returned=[["run", []]])),
-    "a recording that is none": changed(lambda a: a["lines"][2].update(recording="AAAA")),
+    "a test of others": changed(lambda a: a["lines"][END_LINE].update(test="tests/test_other.py::test")),
+    "an outcome that there is not": changed(lambda a: a["lines"][END_LINE].update(outcome="great")),
+    "a file of others": changed(lambda a: a["lines"][SITE_LINE]["span"].update(file="/etc/passwd")),
+    "a file above": changed(lambda a: a["lines"][SITE_LINE]["span"].update(file="../secret.py")),
+    "a call at no site": changed(lambda a: a["lines"][END_LINE]["trace"].append([5, None, None, None])),
+    "a call that is none": changed(lambda a: a["lines"][END_LINE]["trace"].append(5)),
+    "a moment that is none": changed(lambda a: a["lines"][END_LINE].update(moments=[[1]])),
+    "a value that was not returned": changed(lambda a: a["lines"][END_LINE].update(returned=[["run", []]])),
+    "a recording that is none": changed(lambda a: a["lines"][END_LINE].update(recording="AAAA")),
 }  # fmt: skip
 
 
@@ -163,7 +174,7 @@ def test_a_worker_does_not_send_what_would_not_be_taken(tmp_path: Path) -> None:
     data = session._fitting(changed(lambda a: a["lines"][END_LINE].update(hits="many")), unit())
     answer, _ = Answer.of(data, unit())
     assert answer.lost is not None
-    assert "lines[2].hits" in answer.lost
+    assert "lines[4].hits" in answer.lost
 
 
 def odd_bytes(random: random.Random) -> bytes:

@@ -15,7 +15,7 @@ from mutabot.errors import ClusterError
 from mutabot.model import Verdict
 from tests.campaign.project import outcomes
 
-from .clusters import cluster, strange_worker, until, write_slow
+from .clusters import cluster, strange_worker, until, write
 from .hostile import ATTACKS, CODE, FORGER
 
 
@@ -67,25 +67,30 @@ def test_what_a_worker_says_does_nothing_to_a_terminal() -> None:
 def test_forged_outcomes_are_an_error_of_that_unit_alone(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """All workers are left out then, and the campaign ends here."""
-    project = write_slow(tmp_path / "project")
+    """The only worker is left out then, and the campaign ends here."""
+    tests = """
+    from mission import run
+    from robot import Arm
+
+    def test_run():
+        arm = Arm()
+        run(arm)
+        assert abs(arm.x - 0.4) < 0.01
+    """
+    mission = "def run(arm):\n    arm.move_by(0.5)\n    arm.move_by(-0.1)\n"
+    project = write(tmp_path / "project", mission=mission, tests=tests)
     words = ["-C", str(project), "run", "--engine", "replay", "--only", "reverse", "--only", "skip"]
-    plain = main([*words, "--fresh"])
-    before = {one.mutant: one.verdict for one in outcomes(project / ".mutabot" / "journal.sqlite")}
     with cluster(tmp_path / "dask", 0) as there, strange_worker(there, tmp_path, FORGER) as process:
         try:
             files = ["--tls-ca", str(there.ca), "--tls-cert", str(there.cert), "--tls-key", str(there.key)]
-            code = main([*words, "--fresh", "--rounds", "1", "--cluster", there.address, *files])
+            code = main([*words, "--rounds", "1", "--cluster", there.address, *files])
         finally:
             process.kill()
     found = outcomes(project / ".mutabot" / "journal.sqlite")
-    forged = [one for one in found if one.verdict is Verdict.ERROR]
-    assert len(forged) == 1
-    assert "does not fit" in str(forged[0].message)
-    assert {one.mutant for one in found} == set(before)
-    assert all(one.verdict is before[one.mutant] for one in found if one not in forged)
-    said = capsys.readouterr()
-    text = said.out + said.err
-    assert text.count("is not used: its answer does not fit") == 1
-    assert text.count("the campaign goes on on this machine") == 1
-    assert (plain, code) == (0, 4), text
+    (forged,) = (one for one in found if one.verdict is Verdict.ERROR)
+    assert "does not fit" in str(forged.message)
+    assert [one.verdict for one in found if one is not forged] == [Verdict.KILLED] * 3
+    told = capsys.readouterr().err
+    assert told.count("is not used: its answer does not fit") == 1
+    assert told.count("the campaign goes on on this machine") == 1
+    assert code == 4, told  # outcomes are missing

@@ -29,7 +29,14 @@ from .clusters import cluster, processes, strange_worker, until, write, write_sl
     ("address", "says"),
     [
         ("local:0", "local:2 starts two"),
+        (
+            "local:99999999",
+            r"local:99999999: at most \d+ workers can be started on this machine, which has \d+",
+        ),
+        ("local:" + "9" * 5000, r"local:9+…: at most \d+ workers"),
         ("local:many", "neither an address"),
+        ("x" * 5000, "neither an address"),
+        ("tcp://host:99999", "an address is like tcp://host:8786"),
         ("no/such/file.json", "nor a scheduler file that is there"),
         ("http://host:8786", "an address is like tcp://host:8786"),
         ("tcp://host", "an address is like tcp://host:8786"),

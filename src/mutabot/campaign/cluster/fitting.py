@@ -15,7 +15,6 @@ from mutabot.border.lines import (
     Acted,
     BranchDied,
     BranchEnd,
-    CalledAtImport,
     Copied,
     CopyEnded,
     Line,
@@ -24,7 +23,6 @@ from mutabot.border.lines import (
     Serving,
     SiteSeen,
     TestStart,
-    TextsSeen,
     Unbranched,
     Undiverged,
     Watched,
@@ -35,8 +33,8 @@ from mutabot.evidence.recording import bytes_of, from_bytes
 from .checked import Misfit
 
 _OUTCOMES = {"passed", "failed", "skipped", "xfailed", "xpassed"}
-#: what only fork servers and runs of the original say
-_NEVER = (Serving, Copied, CopyEnded, CalledAtImport, TextsSeen)
+#: what only fork servers say
+_NEVER = (Serving, Copied, CopyEnded)
 _BRANCHES = (BranchEnd, BranchDied, Unbranched, Undiverged)
 #: bytes of a recording, which comes packed
 _UNPACKED = 256 << 20

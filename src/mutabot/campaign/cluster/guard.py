@@ -35,7 +35,8 @@ class Unreadable(Exception):  # noqa: N818  # it is a value
 
     def __init__(self, *given: Any, **_: Any) -> None:
         super().__init__()
-        self.said = ": ".join(one[:_SAID] for one in given if type(one) is str)[:_SAID]
+        flat = [part for one in given for part in (one if type(one) is tuple else (one,))]
+        self.said = ": ".join(one[:_SAID] for one in flat if type(one) is str)[:_SAID]
         # an exception comes with what makes it, which comes first
         kinds = (one.__name__ for one in given if isinstance(one, type))
         self.kind = next(kinds, type(self).__name__)
