@@ -26,7 +26,7 @@ try:
 except ImportError as error:  # said in words a user can act on
     raise ClusterError(
         "--cluster needs the library distributed, which is not installed here: "
-        f"pip install 'mutabot[cluster]' ({error})"
+        f"pip install 'path/to/mutabot[cluster]' ({error})"
     ) from error
 
 #: seconds that a scheduler may take to answer
