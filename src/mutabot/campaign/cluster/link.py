@@ -29,7 +29,7 @@ try:
 except ImportError as error:  # said in words a user can act on
     raise ClusterError(
         "--cluster needs the library distributed, which is not installed here: "
-        f"pip install 'mutabot[cluster]' ({error})"
+        f"pip install 'path/to/mutabot[cluster]' ({error})"
     ) from error
 
 from . import guard
