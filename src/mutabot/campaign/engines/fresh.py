@@ -14,7 +14,7 @@ from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.model import Mutant, Outcome, Verdict
 
 from .engine import Trial
-from .judge import Death, Run, judged
+from .judge import Death, Run, judged, not_judged
 
 #: the engine that is the reference
 REPLAY = "replay"
@@ -30,15 +30,30 @@ def replay(campaign: Campaign, trials: Iterable[Trial], engine: str = REPLAY) ->
     tasks = _tasks(campaign, trials, uncovered)
     for result in campaign.executor.run(replace(one, begins_warm=engine != REPLAY) for one in tasks):
         yield from _drain(uncovered)
-        run = replace(run_of(result, campaign.sources), engine=engine)
-        outcome = judged(campaign, run)
-        if outcome.verdict is Verdict.SURVIVED and baseline.must_widen(run.mutant, run.round, run.ends):
-            widened.append((run.mutant, run.round))
+        mutant, round = trial_of(result)
+        outcome = _outcome(campaign, result, engine)
+        if outcome.verdict is Verdict.SURVIVED and baseline.must_widen(mutant, round, result.ends):
+            widened.append((mutant, round))
         else:
             yield outcome
     yield from _drain(uncovered)
     if widened:
         yield from replay(campaign, widened, engine)
+
+
+def trial_of(result: Result) -> Trial:
+    """Which mutant was run, and in which round."""
+    job = result.task.job
+    assert job.mutant is not None
+    return job.mutant, job.round
+
+
+def _outcome(campaign: Campaign, result: Result, engine: str) -> Outcome:
+    try:
+        run = replace(run_of(result, campaign.sources), engine=engine)
+    except Exception as error:
+        return not_judged(*trial_of(result), error, engine)
+    return judged(campaign, run)
 
 
 def longest_first(campaign: Campaign, trials: list[Trial]) -> list[Trial]:
@@ -110,13 +125,12 @@ def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
 
 def run_of(result: Result, sources: Sources) -> Run:
     """What a worker saw of its mutant."""
-    job = result.task.job
-    assert job.mutant is not None
+    mutant, round = trial_of(result)
     places = places_of(result, sources)
     return Run(
-        mutant=job.mutant,
-        round=job.round,
-        tests=job.tests or (),
+        mutant=mutant,
+        round=round,
+        tests=result.task.job.tests or (),
         ends=result.ends,
         observations={end.test: observation(end, places) for end in result.ends if end.outcome != "failed"},
         death=_death(result),
