@@ -1,4 +1,4 @@
-"""What goes wrong in mutabot while it deals with one mutant is an error of that mutant; all others are judged."""
+"""What goes wrong in mutabot while it judges one mutant is an error of that mutant; the others are judged."""
 
 from __future__ import annotations
 
