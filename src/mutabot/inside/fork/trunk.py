@@ -10,9 +10,9 @@ from __future__ import annotations
 import os
 import select
 import signal
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from time import monotonic, perf_counter  # tests may replace those of the module
 from typing import Protocol
 
 from mutabot.border.job import Branching
@@ -229,12 +229,12 @@ class Trunk:
             for indexes in alike:
                 parting = bunch.take_out(place, indexes)
                 if self._may_fork([mutant.id for mutant in parting]):
-                    began = time.perf_counter()
+                    began = perf_counter()
                     pid = self._fork_one(parting)
                     if pid == 0:
                         return
                     os.waitpid(pid, 0)
-                    bunch.waited += time.perf_counter() - began
+                    bunch.waited += perf_counter() - began
 
     def finish(self) -> None:
         """All tests are over: wait for the branches that still run, holding no token meanwhile."""
@@ -267,7 +267,7 @@ class Trunk:
             limit = self.branching.walls.get(self._test, self.branching.wall) * len(bunch)
             pidfd = os.pidfd_open(pid)
             ids = tuple(mutant.id for mutant in bunch)
-            self._children[pidfd] = Child(ids, self._test, pid, pidfd, time.monotonic() + limit, limit)
+            self._children[pidfd] = Child(ids, self._test, pid, pidfd, monotonic() + limit, limit)
             self._take_token()
 
     def _fork_one(self, bunch: list[Mutant]) -> int:
@@ -327,7 +327,7 @@ class Trunk:
         if other is not None:
             poll.register(other, select.POLLIN)
         until = min((child.until for child in self._children.values()), default=None)
-        timeout = None if until is None else max(0.0, until - time.monotonic()) * 1e3 + 1.0
+        timeout = None if until is None else max(0.0, until - monotonic()) * 1e3 + 1.0
         return [descriptor for descriptor, _ in poll.poll(timeout)]
 
     def _reap(self, ready: list[int]) -> bool:
@@ -335,7 +335,7 @@ class Trunk:
 
         One branch at a time: each brings one token.
         """
-        now = time.monotonic()
+        now = monotonic()
         for child in self._children.values():
             if now >= child.until and not child.overdue:
                 child.overdue = True

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Generator
+from time import perf_counter, process_time  # tests may replace those of the module
 from typing import Any
 
 import pytest
@@ -55,7 +55,7 @@ class Running:
 
     def start_clocks(self) -> None:
         """What the test takes is counted from now on."""
-        self._started = (time.perf_counter(), time.process_time())
+        self._started = (perf_counter(), process_time())
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
@@ -151,7 +151,7 @@ class Running:
 
     def _test_end(self, test: str) -> TestEnd:
         session, evidence, ending = self.session, self.session.evidence, self._ending
-        wall, cpu = time.perf_counter() - self._started[0], time.process_time() - self._started[1]
+        wall, cpu = perf_counter() - self._started[0], process_time() - self._started[1]
         meter, returns = session.meter, session.returns
         assert meter is not None
         cause = ending or self._expected  # what a test said that it would do ends it as well
