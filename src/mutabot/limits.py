@@ -1,4 +1,4 @@
-"""The greatest numbers that options and settings take: what is beyond them cannot be meant, and cannot be done."""
+"""The greatest numbers that options and settings take: more cannot be meant, and cannot be done."""
 
 from __future__ import annotations
 

@@ -72,8 +72,8 @@ class Moment:
                 raise ValueError(f"{text!r} ends before it begins")
             return moment
         raise ValueError(
-            f'{shortened(text)!r} is no moment; write "every", the number of a call ("3"), "from 3", "once", or a '
-            'window of simulated time ("2-2.5 s")'
+            f'{shortened(text)!r} is no moment; write "every", the number of a call ("3"), "from 3", "once", '
+            'or a window of simulated time ("2-2.5 s")'
         )
 
     @classmethod

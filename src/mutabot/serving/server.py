@@ -31,7 +31,7 @@ HOST = "127.0.0.1"
 _NAMES = re.compile(r"(localhost|127\.0\.0\.1|\[::1\])(:[0-9]{1,5})?", re.IGNORECASE)
 #: seconds: for one request or one write; between two signs of life; between two looks; between two states
 _PATIENCE, _HEARTBEAT, _TICK, _REST = 30.0, 15.0, 1.0, 0.2
-#: connections at a time; further ones are closed. A request must be there, whole, within so many seconds and bytes
+#: connections at a time; further ones are closed. A request must be whole within so many seconds and bytes
 MOST, WITHIN, _LARGEST = 64, 10.0, 1 << 16
 _HEADERS = {
     "Cache-Control": "no-store",
@@ -242,10 +242,10 @@ class _Handler(BaseHTTPRequestHandler):
                     written = time.monotonic()
 
     def _is_gone(self) -> bool:
-        """Whether the browser has closed the connection."""
+        """Whether the browser has closed the connection; one that talks on is none."""
         poll = select.poll()
         poll.register(self.connection, select.POLLIN)
-        return bool(poll.poll(0)) and not self.connection.recv(1, socket.MSG_PEEK)
+        return bool(poll.poll(0))
 
     def log_message(self, format: str, *args: Any) -> None:
         """Nothing: the terminal belongs to the campaign, and the address to nobody else."""

@@ -15,7 +15,7 @@ from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.outcome import in_words
 
 from .engine import Trial
-from .judge import Death, Run, judged
+from .judge import Death, Run, judged, not_judged
 
 #: the engine that is the reference
 REPLAY = "replay"
@@ -73,17 +73,33 @@ def _replayed(
     tasks = (replace(one, begins_warm=engine != REPLAY, alone=one.alone or hindered is None) for one in tasks)
     for result in campaign.executor.run(tasks):
         yield from _drain(uncovered)
-        run = replace(run_of(result, campaign.sources), engine=engine)
-        outcome = judged(campaign, run)
-        if hindered is not None and run.hindered is not None:
-            hindered.add(run.mutant, outcome, run.hindered)
-        elif outcome.verdict is Verdict.SURVIVED and baseline.must_widen(run.mutant, run.round, run.ends):
-            widened.append((run.mutant, run.round))
+        mutant, round = trial_of(result)
+        outcome, why = _outcome(campaign, result, engine)
+        if hindered is not None and why is not None:
+            hindered.add(mutant, outcome, why)
+        elif outcome.verdict is Verdict.SURVIVED and baseline.must_widen(mutant, round, result.ends):
+            widened.append((mutant, round))
         else:
             yield outcome
     yield from _drain(uncovered)
     if widened:
         yield from _replayed(campaign, widened, engine, hindered)
+
+
+def trial_of(result: Result) -> Trial:
+    """Which mutant was run, and in which round."""
+    job = result.task.job
+    assert job.mutant is not None
+    return job.mutant, job.round
+
+
+def _outcome(campaign: Campaign, result: Result, engine: str) -> tuple[Outcome, str | None]:
+    """The outcome, and why a limit of wall clock that ended the run says little."""
+    try:
+        run = replace(run_of(result, campaign.sources), engine=engine)
+    except Exception as error:
+        return not_judged(*trial_of(result), error, engine), None
+    return judged(campaign, run), run.hindered
 
 
 def longest_first(campaign: Campaign, trials: list[Trial]) -> list[Trial]:
@@ -156,13 +172,12 @@ def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
 
 def run_of(result: Result, sources: Sources) -> Run:
     """What a worker saw of its mutant."""
-    job = result.task.job
-    assert job.mutant is not None
+    mutant, round = trial_of(result)
     places = places_of(result, sources)
     return Run(
-        mutant=job.mutant,
-        round=job.round,
-        tests=job.tests or (),
+        mutant=mutant,
+        round=round,
+        tests=result.task.job.tests or (),
         ends=result.ends,
         observations={end.test: observation(end, places) for end in result.ends if end.outcome != "failed"},
         death=_death(result),

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from mutabot.border.signals import OWN_FAULT
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.observation import Observation, compare, farthest
+from mutabot.errors import MutabotError
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.outcome import added
 from mutabot.model.seen.figure import Figure
@@ -84,7 +87,32 @@ class Run:
 
 
 def judged(campaign: Campaign, run: Run) -> Outcome:
-    """The outcome of a run, whose recordings are kept as far as they differ from the original's."""
+    """The outcome of a run, whose recordings are kept as far as they differ from the original's.
+
+    What goes wrong while it is judged is an error of this mutant, and not the end of the campaign.
+    """
+    try:
+        return _judged(campaign, run)
+    except Exception as error:
+        return not_judged(run.mutant, run.round, error, run.engine)
+
+
+def not_judged(mutant: Mutant, round: int, error: Exception, engine: str) -> Outcome:
+    """The outcome of a mutant that could not be judged; an error that is not about it is raised again."""
+    refuse_others(error)
+    where = traceback.extract_tb(error.__traceback__)[-1]
+    text = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
+    message = f"mutabot could not judge what it saw of it: {text}"
+    return Outcome(mutant.id, round, Verdict.ERROR, message=message, engine=engine)
+
+
+def refuse_others(error: Exception) -> None:
+    """Raise an error again that says nothing of a mutant, but of the user's set-up or of the disk."""
+    if isinstance(error, MutabotError | OSError):
+        raise error
+
+
+def _judged(campaign: Campaign, run: Run) -> Outcome:
     outcome = judge(campaign, run)
     if campaign.evidence is None or outcome.verdict not in _RECORDED:
         return outcome

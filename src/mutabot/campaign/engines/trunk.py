@@ -35,7 +35,7 @@ from mutabot.model import Instrumentation, Mutant, Outcome, Verdict
 
 from .engine import Remainder, Trial
 from .fresh import wall_limit, without_tests
-from .judge import Death, Run, judged
+from .judge import Death, Run, judged, not_judged, refuse_others
 
 #: seconds without any word from a trunk, beyond what its tests and branches may take
 _PATIENCE = 60.0
@@ -267,7 +267,27 @@ class _Trunk:
         return Task(key, job, {}, patience, patience, is_trunk=True, may_share=True)
 
     def take(self, line: Line) -> Iterator[Outcome]:
-        """Sort in a report line; yields the outcomes that it settles."""
+        """Sort in a report line; yields the outcomes that it settles.
+
+        What goes wrong with it is an error of its mutant, or leaves its test to replay.
+        """
+        try:
+            yield from self._take(line)
+        except Exception as error:
+            yield from self._give_up(line, error)
+
+    def _give_up(self, line: Line, error: Exception) -> Iterator[Outcome]:
+        refuse_others(error)
+        branches = self._open.get(line.mutant) if isinstance(line, BranchEnd | BranchDied) else None
+        if branches is not None:
+            del self._open[branches.mutant.id]
+            yield not_judged(branches.mutant, self._round, error, self._engine)
+            return
+        self._left.notes.append(f"a report of the trunk cannot be used: {type(error).__name__}: {error}")
+        if isinstance(line, TestEnd):
+            self._failed.add(line.test)
+
+    def _take(self, line: Line) -> Iterator[Outcome]:
         match line:
             case BranchEnd() if line.mutant in self._open:
                 yield from self._branch_ended(line)

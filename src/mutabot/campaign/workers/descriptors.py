@@ -8,7 +8,7 @@ from mutabot.errors import UsageError
 
 #: for Python, the journal and what is recorded; for pytest with its plug-ins, and the program under test
 _ALWAYS = 128
-#: for each of ``-j``: a pipe and the process itself, for up to four that wait in its place, and as much to begin them
+#: for each of ``-j``: a pipe and the process itself, for up to four in its place, and as much to begin them
 _EACH = 16
 #: for a page: its connections, and what is read to answer them
 _PAGE = 128
@@ -34,8 +34,8 @@ def provide(jobs: int, *, served: bool) -> None:
     fewer = (hard - needed(0, served=served)) // _EACH
     advice = f", or use -j {fewer}" if fewer > 0 else ""
     raise UsageError(
-        f"-j {jobs}{' with --serve' if served else ''} needs {wanted} open files at a time, but the system allows "
-        f"{hard} (RLIMIT_NOFILE): raise that limit (`ulimit -Hn {wanted}` as root){advice}"
+        f"-j {jobs}{' with --serve' if served else ''} needs {wanted} open files at a time, but the system "
+        f"allows {hard} (RLIMIT_NOFILE): raise that limit (`ulimit -Hn {wanted}` as root){advice}"
     )
 
 

@@ -165,7 +165,7 @@ class ForkServer:
         return -signal.SIGKILL if code is None else code
 
     def close(self) -> tuple[list[str], str | None]:
-        """End it and all copies. Returns what these had left running, and what cannot be removed, in words."""
+        """End it and all copies; returns what these had left running, and what cannot be removed."""
         self._jobs.close()
         self._listen_until(lambda: False, _PATIENCE if self.serving is not None else 0.0)
         self._process.end()

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Generator
 from functools import partial
+from time import perf_counter, process_time  # tests may replace those of the module
 from typing import Any
 
 import pytest
@@ -61,7 +61,7 @@ class Running:
 
     def start_clocks(self) -> None:
         """What the test takes is counted from now on."""
-        self._started = (time.perf_counter(), time.process_time())
+        self._started = (perf_counter(), process_time())
         self._used = TimeUsed.from_now([os.getpid()])
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -163,7 +163,7 @@ class Running:
 
     def _test_end(self, test: str) -> TestEnd:
         session, evidence, ending = self.session, self.session.evidence, self._ending
-        wall, cpu = time.perf_counter() - self._started[0], time.process_time() - self._started[1]
+        wall, cpu = perf_counter() - self._started[0], process_time() - self._started[1]
         meter, returns = session.meter, session.returns
         assert meter is not None
         cause = ending or self._expected  # what a test said that it would do ends it as well
