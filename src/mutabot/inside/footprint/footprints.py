@@ -58,7 +58,7 @@ class Footprints:
     def make_private(self, home: str) -> str | None:
         """Keep to this process what it does to files; why that is not possible, in words, if it is not."""
         root = os.path.realpath(self.job.root)
-        reason = make_private(root, os.path.realpath(home))
+        reason = make_private(root, os.path.realpath(home), os.path.join(root, ".mutabot"))
         self._private = private_folders(root) if reason is None else ()
         return reason
 

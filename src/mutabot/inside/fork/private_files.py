@@ -30,26 +30,27 @@ def private_folders(root: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*outer, *folders]))
 
 
-def make_private(root: str, home: str) -> str | None:
+def make_private(root: str, home: str, shared: str) -> str | None:
     """Make this process's files private.
 
     Args:
         root: absolute path of the project.
-        home: the process's own folder: the only one in which it and others see the same. So it cannot delete
-            what belongs to other processes or to the campaign.
+        home: the process's own folder, beside those of other processes, which it cannot touch.
+        shared: the folder that stays common to all processes, but for those folders.
 
     Returns why that is not possible, in words, and nothing has changed then, bar the namespace; None if it is
     done.
     """
-    folders = [folder for folder in private_folders(root) if not is_below(folder, home)]
+    folders = [folder for folder in private_folders(root) if not is_below(folder, shared)]
+    beside = os.path.dirname(home)
     covered: list[str] = []
     try:
         _enter_namespace()
         _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
-        with _opened([*folders, home]) as (*lowers, own):
-            below = _mounts_below(folders, home)
+        with _opened([*folders, shared, beside, home]) as (*lowers, common, others, own):
+            below = _mounts_below(folders, shared)
             with _opened(below) as kept:
-                again = [*zip(below, kept, strict=True), (home, own)]
+                again = [*zip(below, kept, strict=True), (shared, common)]
                 for number, (folder, lower) in enumerate(zip(folders, lowers, strict=True)):
                     _lay_over(folder, lower, own, number)
                     covered.append(folder)
@@ -58,6 +59,11 @@ def make_private(root: str, home: str) -> str | None:
                         if inner != folder and is_below(inner, folder):
                             _mount(_path(descriptor), inner, None, _MS_BIND | _MS_REC)
                             covered.append(inner)
+            if beside != shared:
+                _lay_over(beside, others, own, len(folders))
+                covered.append(beside)
+                _mount(_path(own), home, None, _MS_BIND | _MS_REC)
+                covered.append(home)
     except OSError as error:
         _uncover(covered)
         return f"{error.strerror or error}"
@@ -97,14 +103,14 @@ def _lay_over(folder: str, lower: int, own: int, number: int) -> None:
             _mount("overlay", folder, options + ",userxattr", 0, kind="overlay")
 
 
-def _mounts_below(folders: list[str], home: str) -> list[str]:
+def _mounts_below(folders: list[str], shared: str) -> list[str]:
     """File systems that are mounted below these folders, the outer ones first: an overlay would hide them."""
     with open("/proc/self/mountinfo", "rb") as file:
         points = [mount_point(line) for line in file]
     found = dict.fromkeys(
         point
         for point in sorted(points)
-        if not is_below(point, home)
+        if not is_below(point, shared)
         and any(point != folder and is_below(point, folder) for folder in folders)
     )
     return list(found)
