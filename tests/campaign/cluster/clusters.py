@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.border.codec import to_data
+from mutabot.campaign.cluster.link import Link
 from mutabot.campaign.cluster.local import LocalCluster
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
@@ -128,7 +129,11 @@ def cluster(folder: Path, workers: int) -> Iterator[ClusterSettings]:
     there = LocalCluster(workers, folder)
     own = there.certificates
     try:
-        yield ClusterSettings(there.start(), ca=own.ca, cert=own.cert, key=own.key)
+        settings = ClusterSettings(there.start(), ca=own.ca, cert=own.cert, key=own.key)
+        link = Link(settings, settings.address)
+        assert until(lambda: len(link.workers) == workers, 120)
+        link.close()
+        yield settings
     finally:
         there.close()
 

@@ -63,7 +63,7 @@ def workers() -> list[int]:
 
 def when(condition: Callable[[], bool], then: Callable[[], Any]) -> threading.Thread:
     """Do something as soon as it is time."""
-    thread = threading.Thread(target=lambda: until(condition) and then())
+    thread = threading.Thread(target=lambda: until(condition, 300) and then())
     thread.start()
     return thread
 

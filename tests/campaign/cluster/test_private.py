@@ -17,14 +17,13 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.cluster import cluster as of_cluster
-from mutabot.campaign.cluster import link
 from mutabot.campaign.cluster.certificates import Certificates
 from mutabot.errors import ClusterError
 from mutabot.settings.cluster import ClusterSettings
 from tests.campaign.project import Quiet, request_for
 
 from . import intruder
-from .clusters import cluster, on_cluster, processes, until, write
+from .clusters import cluster, on_cluster, processes, write
 
 NOBODY = 65534
 _LISTENS = "0A"
@@ -53,9 +52,6 @@ def opened(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Opened]:
         patch.setenv(*_MARK.split("="))
         patch.setenv("DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION", "False")  # a user's own setting
         with cluster(tmp_path_factory.mktemp("dask"), 1) as settings:
-            there = link.Link(settings, settings.address)
-            assert until(lambda: there.workers, 60)
-            there.close()
             yield Opened(settings, listening())
 
 
