@@ -16,16 +16,17 @@ from rooms import SOURCE, files, imports, levels, name_of, rooms
 #: package -> packages of ours it may import
 ALLOWED = {
     "exit_codes": set(),
-    "errors": {"exit_codes"},
+    "limits": set(),
+    "errors": {"exit_codes", "limits"},
     "families": set(),
     "repository": set(),
-    "model": {"errors", "families"},
+    "model": {"errors", "families", "limits"},
     "languages": {"model"},
     "border": {"errors", "model"},
     "operators": {"errors", "families", "model"},
     "classical": {"errors", "families", "model", "languages", "operators"},
-    "settings": {"errors", "families", "model", "border", "operators"},
-    "vocabulary": {"errors", "model", "settings"},
+    "settings": {"errors", "families", "limits", "model", "border", "operators"},
+    "vocabulary": {"errors", "limits", "model", "settings"},
     "evidence": {"model"},
     "inside": {"errors", "model", "languages", "border", "operators", "evidence"},
     "journal": {"errors", "model", "border", "repository"},
@@ -41,7 +42,7 @@ ALLOWED = {
     "cells": {"evidence"},
     "__main__": {"cli"},
     "cli": {
-        "exit_codes", "errors", "families", "model", "border", "settings", "vocabulary", "journal",
+        "exit_codes", "errors", "families", "limits", "model", "border", "settings", "vocabulary", "journal",
         "campaign", "proposal", "suggestion", "analysis", "report", "serving",
     },
 }  # fmt: skip
