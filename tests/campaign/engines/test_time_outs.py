@@ -118,6 +118,7 @@ def test_a_mutant_that_is_kept_from_the_processor_gets_its_time(engine: str, tmp
     assert found.wall > LIMIT
 
 
+@pytest.mark.usefixtures("plugins")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(
     "limit",

@@ -177,7 +177,8 @@ def campaign(
     before = fingerprint(folder)
     only = ("*:negate", "*:reverse")
     found = run(folder, only=only, engine=request.param)
-    assert {outcome.engine for outcome in found.values()} == {request.param}
+    # on a busy machine the one that hangs is run once more, alone and by replay
+    assert {outcome.engine for outcome in found.values() if outcome.beside is None} == {request.param}
     return folder, {key.split(":")[1]: outcome for key, outcome in found.items()}, before
 
 
