@@ -20,7 +20,7 @@ from mutabot.cli.app import main
 from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
 
-COMMANDS = ("init", "check", "list", "run", "compare", "results", "show", "report", "replay")
+COMMANDS = ("init", "check", "list", "run", "results", "show", "report", "replay")
 
 
 @pytest.fixture
@@ -375,7 +375,7 @@ def test_a_pipe_that_closes_early_is_no_error(fake: Campaign, command: str) -> N
     assert not (fake.project / ".mutabot" / "crash.txt").exists()
 
 
-@pytest.mark.parametrize("command", [[], ["run"], ["show"], ["compare"]])
+@pytest.mark.parametrize("command", [[], ["run"], ["show"]])
 def test_the_short_option_asks_for_help_too(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*command, "-h"]) == 0
     short = capsys.readouterr().out

@@ -39,7 +39,6 @@ class Request:
         baseline: how often the baseline runs each round; None for as often as the engine needs.
         families: the families of operators whose mutants are made.
         every_test: whether a mutant runs every test that reaches it, also after one has noticed it.
-        no_oracle: whether every assertion of the tests is switched off.
         sample: how many of the mutants to run, chosen at random; None for all.
         one_per_site: whether to run one mutant per site, chosen at random.
         order: how many mutants are one: 1 or 2.
@@ -74,7 +73,6 @@ class Request:
     baseline: int | None = None
     families: tuple[str, ...] = USUAL
     every_test: bool = False
-    no_oracle: bool = False
     sample: Sample | None = None
     one_per_site: bool = False
     order: int = 1
@@ -124,7 +122,6 @@ class Request:
             seed=self.seed,
             round=round,
             memory=self.configuration.memory,
-            no_oracle=self.no_oracle,
             private_files=self.configuration.private_files,
             oracle_nodes=self.configuration.oracle_nodes,
             evidence=self.evidence,

@@ -290,7 +290,6 @@ def _meta(request: Request) -> dict[str, Any]:
         "order": request.order,
         "pairs": request.pairs,
         "every_test": request.every_test,
-        "no_oracle": request.no_oracle,
         "fresh": request.fresh,
         "started": time.time(),
         "vocabulary": to_data(request.vocabulary),

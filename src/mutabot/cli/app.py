@@ -17,7 +17,6 @@ from mutabot.errors import MutabotError
 from mutabot.exit_codes import ExitCode
 
 from . import campaign, init, replay, report, results, suggest, thresholds
-from .comparing import compare
 from .lists import operators
 from .merging import merge
 from .options import Version
@@ -51,7 +50,6 @@ app.command("list", rich_help_panel=_SETUP)(campaign.list_)
 app.command(rich_help_panel=_SETUP)(operators.operators)
 app.command(rich_help_panel=_RUN)(campaign.run)
 app.command(rich_help_panel=_RUN)(merge.merge)
-app.command(rich_help_panel=_RUN)(compare.compare)
 app.command(rich_help_panel=_RUN)(replay.replay)
 app.command(rich_help_panel=_RUN)(suggest.suggest)
 app.command(rich_help_panel=_LOOK)(results.results)
@@ -76,8 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         return _usage_or_crash(error)
     if code == ExitCode.INTERRUPTED:  # also typer itself turns Ctrl-C into this code
-        command = "compare --results" if "compare" in arguments else "results"
-        typer.echo(f"interrupted; `mutabot {command}` shows what is there", err=True)
+        typer.echo("interrupted; `mutabot results` shows what is there", err=True)
     return code if isinstance(code, int) else ExitCode.FINE
 
 

@@ -98,20 +98,10 @@ OneMutant = Annotated[
     str, typer.Argument(metavar="MUTANT", help="The mutant's number or id, or as much of it as is unique.")
 ]
 Table = Annotated[bool, typer.Option("--table", help="Print every mutant at the end, not only a summary.")]
-NoOracle = Annotated[
-    bool,
-    typer.Option(
-        "--no-oracle", help="Run a second time with every assertion off: what a score is then worth."
-    ),
-]
-Picture = Annotated[
-    Path | None, typer.Option("--picture", metavar="FILE", help="Draw the ends as bars: FILE.svg.")
-]
 Part = Annotated[
     str | None,
     typer.Option("--shard", metavar="N/M", help="Run only part N of M; `mutabot merge` puts them together."),
 ]
-Stored = Annotated[bool, typer.Option("--results", help="Run nothing; show what the last comparison found.")]
 Fresh = Annotated[bool, typer.Option("--fresh", help="Run everything again, also outcomes that still hold.")]
 Since = Annotated[
     str | None,

@@ -75,7 +75,6 @@ def request_of(
         order=given.get("order") or configuration.order,
         pairs=given.get("pairs") or configuration.pairs,
         every_test=bool(given.get("every_test")),
-        no_oracle=bool(given.get("no_oracle")),
         moments=_moments(given.get("when") or configuration.when),
         whole_ladders=bool(given.get("whole_ladders")),
         shard=Shard.parse(given["shard"]) if given.get("shard") is not None else None,
