@@ -72,7 +72,7 @@ def _campaign(
 
 
 def switched_off(request: Request) -> tuple[Request, dict[str, str]]:
-    """The same campaign with a pytest plug-in that switches the checks of the tests off, and its environment."""
+    """The same campaign without the checks of the tests, and the variables that it needs."""
     configuration = request.configuration
     files = {
         "root": str(request.root),

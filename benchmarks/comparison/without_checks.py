@@ -25,7 +25,7 @@ from mutabot.inside.targets.names import is_named
 from mutabot.inside.text import loading
 from mutabot.model import Role
 
-#: variable with JSON: root, program, oracle, and checks (exceptions that a vocabulary calls verdicts of a check)
+#: variable with JSON: root, program, oracle, and checks (exceptions that are verdicts of a check)
 ENVIRONMENT = "COMPARISON_WITHOUT_CHECKS"
 #: of unittest and numpy.testing: these run what they are given, and so they stay
 _RUNS_SOMETHING = ("raises", "warn", "logs", "gc_cycles")
