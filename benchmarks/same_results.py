@@ -22,18 +22,18 @@ def differences(first: Mapping[str, Any], second: Mapping[str, Any]) -> Iterator
         before, after = dict(first[part]), dict(second[part])
         yield from (f"{part}: {one} is gone" for one in before if one not in after)
         yield from (f"{part}: {one} is new" for one in after if one not in before)
-        for one in before:
-            if one in after and before[one] != after[one]:
-                yield f"{part}: {one}: {before[one]!r} → {after[one]!r}"
+        for one, text in before.items():
+            if one in after and text != after[one]:
+                yield f"{part}: {one}: {text!r} → {after[one]!r}"
         if list(before) != list(after) and set(before) == set(after):
             yield f"{part}: the order differs"
     before, after = first["outcomes"], second["outcomes"]
     yield from (f"{one}: was run and is not" for one in before if one not in after)
     yield from (f"{one}: is run and was not" for one in after if one not in before)
-    for one in before:
-        for key in before[one] if one in after else ():
-            if before[one][key] != after[one].get(key):
-                yield f"{one}: {key} {before[one][key]!r} → {after[one].get(key)!r}"
+    for one, facts in before.items():
+        for key, fact in facts.items() if one in after else ():
+            if fact != after[one].get(key):
+                yield f"{one}: {key} {fact!r} → {after[one].get(key)!r}"
 
 
 def main() -> int:

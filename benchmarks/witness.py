@@ -1,6 +1,6 @@
-"""Record what a version of mutabot says about every project here, so that another version can be held against it.
+"""Record what a version of mutabot says about every project here, to hold another version against it.
 
-    python benchmarks/witness.py FOLDER [NAME …]         record: a file for each example and project of the corpus
+    python benchmarks/witness.py FOLDER [NAME …]         a file for each example and project of the corpus
     python benchmarks/witness.py FOLDER --as RECORDED    the same mutants as in an earlier record
     python benchmarks/same_results.py RECORDED FOLDER    what differs
 
@@ -58,9 +58,7 @@ ACCIDENTS = (
 def projects() -> dict[str, Path]:
     """Every project that can be recorded, by its name."""
     examples = {name: ROOT / "examples" / name for name in EXAMPLES}
-    corpus = {
-        folder.name: folder for folder in sorted(CORPUS.iterdir()) if (folder / "mutabot.toml").is_file()
-    }
+    corpus = {file.parent.name: file.parent for file in sorted(CORPUS.glob("*/mutabot.toml"))}
     return examples | corpus
 
 
@@ -102,12 +100,12 @@ def drawn(mutants: Iterable[Mapping[str, Any]], limits: Mapping[str, int]) -> li
     for one in mutants:
         families.setdefault(one["family"], []).append(one["id"])
     return [
-        one
-        for family, ids in families.items()
-        for one in sorted(ids, key=lambda text: hashlib.sha256(text.encode()).digest())[
-            : limits.get(family, 0)
-        ]
+        one for family, ids in families.items() for one in sorted(ids, key=_hash)[: limits.get(family, 0)]
     ]
+
+
+def _hash(text: str) -> bytes:
+    return hashlib.sha256(text.encode()).digest()
 
 
 def told(value: Any, root: str) -> Any:
@@ -150,7 +148,7 @@ def main() -> int:
     parser.add_argument("names", nargs="*")
     parser.add_argument("--as", dest="earlier", type=Path, help="an earlier record")
     parser.add_argument("--command", nargs="+", default=[str(Path(sys.executable).parent / "mutabot")])
-    given = parser.parse_args()
+    given = parser.parse_intermixed_args()
     every = projects()
     unknown = sorted({*given.names} - {*every})
     if unknown:
@@ -166,11 +164,8 @@ def main() -> int:
             before = {key.rpartition(" [")[0] for key in read(given.earlier / f"{name}.json.gz")["outcomes"]}
         found = record(name, every[name], given.command, before)
         write(given.folder / f"{name}.json.gz", found)
-        seconds = time.monotonic() - began
-        print(
-            f"{name}: {len(found['plan'])} mutants, {len(found['outcomes'])} outcomes, {seconds:.0f} s",
-            flush=True,
-        )
+        counts = f"{len(found['plan'])} mutants, {len(found['outcomes'])} outcomes"
+        print(f"{name}: {counts}, {time.monotonic() - began:.0f} s", flush=True)
     return 0
 
 
