@@ -460,7 +460,7 @@ CONFIGURATIONS: dict[str, tuple[str, list[str]]] = {
     "no_program": ('vocabulary = ["robot.toml"]', ["pyproject.toml:1", "'program'", "missing"]),
     "no_vocabulary": ('program = ["mission.py"]', ["pyproject.toml:1", "'vocabulary'", "missing"]),
     "empty_program": ('program = []\nvocabulary = ["robot.toml"]', [":2", "program", "must not be empty"]),
-    "empty_vocabulary": ('program = ["mission.py"]\nvocabulary = []', [":3", "must not be empty"]),
+    "empty_vocabulary": ('program = ["mission.py"]\nvocabulary = []', [":3", "vocabulary", "empty"]),
     "program_as_text": (
         'program = "mission.py"\nvocabulary = ["robot.toml"]',
         [":2", "expected a list", 'program = ["mission.py"]'],

@@ -17,6 +17,7 @@ from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.plan.sampling import draw
 from mutabot.campaign.plan.second_order import pairs
 from mutabot.campaign.plan.selection import select
+from mutabot.campaign.plan.typos import refuse_typos
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Result
@@ -55,8 +56,10 @@ def begin(
 ) -> tuple[Campaign, list[Result]]:
     """Take the baseline. Returns the campaign and the raw results of the baseline.
 
-    Raises what ``take_baseline`` raises, and ConfigurationError for orientations that the original lacks.
+    Raises what ``take_baseline`` raises, ConfigurationError for orientations that the original lacks, and
+    SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything.
     """
+    refuse_typos(request)
     baseline, results = take_baseline(
         request, executor, progress,
         repetitions=repetitions_for(request), may_share=first_engine(request).may_share,

@@ -23,7 +23,6 @@ from mutabot.campaign.plan.demanded import demanded_of
 from mutabot.campaign.plan.earlier import carry, note_outdated
 from mutabot.campaign.plan.ladders import apart
 from mutabot.campaign.plan.planned import Plan
-from mutabot.campaign.plan.selection import numbered
 from mutabot.campaign.plan.told import drawing, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
@@ -252,9 +251,8 @@ def _write_beginning(
     for result in results:
         for end in result.ends:
             journal.add_test(result.task.key.round, result.task.key.repetition, without_recording(end))
-    numbers = numbered(whole.mutants, request.selection, left_out=whole.left_out)
     known = [mutant for mutant, _ in journal.known()]
-    carried = carry(known, request, plan.mutants, [*whole.mutants, *numbers])
+    carried = carry(known, request, plan.mutants, whole.mutants)
     paths = {file: request.root / file for file in {m.site.span.file for m in (*plan.mutants, *carried)}}
     sources = {
         file: path.read_text(encoding="utf-8", errors="replace")

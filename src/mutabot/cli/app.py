@@ -20,6 +20,7 @@ from . import campaign, init, replay, report, results, suggest, thresholds
 from .lists import operators
 from .merging import merge
 from .options import Version
+from .termination import terminated_like_ctrl_c
 
 _SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
 
@@ -64,18 +65,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if hasattr(stream, "reconfigure"):  # a terminal that cannot show a sign gets "?", not an error
             stream.reconfigure(errors="replace")
     arguments = sys.argv[1:] if arguments is None else arguments
+    with terminated_like_ctrl_c() as termination:
+        code = _code_of(arguments)
+    if code == ExitCode.INTERRUPTED:
+        how = "ended by SIGTERM" if termination.has_come else "interrupted"
+        typer.echo(f"{how}; `mutabot results` shows what is there", err=True)
+    return ExitCode.TERMINATED if code == ExitCode.INTERRUPTED and termination.has_come else code
+
+
+def _code_of(arguments: Sequence[str]) -> int:
     try:
         code = app(list(arguments), prog_name="mutabot", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
-        code = ExitCode.INTERRUPTED
+        return ExitCode.INTERRUPTED
     except MutabotError as error:
         typer.echo(f"mutabot: {error}", err=True)
         return error.exit_code
     except Exception as error:
         return _usage_or_crash(error)
-    if code == ExitCode.INTERRUPTED:  # also typer itself turns Ctrl-C into this code
-        typer.echo("interrupted; `mutabot results` shows what is there", err=True)
-    return code if isinstance(code, int) else ExitCode.FINE
+    return code if isinstance(code, int) else ExitCode.FINE  # typer itself makes INTERRUPTED of Ctrl-C
 
 
 def _usage_or_crash(error: Exception) -> int:

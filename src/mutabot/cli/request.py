@@ -44,7 +44,9 @@ def request_of(
     if engine not in ENGINES:
         raise UsageError(unknown_name_text("engine", engine, ENGINES))
     size = Sample.parse(sample) if sample is not None else None
-    configuration = load_configuration(project)
+    families = families_of(given.get("family"))
+    configuration = load_configuration(project, families)
+    families = families or configuration.families
     if selection is None and configuration.selection is not None and configured_selection:
         selection = configuration.root / configuration.selection
     elif selection is not None:
@@ -54,7 +56,7 @@ def request_of(
         cluster = cluster_settings(**_certified(configuration, **given["cluster"]))
     return Request(
         configuration=configuration,
-        vocabulary=load(configuration.vocabulary, configuration.root),
+        vocabulary=load(configuration.vocabulary, configuration.root, families),
         rounds=given.get("rounds") or configuration.rounds,
         seed=configuration.seed if given.get("seed") is None else given["seed"],
         jobs=given.get("jobs") or configuration.jobs or len(os.sched_getaffinity(0)),
@@ -69,7 +71,7 @@ def request_of(
         confirm=bool(given.get("confirm")),
         repeats=given.get("repeats", True),
         baseline=given.get("baseline") or configuration.baseline_repetitions,
-        families=families_of(given.get("family")) or configuration.families,
+        families=families,
         sample=size,
         one_per_site=bool(given.get("one_per_site")),
         order=given.get("order") or configuration.order,

@@ -6,16 +6,17 @@ import re
 
 from .mutant import Mutant
 
-_NUMBERS = re.compile(r"\d+(-\d+)?(,\d+(-\d+)?)*")
-_LINE = re.compile(r"(.+):(\d+(?:-\d+)?)")
+#: numbers with more digits than these are of nothing
+_NUMBERS = re.compile(r"\d{1,9}(-\d{1,9})?(,\d{1,9}(-\d{1,9})?)*")
+_LINE = re.compile(r"(.+):(\d{1,9}(?:-\d{1,9})?)")
 
 
 def fits(pattern: str, mutant: Mutant) -> bool:
     """Whether a word of ``--only`` or ``--skip`` means this mutant."""
-    if _NUMBERS.fullmatch(pattern):
+    if means_numbers(pattern):
         return any(mutant.number in _range(part) for part in pattern.split(","))
-    line = _LINE.fullmatch(pattern)
-    if line is not None and any(_is_at(single, line[1], _range(line[2])) for single in mutant.singles):
+    line = line_of(pattern)
+    if line is not None and any(_is_at(single, *line) for single in mutant.singles):
         return True
     names = (mutant.operator, mutant.family, mutant.site.role.value)
     file = mutant.site.span.file
@@ -25,6 +26,17 @@ def fits(pattern: str, mutant: Mutant) -> bool:
         or is_like(pattern, file)
         or file.startswith(pattern.rstrip("/") + "/")
     )
+
+
+def means_numbers(pattern: str) -> bool:
+    """Whether a word means numbers of mutants."""
+    return _NUMBERS.fullmatch(pattern) is not None
+
+
+def line_of(pattern: str) -> tuple[str, range] | None:
+    """The file and the lines that a word means; None if it means something else."""
+    line = _LINE.fullmatch(pattern)
+    return (line[1], _range(line[2])) if line is not None else None
 
 
 def _range(text: str) -> range:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal
 
@@ -11,7 +11,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 from pydantic_core import PydanticCustomError
 
 from mutabot.errors import ConfigurationError, nearest_name
-from mutabot.families import FAMILIES, USUAL
+from mutabot.families import FAMILIES, OF_TEXT, USUAL
 from mutabot.model import Moment
 from mutabot.model.graded.demand import Demand
 from mutabot.model.moment import EVERY
@@ -19,10 +19,14 @@ from mutabot.model.moment import EVERY
 from .cluster import ClusterTable
 from .demands import check_demands
 from .document import Document
-from .families import why_unknown
+from .families import need_vocabulary, why_unknown
 from .mistakes import Check, raise_errors
 from .toml_lines import KeyPath
 
+_NO_VOCABULARY = (
+    "the key 'vocabulary' is missing or empty; mutants of calls need one, those of the program text "
+    f"({', '.join(OF_TEXT)}) do not"
+)
 _PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
 _INIT = "run `mutabot init` to propose one"
 _MEMORY = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
@@ -127,9 +131,10 @@ class Settings(BaseModel):
 
         tests = ["tests", "acceptance/test_cell.py"]
     """
-    vocabulary: _SomeTexts
+    vocabulary: _Texts = ()
     """Vocabulary files of the project, or names of vocabularies that come with
-    mutabot; see [vocabulary](vocabulary.md).
+    mutabot; see [vocabulary](vocabulary.md). Mutants of calls need one; those of the program text
+    (`classical`, `text`) do not.
 
         vocabulary = ["robot.toml"]
     """
@@ -153,8 +158,8 @@ class Settings(BaseModel):
         jobs = 1
     """
     selection: str | None = None
-    """File with the ids of the mutants to run, one per line; they are
-    numbered in its order. Without it, all are run. `--selection` goes before it.
+    """File with the ids of the mutants to run, one per line. Without it, all are
+    run. `--selection` goes before it.
 
         selection = "published.txt"
     """
@@ -277,8 +282,10 @@ class Configuration(Settings):
     demands: tuple[Demand, ...] = ()
 
 
-def load_configuration(folder: Path) -> Configuration:
+def load_configuration(folder: Path, families: Collection[str] = ()) -> Configuration:
     """The configuration of the project in ``folder``.
+
+    ``families``: those that are asked for instead of those that it names.
 
     Raises ConfigurationError or UnknownNameError: the first mistake, with a message that tells about all.
     """
@@ -298,6 +305,8 @@ def load_configuration(folder: Path) -> Configuration:
     paths.refuse_overlap(program, oracle)
     paths.check_tests(settings.tests, "tests" in raw)
     paths.check_rest(settings)
+    if not settings.vocabulary and need_vocabulary(families or settings.families):
+        check.error((*place, *(("vocabulary",) if "vocabulary" in raw else ())), _NO_VOCABULARY)
     check.table(ClusterTable, settings.cluster, (*place, "cluster"))
     demands = check_demands(settings.demand, check, (*place, "demand"))
     raise_errors(check.errors)

@@ -29,6 +29,11 @@ def asked_for(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(family for family in known if family in names)
 
 
+def need_vocabulary(families: Iterable[str]) -> bool:
+    """Whether these families have mutants of calls: those of the program text need no vocabulary."""
+    return any(family not in OF_TEXT for family in families)
+
+
 def known_families() -> tuple[str, ...]:
     """All that can be asked for. Loads the plug-ins: raises OperatorError for one that is of no use."""
     from mutabot.operators import load_all  # noqa: PLC0415  # most campaigns ask for mutabot's own

@@ -7,8 +7,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mutabot.errors import ConfigurationError, UnknownNameError
+from mutabot.families import OF_CALLS
 from mutabot.model import Clock, Operation, Probe, Vocabulary, Wait
 from mutabot.settings.document import Document
+from mutabot.settings.families import need_vocabulary
 from mutabot.settings.mistakes import Check, raise_errors
 from mutabot.settings.toml_lines import KeyPath
 
@@ -20,16 +22,17 @@ from .schema import VocabularyTable
 _SHIPPED = Path(__file__).parent / "shipped"
 
 
-def load(names: Sequence[str], root: Path) -> Vocabulary:
+def load(names: Sequence[str], root: Path, families: Iterable[str] = OF_CALLS) -> Vocabulary:
     """The vocabulary in these files, put together.
 
     Each name is a file relative to ``root``, or the name of a vocabulary that mutabot ships. What a file
-    says of a callable, the clock or a probe goes before what a shipped vocabulary says of it.
+    says of a callable, the clock or a probe goes before what a shipped vocabulary says of it. Only mutants of
+    the program text do without: ``families`` are those that are asked for.
 
     Raises ConfigurationError, VocabularyError or UnknownNameError: the first mistake, with a message that
     tells about all of them.
     """
-    merged = _Merged()
+    merged = _Merged(need_vocabulary(families))
     documents = [_find(name, root) for name in dict.fromkeys(names)]
     for document, is_shipped in sorted(documents, key=lambda found: found[1]):
         merged.add(document, is_shipped)
@@ -53,8 +56,9 @@ def shipped() -> tuple[str, ...]:
 
 @dataclass
 class _Merged:
-    """What the files read so far say, and the mistakes in them."""
+    """What the files read so far say, and the mistakes in them; whether they must say anything."""
 
+    is_needed: bool
     errors: list[ConfigurationError] = field(default_factory=list)
     read: dict[str, Read] = field(default_factory=dict)
     entries: list[Read] = field(default_factory=list)
@@ -71,7 +75,7 @@ class _Merged:
         table = check.table(VocabularyTable, document.data, (), salvage=True)
         if table is None:
             return
-        if not document.data:
+        if not document.data and self.is_needed:
             check.error((), "is empty; a vocabulary names operations: [[operation]]")
         for index, raw in enumerate(table.operation):
             for operation in read_operations(check, raw, ("operation", index)):

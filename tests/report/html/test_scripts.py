@@ -56,3 +56,15 @@ def test_numbers_that_are_none_are_null_and_others_are_short() -> None:
         3,
         1e-9,
     ]
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        1_795_411_112.374_511_5, 1_795_411_112.0, -1_795_411_112.5, 1_795_411_112_374.5,
+        1_795_411_112_374_511,
+        12_345.678_912, 2.0**52 + 0.5, 2.0**53 - 1, 1.5e300, -(2**40),
+    ],
+)  # fmt: skip
+def test_a_moment_a_number_of_a_device_and_whatever_else_is_large_keeps_all_its_digits(number: float) -> None:
+    assert read(script_of("n", number)) == number

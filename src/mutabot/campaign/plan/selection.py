@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from mutabot.errors import SelectionError, nearest_name
 from mutabot.model import LeftOut, Mutant
 from mutabot.model.selector import fits, is_like
 
-_WILD = re.compile(r"[*?]")
+#: signs of a word that messages show
+_LONGEST = 200
 
 
 def select(
@@ -25,8 +25,8 @@ def select(
     """The mutants that a selection file, ``only`` and ``skip`` leave, in the order of their numbers.
 
     A selection file holds one id (or an id with ``*`` and ``?``) per line; what follows ``#`` at the
-    beginning of a line or after a space is a comment. Its mutants are numbered 1, 2, 3 … in the order of
-    the file; otherwise numbers stay those of the plan. ``only`` and ``skip`` take ids (also with ``*`` and
+    beginning of a line or after a space is a comment. Numbers are those of the plan, whatever is selected:
+    all commands call a mutant by the same. ``only`` and ``skip`` take ids (also with ``*`` and
     ``?``), numbers (``3``, ``16-20``, ``3,16-20``), names of operators, families or roles, files, file globs,
     and lines (``mission.py:22``, ``mission.py:20-30``).
 
@@ -34,37 +34,28 @@ def select(
     """
     only, skip, left_out = list(only), list(skip), list(left_out)
     set_aside = [item.id for item in left_out]
-    chosen = numbered(mutants, selection_file, left_out=left_out)
+    chosen = list(mutants) if selection_file is None else _from_file(selection_file, mutants, set_aside)
     wanted = _fitting(only, chosen, set_aside, "--only") if only else {mutant.id for mutant in chosen}
     wanted -= _fitting(skip, chosen, set_aside, "--skip")
     return [mutant for mutant in chosen if mutant.id in wanted]
 
 
-def numbered(
-    mutants: Sequence[Mutant], selection_file: Path | None, *, left_out: Iterable[LeftOut] = ()
-) -> list[Mutant]:
-    """The mutants of a selection file, numbered by it; all if there is none. Raises SelectionError."""
-    if selection_file is None:
-        return list(mutants)
-    return _from_file(selection_file, mutants, [item.id for item in left_out])
-
-
 def _from_file(file: Path, mutants: Sequence[Mutant], set_aside: Sequence[str]) -> list[Mutant]:
-    found: dict[str, Mutant] = {}
+    """The mutants that a selection file names. Raises SelectionError."""
+    found: set[str] = set()
     unknown: list[str] = []
-    by_id = {mutant.id: mutant for mutant in mutants}
-    for pattern in _patterns(file, by_id.keys() | {*set_aside}):
-        if pattern in by_id:  # as nearly all are, be there thousands; an id may hold signs that are wild
-            here = [by_id[pattern]]
-        else:
-            here = [mutant for mutant in mutants if is_like(pattern, mutant.id)]
+    ids = {mutant.id for mutant in mutants}
+    for pattern in _patterns(file, ids | {*set_aside}):
+        if pattern in ids:  # as nearly all are, be there thousands; an id may hold signs that are wild
+            found.add(pattern)
+            continue
+        here = {one for one in ids if is_like(pattern, one)}
         if not here and not any(is_like(pattern, other) for other in set_aside):
             unknown.append(pattern)
-        for mutant in here:
-            found.setdefault(mutant.id, mutant)
+        found |= here
     if unknown:
-        raise _nothing_fits(str(file), unknown, [*(mutant.id for mutant in mutants), *set_aside])
-    return [replace(mutant, number=number) for number, mutant in enumerate(found.values(), start=1)]
+        raise nothing_fits(str(file), unknown, [*(mutant.id for mutant in mutants), *set_aside])
+    return [mutant for mutant in mutants if mutant.id in found]
 
 
 def _of_id(pattern: str, mutants: Sequence[Mutant]) -> list[Mutant]:
@@ -98,7 +89,7 @@ def _fitting(
             unknown.append(pattern)
         found |= here
     if unknown:
-        raise _nothing_fits(option, unknown, _names(mutants))
+        raise nothing_fits(option, unknown, _names(mutants))
     return found
 
 
@@ -111,10 +102,15 @@ def _names(mutants: Sequence[Mutant]) -> list[str]:
     return list(names)
 
 
-def _nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> SelectionError:
+def nothing_fits(source: str, unknown: Sequence[str], known: Sequence[str]) -> SelectionError:
+    """The error for words that fit no mutant, with the nearest that is known to do."""
     lines = []
     for pattern in unknown:
-        nearest = nearest_name(pattern, known)
+        nearest = nearest_name(pattern, known) or nearest_name(pattern.partition(":")[0], known)
         hint = f"the nearest is {nearest!r}" if nearest else "`mutabot list` shows what there is"
-        lines.append(f"{source}: no mutant fits {pattern!r}; {hint}")
+        lines.append(f"{source}: no mutant fits {_shown(pattern)}; {hint}")
     return SelectionError("\n".join(lines), unknown=unknown)
+
+
+def _shown(pattern: str) -> str:
+    return repr(pattern if len(pattern) <= _LONGEST else f"{pattern[:_LONGEST]}…")

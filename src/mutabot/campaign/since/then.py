@@ -79,10 +79,10 @@ def _request(
         for name in own:
             _put(copy, name, revision.read(root / name))
         try:
-            then = load_configuration(copy)
+            then = load_configuration(copy, request.families)
             for name in {*then.vocabulary} - own:
                 _put(copy, name, revision.read(root / name))
-            vocabulary = load(then.vocabulary, copy)
+            vocabulary = load(then.vocabulary, copy, request.families)
         except (ConfigurationError, UsageError) as error:
             raise ConfigurationError(f"at {revision.short}: {error}") from error
     seed = then.seed if request.seed == configuration.seed else request.seed

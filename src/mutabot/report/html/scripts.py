@@ -20,6 +20,8 @@ _ESCAPES = str.maketrans(
         "\n": "\\n",
     }
 )
+#: as much as this is told with all its digits; and up to this, whole numbers are whole to the page as well
+_EXACT, _WHOLE = 1e4, 2**53
 
 
 def script_of(name: str, data: Any) -> str:
@@ -45,6 +47,10 @@ def plain(value: Any) -> Any:
 
 
 def _short(number: float) -> float | int:
-    """As many digits as a page shows, so that thousands of numbers stay small."""
-    whole = round(number)
-    return whole if whole == number and abs(whole) < 1e9 else float(f"{number:.7g}")
+    """As many digits as a page shows, so that thousands of numbers stay small.
+
+    From ``_EXACT`` on these are too few: of seconds since 1970, seven digits are some minutes.
+    """
+    if number.is_integer() and abs(number) < _WHOLE:
+        return int(number)
+    return number if abs(number) >= _EXACT else float(f"{number:.7g}")
