@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,8 +11,14 @@ from pydantic import BaseModel, ConfigDict
 
 from mutabot.errors import UsageError
 
-_LOCAL = re.compile(r"local:(\d+)")
-_ADDRESS = re.compile(r"(tcp|tls)://[^/:]+:\d+|(tcp|tls)://\[[0-9a-fA-F:]+\]:\d+")
+_LOCAL = re.compile(r"local:([0-9]+)")
+_ADDRESS = re.compile(r"(?:tcp|tls)://(?:[^/:]+|\[[0-9a-fA-F:]+\]):0*([0-9]{1,5})")
+_PORTS = 65535
+_DIGITS = 9
+#: characters of an address that are shown
+_SHOWN = 60
+#: workers that any machine can start, and that one can for each processor
+_WORKERS, _PER_PROCESSOR = 32, 4
 
 
 class ClusterTable(BaseModel):
@@ -44,7 +51,7 @@ class ClusterSettings:
     def local(self) -> int | None:
         """How many workers to start on this machine; None for a cluster that is there."""
         match = _LOCAL.fullmatch(self.address)
-        return int(match[1]) if match is not None else None
+        return _number(match[1]) if match is not None else None
 
     @property
     def is_file(self) -> bool:
@@ -67,21 +74,48 @@ def cluster_settings(
 ) -> ClusterSettings:
     """The cluster that a user has named. Raises UsageError for what cannot be one."""
     found = ClusterSettings(address, mixed, ca, cert, key)
-    if found.local == 0:
-        raise UsageError("--cluster local:0 has no workers; local:2 starts two on this machine")
-    if found.is_file:
-        if not Path(address).is_file():
+    name = address if len(address) <= _SHOWN else f"{address[:_SHOWN]}…"
+    if found.local is not None:
+        _check_count(found.local, name)
+    elif found.is_file:
+        if not os.path.isfile(address):  # noqa: PTH113  # a Path raises for names that no file can have
             raise UsageError(
-                f"--cluster {address}: neither an address (tcp://host:8786, tls://host:8786, local:4) "
+                f"--cluster {name}: neither an address (tcp://host:8786, tls://host:8786, local:4) "
                 "nor a scheduler file that is there"
             )
-    elif found.local is None and not _ADDRESS.fullmatch(address):
-        raise UsageError(f"--cluster {address}: an address is like tcp://host:8786 or tls://host:8786")
+    elif not _is_address(address):
+        raise UsageError(f"--cluster {name}: an address is like tcp://host:8786 or tls://host:8786")
     for option, file in (("ca", ca), ("cert", cert), ("key", key)):
         if file is not None and not Path(file).is_file():
             raise UsageError(f"--tls-{option} {file}: there is no such file")
-    if found.files and (found.local is not None or address.startswith("tcp://")):
+    if found.files and found.local is not None:
+        raise UsageError(f"--cluster {address} makes its own certificates: certificate files go with tls://")
+    if found.files and address.startswith("tcp://"):
         raise UsageError(f"--cluster {address} is not encrypted: certificate files go with tls://")
     if address.startswith("tls://") and len(found.files) < 3:
         raise UsageError(f"--cluster {address} needs --tls-ca, --tls-cert and --tls-key")
     return found
+
+
+def _is_address(address: str) -> bool:
+    match = _ADDRESS.fullmatch(address)
+    return match is not None and 0 < int(match[1]) <= _PORTS
+
+
+def _check_count(workers: int, name: str) -> None:
+    """Raises UsageError for a number of workers that this machine cannot carry."""
+    if workers == 0:
+        raise UsageError("--cluster local:0 has no workers; local:2 starts two on this machine")
+    processors = len(os.sched_getaffinity(0))
+    most = max(_WORKERS, _PER_PROCESSOR * processors)
+    if workers > most:
+        plural = "processor" if processors == 1 else "processors"
+        raise UsageError(
+            f"--cluster {name}: at most {most} workers can be started on this machine, which has "
+            f"{processors} {plural}; local:{processors} keeps all of them busy"
+        )
+
+
+def _number(digits: str) -> int:
+    """The number, as far as numbers of that size are told apart: of thousands of digits Python makes none."""
+    return int(digits.lstrip("0") or "0") if len(digits.lstrip("0")) < _DIGITS else 10**_DIGITS

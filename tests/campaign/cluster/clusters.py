@@ -105,26 +105,28 @@ def ends(path: Path) -> Ends:
     }
 
 
-def on_cluster(request: Request, address: str, **changes: Any) -> Request:
+def on_cluster(request: Request, where: str | ClusterSettings, **changes: Any) -> Request:
     """The same campaign on a cluster."""
-    return replace(request, executor="cluster", cluster=ClusterSettings(address, **changes), fresh=True)
+    there = ClusterSettings(where) if isinstance(where, str) else where
+    return replace(request, executor="cluster", cluster=replace(there, **changes), fresh=True)
 
 
-def run_twice(project: Path, address: str, **changes: Any) -> tuple[Ends, Ends, Quiet]:
+def run_twice(project: Path, where: str | ClusterSettings, **changes: Any) -> tuple[Ends, Ends, Quiet]:
     """Outcomes without a cluster and on one, and what the latter told."""
     request = request_for(project, **changes)
     plain = ends(run_campaign(request, Quiet()))
     told = Quiet()
-    return plain, ends(run_campaign(on_cluster(request, address), told)), told
+    return plain, ends(run_campaign(on_cluster(request, where), told)), told
 
 
 @contextmanager
-def cluster(folder: Path, workers: int) -> Iterator[str]:
-    """A cluster that is there already; gives its address."""
+def cluster(folder: Path, workers: int) -> Iterator[ClusterSettings]:
+    """A cluster that is there already; gives what it takes to connect to it."""
     folder.mkdir(exist_ok=True)
     there = LocalCluster(workers, folder)
+    own = there.certificates
     try:
-        yield there.start()
+        yield ClusterSettings(there.start(), ca=own.ca, cert=own.cert, key=own.key)
     finally:
         there.close()
 

@@ -19,6 +19,7 @@ from mutabot.errors import ClusterError
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import REMARKS
 from mutabot.model import Verdict
+from mutabot.settings.cluster import ClusterSettings
 from tests.campaign.project import Quiet, outcomes, request_for
 
 from .clusters import Ends, cluster, ends, kill, on_cluster, processes, run_twice, until, write, write_slow
@@ -28,7 +29,7 @@ MARK = f"OF_TEST_CLUSTER={os.getpid()}"
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[ClusterSettings]:
     """A cluster of two workers."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(*MARK.split("="))
@@ -69,24 +70,24 @@ def when(condition: Callable[[], bool], then: Callable[[], Any]) -> threading.Th
 
 @pytest.mark.parametrize("engine", ["branch", pytest.param("replay", marks=pytest.mark.whole)])
 def test_outcomes_are_those_of_a_campaign_without_a_cluster(
-    engine: str, address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    engine: str, there: ClusterSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked = []
     ask = Link.ask
     monkeypatch.setattr(Link, "ask", lambda *given: asked.append(given[2].__name__) or ask(*given))
     project = write(tmp_path / "project")
     only = () if engine == "branch" else ("reverse",)
-    plain, found, told = run_twice(project, address, engine=engine, only=only)
+    plain, found, told = run_twice(project, there, engine=engine, only=only)
     assert found == plain
     assert asked.count("run_unit") >= (2 if engine == "branch" else len(plain)), told.lines
     assert not any("worker" in line for line in told.lines)
 
 
-def test_a_worker_that_dies_costs_nothing_but_time(address: str, in_peace: Ends, tmp_path: Path) -> None:
+def test_a_worker_that_dies_costs_nothing_but_time(there: ClusterSettings, in_peace: Ends, tmp_path: Path) -> None:
     request = slow(tmp_path)
     told, victims = Quiet(), workers()
     killer = when(lambda: has_begun(told), lambda: kill(victims))
-    path = run_campaign(on_cluster(request, address), told)
+    path = run_campaign(on_cluster(request, there), told)
     killer.join()
     assert ends(path) == in_peace
     assert victims
@@ -95,7 +96,7 @@ def test_a_worker_that_dies_costs_nothing_but_time(address: str, in_peace: Ends,
 
 @pytest.mark.whole
 def test_a_mutant_that_takes_its_worker_along_each_time_is_an_error_with_the_reason(
-    address: str, tmp_path: Path
+    there: ClusterSettings, tmp_path: Path
 ) -> None:
     tests = """
     import os, signal
@@ -110,7 +111,7 @@ def test_a_mutant_that_takes_its_worker_along_each_time_is_an_error_with_the_rea
     """
     project = write(tmp_path / "project", mission="def run(arm):\n    arm.move_by(0.5)\n", tests=tests)
     request = request_for(project, engine="replay", only=("reverse",))
-    (found,) = outcomes(run_campaign(on_cluster(request, address), Quiet()))
+    (found,) = outcomes(run_campaign(on_cluster(request, there), Quiet()))
     assert found.verdict is Verdict.ERROR
     assert found.message is not None
     assert found.message.startswith("4 workers could not run it: its worker was lost")
@@ -118,7 +119,7 @@ def test_a_mutant_that_takes_its_worker_along_each_time_is_an_error_with_the_rea
 
 
 @pytest.mark.whole
-def test_a_process_that_is_killed_from_outside_each_time_is_an_error(address: str, tmp_path: Path) -> None:
+def test_a_process_that_is_killed_from_outside_each_time_is_an_error(there: ClusterSettings, tmp_path: Path) -> None:
     tests = """
     import os, signal
     from mission import run
@@ -131,12 +132,12 @@ def test_a_process_that_is_killed_from_outside_each_time_is_an_error(address: st
             os.kill(os.getpid(), signal.SIGKILL)
     """
     project = write(tmp_path / "project", mission="def run(arm):\n    arm.move_by(0.5)\n", tests=tests)
-    plain, found, _ = run_twice(project, address, engine="replay", only=("reverse",))
+    plain, found, _ = run_twice(project, there, engine="replay", only=("reverse",))
     assert found == plain
     assert Verdict.ERROR in {one["verdict"] for one in found.values()}
 
 
-def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(address: str, tmp_path: Path) -> None:
+def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(there: ClusterSettings, tmp_path: Path) -> None:
     tests = """
     import os
     from mission import run
@@ -149,7 +150,7 @@ def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(address:
         assert arm.x < 0.9
     """
     project = write(tmp_path / "project", mission="def run(arm):\n    arm.move_by(0.5)\n", tests=tests)
-    plain, found, told = run_twice(project, address, engine="replay", only=("reverse",))
+    plain, found, told = run_twice(project, there, engine="replay", only=("reverse",))
     assert found == plain
     assert "error" not in {one["verdict"] for one in found.values()}
     text = "\n".join(told.lines)
@@ -160,7 +161,7 @@ def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(address:
 
 @pytest.mark.parametrize("engine", ["replay", pytest.param("branch", marks=pytest.mark.whole)])
 def test_what_takes_too_long_on_a_worker_is_decided_at_home(
-    engine: str, address: str, tmp_path: Path
+    engine: str, there: ClusterSettings, tmp_path: Path
 ) -> None:
     tests = """
     import os, time
@@ -186,12 +187,12 @@ def test_what_takes_too_long_on_a_worker_is_decided_at_home(
         configuration=settings,
     )
     request = request_for(project, engine=engine, only=("reverse",))
-    (found,) = outcomes(run_campaign(on_cluster(request, address), Quiet()))
+    (found,) = outcomes(run_campaign(on_cluster(request, there), Quiet()))
     assert (found.verdict, found.engine) == (Verdict.SURVIVED, engine), found.message
 
 
 def test_a_worker_that_runs_with_something_else_is_refused_or_told(
-    address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    there: ClusterSettings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     here = {**of_cluster.versions(), "numpy": "0.0.1"}
     monkeypatch.setattr(of_cluster, "versions", lambda: here)
@@ -204,9 +205,9 @@ def test_a_worker_that_runs_with_something_else_is_refused_or_told(
     """)  # fmt: skip
     request = request_for(project, engine="replay", only=("reverse",))
     with pytest.raises(ClusterError, match=r"numpy is \S+ there, 0\.0\.1 here \(--mixed"):
-        run_campaign(on_cluster(request, address), Quiet())
+        run_campaign(on_cluster(request, there), Quiet())
     told = Quiet()
-    path = run_campaign(on_cluster(request, address, mixed=True), told)
+    path = run_campaign(on_cluster(request, there, mixed=True), told)
     assert sum("runs with something else: numpy is" in line for line in told.lines) == 1
     with Journal.open(path) as journal:
         (remark,) = journal.meta()[REMARKS]
@@ -236,12 +237,12 @@ def test_a_scheduler_that_stays_away_leaves_the_rest_to_this_machine(
     monkeypatch.setattr(of_cluster, "_RETURN", 1.0)
     request = slow(tmp_path / "project")
     before = set(_below(os.getpid()))
-    with cluster(tmp_path / "dask", 1) as address, pytest.MonkeyPatch.context() as patch:
+    with cluster(tmp_path / "dask", 1) as there, pytest.MonkeyPatch.context() as patch:
         told = Quiet()
         patch.setattr("mutabot.campaign.cluster.link.PATIENCE", 1.0)
         own = [pid for pid in _below(os.getpid()) if pid not in before and "dask_scheduler" in _command(pid)]
         killer = when(lambda: has_begun(told), lambda: kill(own))
-        path = run_campaign(on_cluster(request, address), told)
+        path = run_campaign(on_cluster(request, there), told)
         killer.join()
     assert ends(path) == in_peace
     assert sum("the campaign goes on on this machine" in line for line in told.lines) == 1

@@ -83,7 +83,7 @@ def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
         link.Link(ClusterSettings("tcp://127.0.0.1:9"), "tcp://127.0.0.1:9")
 
 
-def strange_worker(address: str, folder: Path, how: str) -> subprocess.Popen[bytes]:
+def strange_worker(there: ClusterSettings, folder: Path, how: str) -> subprocess.Popen[bytes]:
     """A worker that runs some code before all else."""
     code = (
         f"import sys\n{how}\n"
@@ -92,7 +92,9 @@ def strange_worker(address: str, folder: Path, how: str) -> subprocess.Popen[byt
         "main()\n"
     )
     own = ["--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder)]
-    return subprocess.Popen([sys.executable, "-c", code, address, *own], stderr=subprocess.DEVNULL)
+    own += ["--host", "127.0.0.1", "--protocol", "tls", "--dashboard-address", "127.0.0.1:0"]
+    own += ["--tls-ca-file", str(there.ca), "--tls-cert", str(there.cert), "--tls-key", str(there.key)]
+    return subprocess.Popen([sys.executable, "-c", code, there.address, *own], stderr=subprocess.DEVNULL)
 
 
 NO_ROOM = """
@@ -111,9 +113,9 @@ Store.take = take
 def test_a_worker_that_cannot_take_part_is_told_and_lives_on(
     how: str, has_bundle: bool, says: str, tmp_path: Path
 ) -> None:
-    with cluster(tmp_path, 0) as address, strange_worker(address, tmp_path, how) as process:
+    with cluster(tmp_path, 0) as settings, strange_worker(settings, tmp_path, how) as process:
         try:
-            there = link.Link(ClusterSettings(address), address)
+            there = link.Link(settings, settings.address)
             roster = Roster(there, {}, True, lambda text: None)
             if has_bundle:
                 roster.bundle = Bundle.make(write(tmp_path / "project"))

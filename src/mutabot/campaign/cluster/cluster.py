@@ -11,6 +11,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
@@ -27,7 +28,7 @@ from mutabot.settings.cluster import ClusterSettings
 from .bundle import Bundle
 from .dispatch import Dispatch, is_for_home
 from .environment import decided, module_folders
-from .link import Link
+from .link import Link, is_private
 from .local import LocalCluster, address_in
 from .roster import Roster
 from .unit import Ground
@@ -66,11 +67,18 @@ class Cluster:
         self._is_given_up = False
         self._restarts = 0
         self.done = 0
-        if settings.local is not None:
-            self._folder = tempfile.TemporaryDirectory(prefix="mutabot-cluster-")
-            self._local = LocalCluster(settings.local, Path(self._folder.name))
         try:
-            self.link = Link(settings, self._address())
+            if settings.local is not None:
+                self._folder = tempfile.TemporaryDirectory(prefix="mutabot-cluster-")
+                self._local = LocalCluster(settings.local, Path(self._folder.name))
+                own = self._local.certificates
+                self._settings = replace(settings, ca=own.ca, cert=own.cert, key=own.key)
+            self.link = Link(self._settings, self._address())
+            if not is_private(self.link.address):
+                tell(
+                    f"the connection to {self.link.address} is not encrypted: whoever can reach or read it can "
+                    "run programs on its workers; tls:// closes it (docs/cluster.md, TLS)"
+                )
             self.roster = Roster(self.link, self._versions, settings.mixed, tell)
             self._meet()
         except BaseException:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 import queue
+import socket
 import threading
 import time
 import warnings
@@ -15,8 +16,10 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
+from ipaddress import ip_address
 from itertools import count
 from typing import Any
+from urllib.parse import urlsplit
 
 from mutabot.errors import ClusterError
 from mutabot.settings.cluster import ClusterSettings
@@ -174,6 +177,17 @@ def _security(settings: ClusterSettings, address: str) -> Any:
         tls_ca_file=settings.ca, tls_client_cert=settings.cert, tls_client_key=settings.key,
         require_encryption=True,
     )  # fmt: skip
+
+
+def is_private(address: str) -> bool:
+    """Whether a connection to this address is encrypted, or does not leave this machine."""
+    if address.startswith("tls://"):
+        return True
+    try:
+        places = socket.getaddrinfo(urlsplit(address).hostname, None, type=socket.SOCK_STREAM)
+    except (OSError, ValueError):
+        return False
+    return all(ip_address(str(place[0]).partition("%")[0]).is_loopback for *_, place in places)
 
 
 def _why_not(settings: ClusterSettings, address: str, error: Exception) -> str:

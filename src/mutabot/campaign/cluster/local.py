@@ -1,6 +1,7 @@
 """A cluster on this machine: a scheduler and its workers, in sessions of their own.
 
-They listen on 127.0.0.1 only, and end with the controller, however that ends.
+They listen on 127.0.0.1 only, talk to nobody without the certificate of this run, show no dashboard, and end
+with the controller, however that ends.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from mutabot.campaign.workers.remains import end_below
 from mutabot.campaign.workers.said import last_line
 from mutabot.errors import ClusterError
 
+from .certificates import Certificates
+
 #: what the processes run; nothing outlives whoever started it
 _CODE = (
     "import sys\n"
@@ -35,6 +38,14 @@ _SETTINGS = {
     "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
     "DASK_DISTRIBUTED__ADMIN__SYSTEM_MONITOR__GIL__ENABLED": "False",
 }
+#: settings of Dask that keep others out, whatever settings the user has
+_PRIVATE = {
+    "DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION": "True",
+    # Dask opens an HTTP server even without a dashboard: this one has no pages
+    "DASK_DISTRIBUTED__SCHEDULER__HTTP__ROUTES": "[]",
+    "DASK_DISTRIBUTED__WORKER__HTTP__ROUTES": "[]",
+}
+_LOOPBACK = "127.0.0.1"
 #: seconds that a scheduler may take to come up
 _PATIENCE = 60.0
 
@@ -45,10 +56,16 @@ class LocalCluster:
     Args:
         workers: how many; 0 for a scheduler alone.
         folder: where they keep what they need; it must be there.
+
+    Attributes:
+        certificates: what to connect with.
+
+    Raises ClusterError if certificates cannot be made.
     """
 
     def __init__(self, workers: int, folder: Path) -> None:
         self._count, self._folder = workers, folder
+        self.certificates = Certificates.make(folder / "certificates")
         self._address = ""
         self._scheduler: subprocess.Popen[bytes] | None = None
         self._workers: subprocess.Popen[bytes] | None = None
@@ -58,8 +75,7 @@ class LocalCluster:
         self.close()
         file = self._folder / "scheduler.json"
         file.unlink(missing_ok=True)
-        own = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
-        self._scheduler = self._start("scheduler", *own)
+        self._scheduler = self._start("scheduler", "--port", "0", "--scheduler-file", str(file))
         until = time.monotonic() + _PATIENCE
         while not file.is_file() or not file.read_bytes():
             if self._scheduler.poll() is not None or time.monotonic() > until:
@@ -95,16 +111,21 @@ class LocalCluster:
         if not self._count:
             return
         self._workers = self._start(
-            "worker", self._address, "--host", "127.0.0.1", "--nworkers", str(self._count), "--nthreads", "1",
-            "--memory-limit", "0", "--no-dashboard", "--death-timeout", "60",
-            "--local-directory", str(self._folder),
+            "worker", self._address, "--nworkers", str(self._count), "--nthreads", "1",
+            "--memory-limit", "0", "--death-timeout", "60", "--local-directory", str(self._folder),
         )  # fmt: skip
 
     def _start(self, what: str, *arguments: str) -> subprocess.Popen[bytes]:
+        own = self.certificates
+        private = (
+            "--protocol", "tls", "--tls-ca-file", own.ca, "--tls-cert", own.cert, "--tls-key", own.key,
+            "--host", _LOOPBACK, "--no-dashboard", "--dashboard-address", f"{_LOOPBACK}:0",
+        )  # fmt: skip
         with (self._folder / f"{what}.log").open("wb") as log:
             return subprocess.Popen(
-                [sys.executable, "-c", _CODE.format(what=what), str(os.getpid()), *arguments],
-                env={**_SETTINGS, **os.environ},
+                [sys.executable, "-c", _CODE.format(what=what), str(os.getpid()), *arguments, *private],
+                # Dask's own folder for such files is the same for all users
+                env={**_SETTINGS, **os.environ, **_PRIVATE, "DASK_TEMPORARY_DIRECTORY": str(self._folder)},
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,
