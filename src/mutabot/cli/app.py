@@ -17,6 +17,7 @@ from mutabot.errors import MutabotError
 from mutabot.exit_codes import ExitCode
 
 from . import campaign, init, replay, report, results, suggest, thresholds
+from .gone import gone
 from .lists import operators
 from .merging import merge
 from .options import Version
@@ -50,6 +51,7 @@ app.command(rich_help_panel=_SETUP)(campaign.check)
 app.command("list", rich_help_panel=_SETUP)(campaign.list_)
 app.command(rich_help_panel=_SETUP)(operators.operators)
 app.command(rich_help_panel=_RUN)(campaign.run)
+app.command(rich_help_panel=_RUN)(campaign.live)
 app.command(rich_help_panel=_RUN)(merge.merge)
 app.command(rich_help_panel=_RUN)(replay.replay)
 app.command(rich_help_panel=_RUN)(suggest.suggest)
@@ -89,6 +91,9 @@ def _code_of(arguments: Sequence[str]) -> int:
 def _usage_or_crash(error: Exception) -> int:
     show = getattr(error, "show", None)
     if callable(show) and hasattr(error, "exit_code"):  # the parser's own errors, for a wrong command line
+        if (told := gone(error)) is not None:
+            typer.echo(f"mutabot: {told}", err=True)
+            return ExitCode.USAGE
         show()
         return ExitCode.USAGE
     text = "".join(traceback.format_exception(error))
