@@ -19,7 +19,8 @@ of_ros  = $(wildcard tests/*/test_ros$(1)*.py tests/*/*/test_ros$(1)*.py)
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
-	$(VENV)/bin/mutabot -C examples/paper run --selection published.txt --table
+	$(VENV)/bin/mutabot -C examples/paper run --only @published.txt
+	$(VENV)/bin/mutabot -C examples/paper results
 	$(RUN) benchmarks/paper_scores.py examples/paper
 
 ## lint, types and the whole test suite

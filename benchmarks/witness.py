@@ -80,7 +80,7 @@ def record(name: str, folder: Path, command: Sequence[str], wanted: Iterable[str
         run = [one for one in ids if one in chosen]
         selection = Path(place, "selection.txt")
         selection.write_text("".join(f"{one}\n" for one in run), encoding="utf-8")
-        _json([*command, "-C", str(copy), "run", *shared, "--selection", str(selection), "--json"])
+        _json([*command, "-C", str(copy), "run", *shared, "--only", f"@{selection}", "--json"])
         results = _json([*command, "-C", str(copy), "results", "--json"])
     facts = FACTS[:1] if name in ROS else FACTS
     return {

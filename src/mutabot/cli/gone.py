@@ -18,8 +18,8 @@ _OPTIONS = {
     "--whole-ladders": "every magnitude is run only where the search needs it",
     "--sites-only": "--since runs what a change can have altered",
     "--confirm": "use --verify N",
-    "--repeats": "kills that may be a coincidence are always re-run",
-    "--no-repeats": "kills that may be a coincidence are always re-run",
+    "--repeats": "kills that may be a coincidence are re-run anyway",
+    "--no-repeats": "use -o repeats=false",
     "--mixed": "workers run with the same versions as this machine",
 }
 

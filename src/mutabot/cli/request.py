@@ -66,6 +66,7 @@ def request_of(
         cluster=cluster,
         fresh=bool(given.get("fresh")),
         verify=given.get("verify") or 0,
+        repeats=configuration.repeats,
         baseline=configuration.baseline_repetitions,
         families=families,
         sample=size,

@@ -254,6 +254,12 @@ class Settings(BaseModel):
 
         baseline_repetitions = 10
     """
+    repeats: bool = True
+    """Whether kills that may be a coincidence are run once more; see
+    [verdicts](verdicts.md#a-second-look).
+
+        repeats = false
+    """
     demand: Annotated[tuple[dict[str, Any], ...], Field(strict=False)] = ()
     """How small a fault may be that the tests do not notice: a table each, with double brackets; see
     [thresholds](thresholds.md#demands). `run` ends with 1 if a site tolerates more.
