@@ -189,7 +189,7 @@ def _circumstances(data: Data) -> str:
         parts.append(f"{meta['seconds']:.0f} s in all")
     parts += [f"mutabot {meta['mutabot']}", f"Python {meta['python']}"]
     if data["sample"] is not None:
-        size = data["sample"]["size"] or "one per site"
+        size = data["sample"]["size"]
         parts.append(f"a sample ({size}) of {data['sample']['selected']} mutants")
     if meta.get("started"):
         parts.append(f"measured on {datetime.fromtimestamp(meta['started'], UTC):%Y-%m-%d}")

@@ -128,7 +128,7 @@ def test_a_family_that_was_not_run_says_nothing(data: Any) -> None:
 
 
 def test_a_sample_does_not_tell_how_many_places_there_are(data: Any) -> None:
-    data["sample"] = {"size": "10%", "one_per_site": False, "selected": 900}
+    data["sample"] = {"size": "10%", "selected": 900}
     assert finding(PLACES, data, "classical").stance is Stance.UNKNOWN
 
 

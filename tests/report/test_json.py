@@ -40,7 +40,6 @@ SECOND_LOOK: dict[str, Any] = {
 DRAWING = {
     "drawing": {
         "sample": "10%",
-        "one_per_site": True,
         "selected": 60,
         "strata": [
             {"family": "robot", "role": "program", "population": 30, "drawn": 3},
@@ -133,7 +132,7 @@ def test_a_second_look_is_in_it(tmp_path: Path) -> None:
 
 def test_a_sample_carries_what_it_says_about_all(tmp_path: Path) -> None:
     found = data(tmp_path, **DRAWING)
-    assert found["sample"] == {"size": "10%", "one_per_site": True, "selected": 60}
+    assert found["sample"] == {"size": "10%", "selected": 60}
     program = found["groups"][0]
     assert (program["mutants"], program["population"]) == (3, 30)
     assert 0 <= program["sample_interval"]["low"] < program["score"] < program["sample_interval"]["high"]

@@ -40,7 +40,6 @@ class Request:
         families: the families of operators whose mutants are made.
         every_test: whether a mutant runs every test that reaches it, also after one has noticed it.
         sample: how many of the mutants to run, chosen at random; None for all.
-        one_per_site: whether to run one mutant per site, chosen at random.
         order: how many mutants are one: 1 or 2.
         pairs: how many mutants of the second order to plant.
         journal: name of the journal's file in mutabot's folder.
@@ -74,7 +73,6 @@ class Request:
     families: tuple[str, ...] = USUAL
     every_test: bool = False
     sample: Sample | None = None
-    one_per_site: bool = False
     order: int = 1
     pairs: int = 200
     journal: str = JOURNAL

@@ -135,14 +135,12 @@ class Drawing:
     """How the mutants of a campaign were drawn from the selected ones.
 
     Attributes:
-        sample: the size that was asked for; None for all.
-        one_per_site: whether one mutant per site was drawn before; the sample is of those.
+        sample: the size that was asked for.
         selected: how many mutants there were before anything was drawn.
         strata: one per family and role; the population is what the sample was drawn from.
     """
 
-    sample: str | None
-    one_per_site: bool
+    sample: str
     selected: int
     strata: tuple[Stratum, ...]
 

@@ -312,7 +312,7 @@ def drawing_data(drawing: Drawing | None) -> dict[str, Any] | None:
     """How the mutants were drawn, or None if all of them were run."""
     if drawing is None:
         return None
-    return {"size": drawing.sample, "one_per_site": drawing.one_per_site, "selected": drawing.selected}
+    return {"size": drawing.sample, "selected": drawing.selected}
 
 
 def interval_data(interval: Interval | None) -> dict[str, float] | None:

@@ -118,10 +118,10 @@ def test_with_one_round_there_is_no_interval(tmp_path: Path) -> None:
 @WIDTHS
 def test_a_sample_is_told_with_what_it_says_about_all(tmp_path: Path, width: int) -> None:
     stratum = {"family": "robot", "role": "program", "population": 30, "drawn": 3}
-    drawing = {"sample": "10%", "one_per_site": True, "selected": 60, "strata": [stratum]}
+    drawing = {"sample": "10%", "selected": 60, "strata": [stratum]}
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", drawing=drawing)) as journal:
         text = " ".join(report(read_results(journal), width).split())
-    assert "5 of 60 mutants were drawn: a sample of 10% of one per site" in text
+    assert "5 of 60 mutants were drawn: a sample of 10%" in text
     assert "robot · program: 3 of 30; score of all of them in these rounds " in text
 
 

@@ -129,4 +129,4 @@ def _drawing(campaign: StoredCampaign) -> dict[str, Any] | None:
     found = campaign.results.drawing
     if found is None:
         return None
-    return {"sample": found.sample, "onePerSite": found.one_per_site, "selected": found.selected}
+    return {"sample": found.sample, "selected": found.selected}

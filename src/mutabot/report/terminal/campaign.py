@@ -232,9 +232,7 @@ def sample_lines(results: Results) -> Iterator[RenderableType]:
     if drawing is None:
         return
     drawn = f"{sum(group.mutants for group in results.drawn)} of {plural(drawing.selected, 'mutant')}"
-    how = [f"a sample of {drawing.sample}"] if drawing.sample is not None else []
-    how += ["one per site"] if drawing.one_per_site else []
-    yield heading(f"{drawn} were drawn: {' of '.join(how)}")
+    yield heading(f"{drawn} were drawn: a sample of {drawing.sample}")
     for group in results.drawn:
         if group.population is not None:
             yield Text(_all_text(group), overflow="fold")

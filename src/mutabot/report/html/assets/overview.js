@@ -34,8 +34,7 @@
     const complete = campaign.state === "complete" && campaign.done >= campaign.planned;
     const facts = [typeof meta.seconds === "number" && `took ${duration(meta.seconds)}`,
       meta.families && `families ${meta.families.join(", ")}`, count(campaign.tests.length, "test"),
-      campaign.drawing && campaign.drawing.sample && `a sample of ${campaign.drawing.sample} of ${count(campaign.drawing.selected, "mutant")}`,
-      campaign.drawing && campaign.drawing.onePerSite && "one mutant per site"];
+      campaign.drawing && `a sample of ${campaign.drawing.sample} of ${count(campaign.drawing.selected, "mutant")}`];
     return [
       h("p", { class: "lead" }, complete ? "complete · " : "", facts.filter(Boolean).join(" · ")),
       complete || isUnderWay(campaign) ? null : h("p", { class: "notice" }, h("strong", null, `This campaign is not complete (${campaign.state}): `),
