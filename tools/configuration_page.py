@@ -97,10 +97,12 @@ def values_of(schema: Mapping[str, Any], whole: Mapping[str, Any]) -> str:
 
 def _bounds(schema: Mapping[str, Any]) -> str:
     low, over, high = (schema.get(key) for key in ("minimum", "exclusiveMinimum", "maximum"))
-    if high is not None:
-        return f" from {low:g} to {high:g}"
     if over is not None:
-        return f" above {over:g}"
+        return f" above {over:g}{f', at most {high:,}' if high is not None else ''}"
+    if low is not None and high is not None:
+        return f" from {low:,} to {high:,}"
+    if high is not None:
+        return f", at most {high:,}"
     return f" from {low:g}" if low is not None else ""
 
 

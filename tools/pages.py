@@ -21,7 +21,7 @@ from markdown_it.token import Token
 ROOT = Path(__file__).parents[1]
 HOME = "README.md"
 #: what of the repository is a page, below ROOT
-PATTERNS = (HOME, "CONTRIBUTING.md", "CHANGELOG.md", "docs/**/*.md", "examples/*/README.md")
+PATTERNS = (HOME, "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "docs/**/*.md", "examples/*/README.md")
 _MARKDOWN = MarkdownIt("commonmark").enable("table")
 
 

@@ -26,6 +26,10 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 from .exit_codes import ExitCode
+from .limits import shortened
+
+#: signs of a name that a message shows
+_LONGEST_NAME = 300
 
 
 class MutabotError(Exception):
@@ -213,8 +217,9 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
 def unknown_name_text(kind: str, name: str, known: Iterable[str]) -> str:
     """One sentence for a name that does not exist: the nearest one, or all there are."""
     known = sorted(set(known))
+    shown = shortened(name, _LONGEST_NAME)
     nearest = nearest_name(name, known)
     if nearest is not None:
-        return f"unknown {kind} {name!r}; did you mean {nearest!r}?"
+        return f"unknown {kind} {shown!r}; did you mean {nearest!r}?"
     listed = ", ".join(known[:12]) + (" …" if len(known) > 12 else "")
-    return f"unknown {kind} {name!r}; known: {listed or 'none'}"
+    return f"unknown {kind} {shown!r}; known: {listed or 'none'}"

@@ -27,7 +27,7 @@ class ExitCode(IntEnum):
     UNRELIABLE = (
         4,
         "a control ended wrongly, more errors than `error_limit` allows, too much is unstable, `--verify` "
-        "found a disagreement, or `mutabot merge` lacks a shard",
+        "found a disagreement, the journal lacks an outcome, or `mutabot merge` lacks a shard",
     )
     TOO_MANY_TIMEOUTS = 5, "more time-outs than `timeout_limit` allows"
     INTERNAL_ERROR = 70, "an internal error; `.mutabot/crash.txt` has the details"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -18,7 +19,21 @@ from tests.analysis.samples import MUTANTS, OUTCOMES, REVERSE, SKIP, write_journ
 def results(folder: Path, outcomes: tuple[Outcome, ...], mutants: tuple[Mutant, ...] = MUTANTS) -> Results:
     path = write_journal(folder / "journal.sqlite", outcomes=outcomes, mutants=mutants)
     with Journal.open(path) as journal:
-        return read_results(journal)
+        # what it lacks is the matter of one test alone
+        return replace(read_results(journal), state="complete")
+
+
+def test_a_journal_that_lacks_an_outcome_of_a_campaign_that_ended_is_never_fine(tmp_path: Path) -> None:
+    path = write_journal(tmp_path / "journal.sqlite", outcomes=OUTCOMES[1:])
+    with Journal.open(path) as journal:
+        found = read_results(journal)
+    assert found.state == "incomplete"
+    decision = decide(found)
+    assert decision.exit_code == 4
+    numbers = ", ".join(str(one.mutant.number) for one in found.mutants if None in one.rounds)
+    assert decision.lines[0].startswith(
+        f"not all that was found could be written to the journal: mutants {numbers};"
+    )
 
 
 def test_without_limits_a_campaign_with_survivors_is_fine(tmp_path: Path) -> None:

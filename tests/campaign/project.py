@@ -58,7 +58,7 @@ DEPENDENT = (
         arm.move_by(0.25)
 
     def finish(arm):
-        arm.position()
+        return arm.position()
     """,
     """
     import builtins

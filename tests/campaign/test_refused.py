@@ -100,6 +100,6 @@ def test_a_command_that_is_refused_by_data_is_never_a_kill(tmp_path: Path) -> No
     # a mutant that is taken is judged by the tests as ever
     assert told["lift:arm.lift:z:reverse"][0] is Verdict.SURVIVED
     assert told["run:arm.move_to:call:skip"][0] is Verdict.KILLED
-    # where every answer is a refusal, only commands that the mutant has changed count
-    assert told["turn:arm.turn:angle:reverse"] == (refused, "answered status 0")
+    # where the original is refused as well, its tests judge the mutant
+    assert told["turn:arm.turn:angle:reverse"][0] is Verdict.SURVIVED
     assert told["turn:arm.turn:call:skip"][0] is Verdict.SURVIVED

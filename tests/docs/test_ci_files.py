@@ -43,9 +43,18 @@ def loaded(name: str) -> dict[str, Any]:
     return found
 
 
+def jobs_of_github() -> dict[str, Any]:
+    found: dict[str, Any] = loaded("github.yml")["jobs"]
+    return found
+
+
+def steps_of(job: dict[str, Any], action: str) -> list[dict[str, Any]]:
+    return [step for step in job["steps"] if step.get("uses", "").startswith(action)]
+
+
 def test_the_workflow_has_a_job_for_changes_and_jobs_in_parts() -> None:
-    jobs = loaded("github.yml")["jobs"]
-    assert jobs.keys() == {"change", "shard", "merge"}
+    jobs = jobs_of_github()
+    assert jobs.keys() == {"change", "shard", "merge", "publish"}
     number = len(jobs["shard"]["strategy"]["matrix"]["shard"])
     scripts = [step["run"] for step in jobs["shard"]["steps"] if step.get("name") == "Run"]
     assert f"/{number}" in scripts[0]
@@ -53,16 +62,89 @@ def test_the_workflow_has_a_job_for_changes_and_jobs_in_parts() -> None:
 
 
 def test_the_journal_is_fetched_from_where_it_is_kept() -> None:
-    steps = [step for job in loaded("github.yml")["jobs"].values() for step in job["steps"]]
-    caches = [step["with"] for step in steps if step.get("uses", "").startswith("actions/cache/")]
+    caches = [step["with"] for job in jobs_of_github().values() for step in steps_of(job, "actions/cache/")]
     assert len(caches) == 3
-    assert len({cache["path"] for cache in caches}) == 1
+    assert {cache["path"] for cache in caches} == {"${{ runner.temp }}/mutabot-main"}
     assert {cache["key"].partition("$")[0] for cache in caches} == {"mutabot-main-"}
-    jobs = [one for one in loaded("gitlab.yml").values() if isinstance(one, dict) and "cache" in one]
+    file = loaded("gitlab.yml")
+    jobs = [file[name] for name in ("mutants", "merge")]
     assert {job["cache"]["policy"] for job in jobs} == {"pull", "push"}
-    assert {(job["cache"]["key"], *job["cache"]["paths"]) for job in jobs} == {
-        ("mutabot-main", ".mutabot/main")
-    }
+    kept = {(job["cache"]["key"], *job["cache"]["paths"]) for job in jobs}
+    assert kept == {("mutabot-main", ".mutabot/journal.sqlite", ".mutabot/journal-evidence.sqlite")}
+    assert set(jobs[1]["cache"]["paths"]) < set(jobs[1]["artifacts"]["paths"])
+
+
+def test_strangers_pull_requests_have_no_rights() -> None:
+    file = loaded("github.yml")
+    assert set(file[True]) == {"pull_request", "push", "workflow_dispatch"}  # YAML reads `on` as true
+    assert file["permissions"] == {"contents": "read"}
+    jobs = jobs_of_github()
+    assert {name for name, job in jobs.items() if "permissions" in job} == {"publish"}
+    assert not [step for step in jobs["publish"]["steps"] if "run" in step]
+    assert not steps_of(jobs["publish"], "actions/checkout")
+    assert "head.repo.full_name == github.repository" in jobs["publish"]["if"]
+    for name in ("github.yml", "gitlab.yml"):
+        text = "\n".join(
+            line for line in (pages.ROOT / "ci" / name).read_text().splitlines() if "# never" not in line
+        )
+        assert "pull_request_target" not in text
+        assert "workflow_run" not in text
+        assert not re.search(r"secrets\.|TOKEN(?!: \$CI_JOB_TOKEN)(?!\")", text)
+
+
+def test_the_checkout_keeps_no_credentials() -> None:
+    found = [step for job in jobs_of_github().values() for step in steps_of(job, "actions/checkout@")]
+    assert len(found) == 3
+    assert all(step["with"]["persist-credentials"] is False for step in found)
+
+
+def test_actions_are_named_by_their_commit_with_the_version_beside() -> None:
+    lines = (pages.ROOT / "ci" / "github.yml").read_text().splitlines()
+    used = [line.strip(" -") for line in lines if "uses:" in line]
+    assert len(used) > 10
+    wrong = [
+        line for line in used if not re.fullmatch(r"uses: [\w./-]+@[0-9a-f]{40}  # v\d+\.\d+\.\d+", line)
+    ]
+    assert wrong == []
+    assert len(set(used)) == len({line.partition("@")[0] for line in used})
+
+
+def test_nothing_that_others_choose_is_pasted_into_a_script() -> None:
+    scripts = [step["run"] for job in jobs_of_github().values() for step in job["steps"] if "run" in step]
+    assert scripts
+    assert not [script for script in scripts if "${{" in script]
+
+
+def test_only_main_writes_what_others_read() -> None:
+    jobs = jobs_of_github()
+    writers = {name for name, job in jobs.items() for step in steps_of(job, "actions/cache/save@")}
+    assert writers == {"merge"}
+    assert not [job for job in jobs.values() for step in steps_of(job, "actions/cache@")]  # it would save
+    assert "default_branch" in jobs["shard"]["if"]
+    assert "needs.shard.result != 'skipped'" in jobs["merge"]["if"]
+    file = loaded("gitlab.yml")
+    assert file["mutants of the change"]["cache"] == []
+    for name in ("mutants", "merge"):
+        assert file[name]["cache"]["unprotect"] is False
+        (rule,) = file[name]["rules"]
+        assert '$CI_COMMIT_BRANCH == $CI_DEFAULT_BRANCH && $CI_COMMIT_REF_PROTECTED == "true"' in rule["if"]
+
+
+def test_what_is_believed_lies_where_no_commit_can_put_a_file() -> None:
+    for job in jobs_of_github().values():
+        for step in (*steps_of(job, "actions/cache/"), *steps_of(job, "actions/download-artifact@")):
+            path = step["with"].get("path", "")
+            assert path.startswith("${{ runner.temp }}/") or step["with"].get("name") == "mutabot-sarif"
+    for name in ("github.yml", "gitlab.yml"):
+        text = (pages.ROOT / "ci" / name).read_text()
+        named = re.findall(r'--journal "?(\$\w+)', text)
+        assert named == ["$RUNNER_TEMP" if name == "github.yml" else "$MAIN"]
+
+
+def test_mutabot_comes_from_no_index() -> None:
+    files = loaded("github.yml")["env"], loaded("gitlab.yml")[".mutabot"]["variables"]
+    for given in files:
+        assert re.fullmatch(r"git\+https://[\w.-]+\.invalid/[\w./-]+@[0-9a-f]{40}", given["MUTABOT"])
 
 
 def options_of(name: str) -> set[str]:
@@ -111,9 +193,11 @@ class Site:
 def steps_of_github(site: Site, job: dict[str, Any], folder: Path, *, base: str = "", **matrix: str) -> None:
     """Run the steps of a job; what other actions do is done here by copying files."""
     store, said = site.home / "stored", site.home / "summary.md"
+    temp = site.home / f"temp-of-{folder.name}"
+    temp.mkdir()
 
     def filled(text: str) -> str:
-        known = {"github.sha": "abc", "github.event.pull_request.base.sha": base}
+        known = {"github.sha": "abc", "github.event.pull_request.base.sha": base, "runner.temp": str(temp)}
         known.update((f"matrix.{name}", value) for name, value in matrix.items())
         return re.sub(r"\$\{\{ *([^} ]+) *\}\}", lambda found: known[found[1]], text)
 
@@ -122,9 +206,11 @@ def steps_of_github(site: Site, job: dict[str, Any], folder: Path, *, base: str 
         if "run" in step:
             given = {**loaded("github.yml")["env"], **step.get("env", {})}
             environment = {name: filled(str(value)) for name, value in given.items()}
-            site.run(filled(step["run"]), folder, GITHUB_STEP_SUMMARY=str(said), **environment)
+            known = {"GITHUB_STEP_SUMMARY": str(said), "RUNNER_TEMP": str(temp)}
+            site.run(step["run"], folder, **known, **environment)
         elif action.startswith("actions/upload-artifact"):
-            files = [one for glob in given["path"].split() for one in folder.glob(glob)]
+            paths = [Path(path) for path in filled(given["path"]).split()]
+            files = [one for path in paths for one in (folder / path.parent).glob(path.name)]
             assert files
             for file in files:
                 to = store / filled(given["name"]) / file.name
@@ -132,13 +218,13 @@ def steps_of_github(site: Site, job: dict[str, Any], folder: Path, *, base: str 
                 shutil.copytree(file, to) if file.is_dir() else shutil.copy(file, to)
         elif action.startswith("actions/download-artifact"):
             for one in store.glob(given["pattern"]):
-                shutil.copytree(one, folder / given["path"] / one.name)
+                shutil.copytree(one, Path(filled(given["path"])) / one.name)
         elif action.startswith("actions/cache/save"):
-            shutil.copytree(folder / given["path"], store / "cache")
+            shutil.copytree(filled(given["path"]), store / "cache")
         elif action.startswith("actions/cache/restore") and (store / "cache").is_dir():
-            shutil.copytree(store / "cache", folder / given["path"])
-        elif "upload-sarif" in action:
-            assert json.loads((folder / given["sarif_file"]).read_text())["version"] == "2.1.0"
+            shutil.copytree(store / "cache", filled(given["path"]))
+    if (folder / "mutants.sarif").exists():
+        assert json.loads((folder / "mutants.sarif").read_text())["version"] == "2.1.0"
 
 
 @pytest.mark.whole
@@ -186,5 +272,16 @@ def test_the_jobs_of_gitlab_run_in_parts(tmp_path: Path) -> None:
         site.run("\n".join(file["merge"][part]), folder)
     for path in file["merge"]["artifacts"]["paths"]:
         assert (folder / path).exists()
-    with Journal.open(folder / ".mutabot" / "main" / "journal.sqlite") as journal:
+    with Journal.open(folder / ".mutabot" / "journal.sqlite") as journal:
         assert read_results(journal).state == "complete"
+
+    packed = shutil.make_archive(str(tmp_path / "main"), "zip", folder, ".mutabot/journal.sqlite")
+    site._program(
+        "curl", f'for word; do case "$before" in --output) cp {packed} "$word";; esac; before=$word; done'
+    )
+    site._program("python", f'exec {sys.executable} "$@"')
+    change = site.clone("change")
+    variables = {"CI_MERGE_REQUEST_DIFF_BASE_SHA": site.git("rev-parse", "HEAD"), "CI_DEFAULT_BRANCH": "main"}
+    site.run("\n".join(file["mutants of the change"]["script"]), change, **variables)
+    with Journal.open(change / ".mutabot" / "journal.sqlite") as journal:
+        assert len(journal.reused()) == len(journal.outcomes()) > 0

@@ -19,11 +19,11 @@ from analysis import samples
 from mutabot.border.test_end import TestEnd
 from mutabot.errors import JournalError
 from mutabot.journal.database import Batch, connect, guarded
+from mutabot.journal.files import previous_of
 from mutabot.journal.journal import Journal
 from mutabot.journal.lock import is_written
 from mutabot.journal.records import Kept
 from mutabot.journal.store import Store
-from mutabot.journal.succession import previous_of
 from mutabot.model import By, Outcome, Verdict
 
 KILLED = Outcome("m", 0, Verdict.KILLED, By.CHECK, test="t", example=(1, -1), divergence=("a", "b"))
@@ -258,11 +258,59 @@ def test_a_row_that_cannot_be_written_takes_no_other_with_it(tmp_path: Path) -> 
         batch = Batch(file)
         for number in (0, 1, 2, 1, 3):
             batch.add("INSERT INTO found VALUES (?)", number)
-        with pytest.raises(sqlite3.IntegrityError):
-            batch.commit()
+        batch.commit()
+        assert batch.unstored == ["1: IntegrityError: UNIQUE constraint failed: found.number"]
         assert [one for (one,) in file.execute("SELECT number FROM found")] == [0, 1, 2, 3]
         batch.add("INSERT INTO found VALUES (4)")
         batch.commit()
+
+
+@pytest.mark.parametrize(
+    "value", ["\udcff", 1 << 64, object()], ids=["no UTF-8", "more than 64 bits", "no type of SQLite's"]
+)
+@pytest.mark.parametrize("is_late", [False, True])
+def test_a_value_that_cannot_be_stored_takes_no_other_row_with_it(
+    tmp_path: Path, value: object, is_late: bool
+) -> None:
+    with closing(sqlite3.connect(tmp_path / "file", isolation_level=None, check_same_thread=False)) as file:
+        file.execute("CREATE TABLE found (number)")
+        batch = Batch(file)
+        for number in (0, 1, value, 2):
+            batch.add("INSERT INTO found VALUES (?)", number)
+        if is_late:  # by the thread that commits what nobody else does
+            until = time.monotonic() + 60
+            while not batch.unstored and time.monotonic() < until:
+                time.sleep(0.01)
+        batch.commit()
+        assert [one for (one,) in file.execute("SELECT number FROM found")] == [0, 1, 2]
+        assert len(batch.unstored) == 1
+
+
+def test_texts_that_are_no_utf_8_are_stored_and_found_again(path: Path) -> None:
+    with Journal.create(path, meta={"root": "/tmp/\udcff"}) as journal:
+        journal.add_outcome(
+            Outcome("mission\udcff.py", 0, Verdict.KILLED, test="t\udcff", example=(1, "\udcfe"))
+        )
+        journal.add_control("tests/t\udcff.py", "identity", ok=True, detail="\udcff")
+        journal.add_test(0, 0, TestEnd("t\udcff", "passed"))
+        journal.set_plan([], [], sources={"mission\udcff.py": "x = '\udcff'"})
+        assert journal.unstored == ()
+    with Journal.open(path) as reader:
+        assert [one.mutant for one in reader.outcomes()] == ["mission\\udcff.py"]
+        assert reader.outcomes()[0].example == (1, "\\udcfe")
+        assert reader.source("mission\udcff.py") == "x = '\\udcff'"
+        assert reader.tests()[0].test.test == "t\\udcff"
+        assert reader.meta()["root"] == "/tmp/\\udcff"
+
+
+def test_a_journal_in_a_folder_whose_name_is_no_utf_8_is_written_read_and_succeeded(tmp_path: Path) -> None:
+    path = tmp_path / "a\udcff b" / "journal.sqlite"
+    for seed in (1, 2):
+        with Journal.create(path, meta={"seed": seed}) as journal:
+            journal.add_outcome(KILLED)
+            journal.finish("complete")
+    with Journal.open(path) as reader, Journal.open(previous_of(path)) as before:
+        assert (reader.meta()["seed"], before.meta()["seed"]) == (2, 1)
 
 
 def test_a_journal_that_is_closed_has_written_all(path: Path) -> None:
@@ -320,7 +368,7 @@ def test_a_writer_ended_by_sigkill_loses_the_last_second_at_most(path: Path) -> 
 def test_a_full_disk_is_a_clear_error_and_keeps_what_was_there(path: Path) -> None:
     with Journal.create(path, meta={}) as journal:
         journal.add_outcome(KILLED)
-        journal._store.connection.execute("PRAGMA max_page_count = 1")
+        journal._store.connection._file.execute("PRAGMA max_page_count = 1")
         big = Outcome("n", 0, Verdict.ERROR, message="x" * 1_000_000)
         journal.add_outcome(big)
         with pytest.raises(JournalError, match="disk is full") as error:
@@ -376,7 +424,7 @@ def test_a_journal_of_another_schema_version_is_refused(path: Path) -> None:
     with connection:
         connection.execute("UPDATE meta SET value = '99' WHERE key = 'journal:version'")
     connection.close()
-    with pytest.raises(JournalError, match="version 99, this one reads 2"):
+    with pytest.raises(JournalError, match="version 99, this one reads 3"):
         Journal.open(path)
 
 

@@ -47,7 +47,7 @@ def place(form: Form, name: str, *, is_written: bool = False) -> Place:
 
 
 MOVED = {"kind": "translation", "axis": "y", "unit": "m"}
-SPEED = "unit: m stands for m/s, and rad for rad/s, if it is a speed"
+SPEED = {"kind": "speed", "axis": "y", "unit": "m/s"}
 
 
 @pytest.mark.parametrize(
@@ -55,12 +55,13 @@ SPEED = "unit: m stands for m/s, and rad for rad/s, if it is a speed"
     [
         ("/goal", part("p.y", (POSE, "position"), (POINT, "y")), {**MOVED, "mode": "to"}, ["mode"]),
         ("/arm/move_by", part("p.y", (POINT, "y")), {**MOVED, "mode": "by"}, []),
-        ("/cmd_vel", part("l.y", (TWIST, "linear"), (VECTOR, "y")), {**MOVED, "mode": "by"}, [SPEED]),
+        ("/cmd_vel", part("l.y", (TWIST, "linear"), (VECTOR, "y")), SPEED, []),
+        ("/arm/move_by", part("l.y", (TWIST, "linear"), (VECTOR, "y")), {**MOVED, "mode": "by"}, []),
         (
             "/cmd_vel",
             part("a.z", (TWIST, "angular"), (VECTOR, "z")),
-            {"kind": "rotation", "axis": "z", "unit": "rad", "mode": "by"},
-            [SPEED],
+            {"kind": "speed", "axis": "z", "unit": "rad/s"},
+            [],
         ),
         ("/goal", part("o", (POSE, "orientation"), kind=ROTATION), {"kind": "quaternion"}, []),
         ("/arm/wait", part("data", ("std_msgs/Float64", "data")), {"kind": "duration", "unit": "s"}, []),
@@ -93,6 +94,7 @@ def test_what_is_sent_means_what_ros_says(
             part("t.x", ("geometry_msgs/Transform", "translation"), (VECTOR, "x")),
             {"kind": "position", "axis": "x", "unit": "m"},
         ),
+        (part("twist.linear.y", (TWIST, "linear"), (VECTOR, "y")), SPEED),
         (part("r", ("sensor_msgs/Range", "range")), {"kind": "distance", "unit": "m"}),
         (
             part("theta", ("geometry_msgs/Pose2D", "theta")),
@@ -116,7 +118,6 @@ def test_what_is_read_means_what_ros_says(read: Part, table: dict[str, Any]) -> 
 @pytest.mark.parametrize(
     "read",
     [
-        part("twist.linear.x", (TWIST, "linear"), (VECTOR, "x")),  # a speed: no reading is of that kind
         part("wrench.force.x", ("geometry_msgs/Wrench", "force"), (VECTOR, "x")),
         part("level", ("sensor_msgs/BatteryState", "percentage")),
         part("code", ("vendor_msgs/State", "code"), values=(3,)),

@@ -103,6 +103,22 @@ def test_every_name_stands_for_its_forms(text: str, targets: list[str], tmp_path
     assert [Named.of(target).target for target in targets] == targets
 
 
+def test_paths_lead_into_the_value_of_a_parameter(tmp_path: Path) -> None:
+    text = """parameter = "limits"
+    value."[0]" = { kind = "distance", unit = "m" }
+    value."[1:4]" = { kind = "position", axis = "xyz", unit = "m" }
+    """
+    found = entry(tmp_path, text)["parameter limits"].result
+    assert [(one.name, one.axis) for one in found] == [
+        ("[0]", None),
+        ("[1]", "x"),
+        ("[2]", "y"),
+        ("[3]", "z"),
+    ]
+    with pytest.raises(ConfigurationError, match="begins with a dot or a bracket"):
+        entry(tmp_path, text.replace("[0]", "first"))
+
+
 def test_the_value_of_a_parameter_is_the_whole_of_it(tmp_path: Path) -> None:
     found = entry(tmp_path, 'parameter = "reach"\nvalue = { kind = "distance", unit = "m" }')
     (quantity,) = found["parameter reach"].result

@@ -8,6 +8,7 @@ import pytest
 
 from check_shipped import compare
 from mutabot.errors import VocabularyError
+from mutabot.model import Kind
 from mutabot.vocabulary import load
 from mutabot.vocabulary.load import shipped
 
@@ -65,3 +66,51 @@ def test_what_a_package_does_not_have_is_found(tmp_path: Path) -> None:
     assert len(found) == 2
     assert any("has no argument 'height'" in problem for problem in found)
     assert any("has no 'lift'" in problem for problem in found)
+
+
+def parts_of(name: str, call: str, folder: Path) -> dict[str, list[str]]:
+    """What a shipped vocabulary says of a call: its quantities with kind and unit, by the case it is in."""
+    operation = load([name], folder).operation(call)
+    assert operation is not None
+    cases = [(one.text, (*one.arguments, *one.result)) for one in operation.patterns]
+    found = cases or [("", (*operation.arguments, *operation.result))]
+    return {text: [f"{one.name} {one.kind} {one.unit}" for one in quantities] for text, quantities in found}
+
+
+def test_pybullet_has_both_places_of_a_link(tmp_path: Path) -> None:
+    """People read the centre of mass as well as the frame."""
+    (parts,) = parts_of("pybullet", "pybullet:getLinkState", tmp_path).values()
+    positions = [f"[{index}][{axis}] position m" for index in (0, 4) for axis in range(3)]
+    assert set(parts) == {*positions, "[1][0:4] quaternion None", "[5][0:4] quaternion None"}
+
+
+def test_a_motor_of_pybullet_is_told_what_its_mode_says(tmp_path: Path) -> None:
+    assert parts_of("pybullet", "pybullet:setJointMotorControl2", tmp_path) == {
+        "controlMode=0": ["targetVelocity speed rad/s"],
+        "controlMode=1": ["force torque Nm"],
+        "controlMode=2": ["targetPosition rotation rad"],
+        "controlMode=3": ["targetPosition rotation rad"],
+    }
+
+
+def test_xarm_is_in_the_units_that_the_call_says(tmp_path: Path) -> None:
+    found = parts_of("xarm", "xarm.wrapper.xarm_api:XArmAPI.get_servo_angle", tmp_path)
+    units = {text: {part.rpartition(" ")[2] for part in parts} for text, parts in found.items()}
+    assert len(units) == 8
+    for text, unit in units.items():
+        is_radian = "is_radian=true" in text
+        assert unit == ({"rad"} if is_radian else {"deg"})
+
+
+@pytest.mark.parametrize("name", ["ur_rtde", "urx"])
+def test_the_orientations_of_universal_robots_are_rotation_vectors(name: str, tmp_path: Path) -> None:
+    """They mean something only as a whole; only joints turn about an axis each."""
+    for operation in load([name], tmp_path).operations:
+        patterns = [(*one.arguments, *one.result) for one in operation.patterns]
+        for quantity in (
+            part for parts in [(*operation.arguments, *operation.result), *patterns] for part in parts
+        ):
+            if quantity.kind in (Kind.ROTATION, Kind.ORIENTATION) and (quantity.axis or "").startswith(
+                ("x", "y", "z")
+            ):
+                assert quantity.name == "result", f"{operation.target}: {quantity.name}"

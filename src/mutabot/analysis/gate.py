@@ -16,6 +16,9 @@ from .results import Results
 from .thresholds.demands import Held, rulings
 from .thresholds.ladders import ladders_of
 
+#: rows of the journal that are named
+_SHOWN = 5
+
 
 @dataclass(frozen=True, slots=True)
 class Decision:
@@ -47,8 +50,12 @@ def decide(
     tests among the tests, and of unstable outcomes among all; ``max_errors`` the greatest share of errors
     among all outcomes: mutants of which nothing is known. Graded mutants have no score, but their errors and
     unstable outcomes count; ``demands`` say which of them must be noticed. A disagreement that ``--verify``
-    found always fails. Of a shard nothing else is judged.
+    found always fails, and so does a journal that lacks what was found, or that something else has
+    written to. Of a shard nothing else is judged.
     """
+    doubtful = tuple(_doubtful(results))
+    if doubtful:
+        return Decision(ExitCode.UNRELIABLE, doubtful)
     if results.shard is not None and results.shard.of > 1:
         return _of_shard(results, results.shard)
     total = results.all.total
@@ -70,6 +77,35 @@ def decide(
     low = tuple(_too_low(results, min_score)) if min_score is not None else ()
     low += tuple(_too_loose(results, demands))
     return Decision(ExitCode.SCORE_TOO_LOW, low) if low else Decision(ExitCode.FINE)
+
+
+def _incomplete(results: Results) -> str:
+    lacking = [str(one.mutant.number) for one in results.mutants if len(one.outcomes) < results.rounds]
+    if results.shard is not None and results.shard.of > 1:
+        lacking = []  # most of them are other shards'
+    shown = f": mutants {', '.join(lacking[:20])}{' …' if len(lacking) > 20 else ''}" if lacking else ""
+    return f"not all that was found could be written to the journal{shown}; `mutabot run` runs it again"
+
+
+def _doubtful(results: Results) -> Iterator[str]:
+    """What others did to the journal: nobody who can do that is to decide about an exit code."""
+    if results.set_aside:
+        yield (
+            f"{_listed(results.set_aside)} in the journal: not written by mutabot, or damaged; nothing of it "
+            "is believed, and `mutabot run` runs it again"
+        )
+    elif results.is_incomplete:
+        yield _incomplete(results)
+    if results.altered:
+        yield (
+            f"the journal was changed by something else while the campaign ran: {_listed(results.altered)}. "
+            "What mutabot had found was restored; see to it that no test writes into .mutabot"
+        )
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return ", ".join(names[:_SHOWN]) + more
 
 
 def _of_shard(results: Results, shard: ShardOf) -> Decision:

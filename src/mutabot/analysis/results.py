@@ -12,10 +12,12 @@ from mutabot.families import GRADED
 from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
+    ALTERED,
     BUDGET,
     CONFIRMATION,
     DRAWING,
     FLAKY,
+    INCOMPLETE,
     REPEATS,
     SHARD,
     SINCE,
@@ -111,7 +113,8 @@ class Results:
 
     Attributes:
         meta: what the campaign said about itself.
-        state: ``complete``, ``interrupted``, ``running``, ``killed`` or why it stopped; of a shard, which.
+        state: ``complete``, ``incomplete`` (all has run, but the journal lacks some of it), ``interrupted``,
+            ``running``, ``killed`` or why it stopped; of a shard, which.
         rounds: number of rounds.
         mutants: every planned mutant by number, but for graded ones.
         groups: scores per family and role.
@@ -133,6 +136,8 @@ class Results:
         budget: how limited time was used; None if it was not limited.
         estimates: what the scores of all mutants would be, where the time was not enough for them.
         shard: which part of its plan the campaign has run; None for all of it.
+        set_aside: what the journal holds that Mutabot has not written or that cannot be, in words. Nothing
+            of it is believed: its outcomes count as not run.
     """
 
     meta: Mapping[str, Any]
@@ -156,6 +161,12 @@ class Results:
     budget: Budgeted | None = None
     estimates: tuple[Estimate, ...] = ()
     shard: ShardOf | None = None
+    set_aside: tuple[str, ...] = ()
+
+    @property
+    def altered(self) -> tuple[str, ...]:
+        """What something else changed in the journal while the campaign ran, and was restored, in words."""
+        return tuple(self.meta.get(ALTERED) or ())
 
     @property
     def everything(self) -> tuple[MutantResult, ...]:
@@ -193,6 +204,11 @@ class Results:
     def planned(self) -> int:
         """Number of (mutant, round) pairs the campaign was to run, without graded mutants."""
         return len(self.mutants) * self.rounds
+
+    @property
+    def is_incomplete(self) -> bool:
+        """Whether all was run, but not every outcome is in the journal."""
+        return INCOMPLETE in self.state
 
     @property
     def done(self) -> int:
@@ -240,6 +256,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     drawing = from_data(Drawing, meta[DRAWING]) if DRAWING in meta else None
     shard = from_data(ShardOf, meta[SHARD]) if SHARD in meta else None
     groups = groups_of(mutants, outcomes, rounds, drawing)
+    is_whole = _is_whole(mutants, outcomes, rounds)
     drawn = groups if drawing is not None else ()
     budget = from_data(Budgeted, meta[BUDGET]) if BUDGET in meta else None
     is_cut = budget is not None and not budget.is_whole
@@ -264,9 +281,9 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
             presumed=mutant.id in presumed,
         )
 
-    return Results(
+    found = Results(
         meta=meta,
-        state=_state(journal, shard),
+        state="",
         rounds=rounds,
         mutants=tuple(result(mutant) for mutant in mutants if mutant.id not in graded),
         graded=tuple(result(mutant) for mutant in mutants if mutant.id in graded),
@@ -287,6 +304,10 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         estimates=estimates,
         shard=shard,
     )
+    # what rows hold is known now that they are read
+    set_aside = tuple(journal.set_aside)
+    state = _state(journal, shard, is_whole=is_whole and not set_aside)
+    return replace(found, state=state, set_aside=set_aside)
 
 
 @dataclass(frozen=True, slots=True)
@@ -350,8 +371,17 @@ def _attempt(journal: JournalReader) -> str | None:
     return "running" if is_written(journal.path) else "killed"
 
 
-def _state(journal: JournalReader, shard: ShardOf | None) -> str:
+def _is_whole(mutants: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int) -> bool:
+    """Whether each mutant has an outcome in each round; those of ladders need not be run."""
+    known = {(outcome.mutant, outcome.round) for outcome in outcomes}
+    alone = (mutant.id for mutant in mutants if mutant.family != GRADED)
+    return all((name, round) in known for name in alone for round in range(rounds))
+
+
+def _state(journal: JournalReader, shard: ShardOf | None, *, is_whole: bool) -> str:
     state = journal.finished or ("running" if is_written(journal.path) else "killed")
+    if state == "complete" and not is_whole and (shard is None or shard.of == 1):
+        return INCOMPLETE
     if shard is None or shard.of == 1:
         return state
     # a part of a campaign is never complete, whatever has become of it

@@ -36,6 +36,13 @@ def to_data(value: Any) -> Any:
     return value
 
 
+def shallow(value: Any) -> dict[str, Any]:
+    """The fields of a dataclass that are not None, as they are."""
+    kind: Any = type(value)
+    names = _names(kind) or ()
+    return {name: item for name in names if (item := getattr(value, name)) is not None}
+
+
 @cache
 def _names(kind: type[Any]) -> tuple[str, ...] | None:
     """The fields of a dataclass; None for any other type."""
@@ -45,7 +52,8 @@ def _names(kind: type[Any]) -> tuple[str, ...] | None:
 def from_data(kind: type[T], data: Any) -> T:
     """The value of type ``kind`` that ``to_data`` turned into ``data``.
 
-    Raises TypeError for data that does not fit, which can only be a fault of our own.
+    Raises TypeError, ValueError, KeyError or OverflowError for data that does not fit: what another process
+    says may be anything.
     """
     anything: Any = kind
     result: T = _decoder(anything)(data)
@@ -62,21 +70,49 @@ def _decoder(kind: Any) -> Decoder:
     if origin in (tuple, list):
         return _sequence_decoder(origin, arguments)
     if origin is not None and issubclass(origin, Mapping):
-        item = _decoder(arguments[1])
-        return lambda data: {key: item(value) for key, value in data.items()}
+        return _mapping_decoder(_decoder(arguments[1]))
     if isinstance(kind, type) and is_dataclass(kind):
         return _dataclass_decoder(kind)
     if isinstance(kind, type) and issubclass(kind, Enum):
         return kind
-    return _float if kind is float else _as_it_is
+    return _PLAIN_DECODERS.get(kind, _as_it_is)
 
 
 def _as_it_is(data: Any) -> Any:
     return data
 
 
+def _unfit(data: Any, wanted: str) -> TypeError:
+    return TypeError(f"{wanted} was expected, not {type(data).__name__}")
+
+
+def _str(data: Any) -> Any:
+    if isinstance(data, str):
+        return data
+    raise _unfit(data, "a text")
+
+
+def _bool(data: Any) -> Any:
+    if data is True or data is False:
+        return data
+    raise _unfit(data, "true or false")
+
+
+def _int(data: Any) -> Any:
+    if isinstance(data, int) and data is not True and data is not False:
+        return data
+    raise _unfit(data, "a whole number")
+
+
 def _float(data: Any) -> Any:
-    return float(data) if isinstance(data, int) else data
+    if isinstance(data, float):
+        return data
+    if isinstance(data, int) and data is not True and data is not False:
+        return float(data)
+    raise _unfit(data, "a number")
+
+
+_PLAIN_DECODERS: dict[Any, Decoder] = {str: _str, bool: _bool, int: _int, float: _float}
 
 
 def _optional(decode: Decoder) -> Decoder:
@@ -86,15 +122,34 @@ def _optional(decode: Decoder) -> Decoder:
 def _sequence_decoder(origin: Any, arguments: tuple[Any, ...]) -> Decoder:
     if origin is tuple and (len(arguments) != 2 or arguments[1] is not Ellipsis):
         items = [_decoder(kind) for kind in arguments]
-        return lambda data: tuple(decode(value) for decode, value in zip(items, data, strict=True))
+        return lambda data: tuple(decode(value) for decode, value in zip(items, _list(data), strict=True))
     item = _decoder(arguments[0])
-    return origin if item is _as_it_is else lambda data: origin(map(item, data))
+    if item is _as_it_is:
+        return lambda data: origin(_list(data))
+    return lambda data: origin(map(item, _list(data)))
+
+
+def _list(data: Any) -> Any:
+    if isinstance(data, list | tuple):
+        return data
+    raise _unfit(data, "a list")
+
+
+def _mapping_decoder(item: Decoder) -> Decoder:
+    def decode(data: Any) -> Any:
+        if not isinstance(data, dict):
+            raise _unfit(data, "an object")
+        return {key: item(value) for key, value in data.items()}
+
+    return decode
 
 
 def _dataclass_decoder(kind: Any) -> Decoder:
     def decode(data: Any) -> Any:
-        decoders, values = _fields(kind)  # not before now: a class may refer to itself
-        values = dict(values)
+        if not isinstance(data, dict):
+            raise _unfit(data, "an object")
+        decoders, left_out = _fields(kind)  # not before now: a class may refer to itself
+        values: dict[str, Any] = {name: None for name in left_out if name not in data}
         for name, value in data.items():
             values[name] = decoders[name](value)
         return kind(**values)
@@ -103,12 +158,17 @@ def _dataclass_decoder(kind: Any) -> Decoder:
 
 
 @cache
-def _fields(kind: type[Any]) -> tuple[dict[str, Decoder], dict[str, None]]:
-    """The decoders of all fields, and those without a default: they are missing when they were None."""
-    decoders = {name: _decoder(hint) for name, hint in get_type_hints(kind).items()}
-    left_out = {
-        field.name: None
+def _fields(kind: type[Any]) -> tuple[dict[str, Decoder], tuple[str, ...]]:
+    """The decoders of all fields, and those without a default that may be None: they are left out then."""
+    hints = get_type_hints(kind)
+    decoders = {name: _decoder(hint) for name, hint in hints.items()}
+    left_out = tuple(
+        field.name
         for field in fields(kind)
-        if field.default is MISSING and field.default_factory is MISSING
-    }
+        if field.default is MISSING and field.default_factory is MISSING and _may_be_none(hints[field.name])
+    )
     return decoders, left_out
+
+
+def _may_be_none(hint: Any) -> bool:
+    return hint is Any or type(None) in get_args(hint)

@@ -15,6 +15,7 @@ from pathlib import Path
 from mutabot.model.alternative import Choice, Instrumentation
 from mutabot.model.mutant import Mutant
 from mutabot.model.operation import Vocabulary
+from mutabot.model.site import Span
 
 from .codec import from_data, to_data
 
@@ -35,6 +36,21 @@ class Budget:
 
     operations: int | None = None
     simulated: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RefusedAt:
+    """The calls of one site that the robot refuses in the original, in one test.
+
+    Attributes:
+        span, operation, pattern: the site, and what is called there.
+        numbers: of these calls among all of the site in the test, from 1.
+    """
+
+    span: Span
+    operation: str
+    pattern: str | None
+    numbers: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +116,11 @@ class Job:
         instrumentation: what to put into the program text; None to leave it alone.
         private_files: whether the process is to keep to itself what it does to files.
         oracle_nodes: resolved names of the tests' own nodes, in which ``*`` stands for any text.
+        refused: the calls that the robot refuses in the original, by node id: a mutant that is refused there
+            as well is judged by its tests.
         evidence: whether to record what the world does while tests run.
         pictures: which test is filmed; None for none.
+        key: of the seals on its report lines, see ``frame``.
     """
 
     root: str
@@ -123,8 +142,10 @@ class Job:
     instrumentation: Instrumentation | None = None
     private_files: bool = True
     oracle_nodes: tuple[str, ...] = ()
+    refused: Mapping[str, tuple[RefusedAt, ...]] = field(default_factory=dict)
     evidence: bool = False
     pictures: Pictures | None = None
+    key: str = ""
 
 
 def job_file(home: str | os.PathLike[str]) -> Path:

@@ -15,13 +15,18 @@ from .test_end import TestEnd
 
 @dataclass(frozen=True, slots=True)
 class SiteSeen:
-    """A site was reached for the first time in this session; traces refer to it by ``index``."""
+    """A site was reached for the first time in this session; traces refer to it by ``index``.
+
+    ``direct`` is whether the call that stands there is that of the operation itself, rather than of something
+    that leads to it; only the baseline finds out.
+    """
 
     index: int
     span: Span
     operation: str
     pattern: str | None
     oracle: bool
+    direct: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +140,7 @@ class BranchDied:
         test: the test it was in.
         exit_code: its exit code, negative for a signal.
         overdue: which wall-clock limit it exceeded, in words, or None.
+        hindered, is_starved: as in ``Result``.
         where: where it was then, if that is known.
     """
 
@@ -143,6 +149,8 @@ class BranchDied:
     exit_code: int
     overdue: str | None = None
     where: str | None = None
+    hindered: str | None = None
+    is_starved: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,6 +259,17 @@ class SessionEnd:
     not_private: str | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Untrusted:
+    """What a process reports cannot be relied on: said of it by whoever reads its pipe.
+
+    Attributes:
+        reason: in words.
+    """
+
+    reason: str
+
+
 Line = (
     SiteSeen
     | TestStart
@@ -273,10 +292,11 @@ Line = (
     | Copied
     | CopyEnded
     | SessionEnd
+    | Untrusted
 )
 
-
-_LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Line)}
+#: the kinds of line by their names
+LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Line)}
 
 
 def line_to_data(line: Line) -> dict[str, Any]:
@@ -286,7 +306,12 @@ def line_to_data(line: Line) -> dict[str, Any]:
 
 
 def line_from_data(data: dict[str, Any]) -> Line:
-    """The report line in such data. Raises KeyError for a type that is not known."""
-    kind = _LINES[data["type"]]
+    """The report line in such data.
+
+    Raises KeyError for a type that is not known, TypeError or ValueError for data that does not fit it.
+    """
+    if not isinstance(data, dict):
+        raise TypeError(f"a report line is an object, not {type(data).__name__}")
+    kind = LINES[data["type"]]
     line: Line = from_data(kind, {key: value for key, value in data.items() if key != "type"})
     return line

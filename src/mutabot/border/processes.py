@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, get_args
 
-from .codec import from_data, to_data
+from .codec import from_data
 from .lines import MutatedCall, NotInstrumented, Problem, Remark, SiteSeen, TextsSeen
 
 #: the folder of these files, in the home of the test process
@@ -67,6 +67,23 @@ class Called:
     written: Any
     read: Any
     answer: Any = None
+
+
+@dataclass(frozen=True, slots=True)
+class RefusedCall:
+    """The robot refused a call of the original: its site, and its number there in this process, from 1."""
+
+    test: int
+    site: int
+    number: int
+
+
+@dataclass(frozen=True, slots=True)
+class Live:
+    """A call of the original returned the robot's own memory: its site."""
+
+    test: int
+    site: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,6 +184,8 @@ Entry = (
     | Node
     | SiteSeen
     | Called
+    | RefusedCall
+    | Live
     | Did
     | MutatedCall
     | Places
@@ -185,20 +204,14 @@ Entry = (
 _ENTRIES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Entry)}
 
 
-def entry_to_data(entry: Entry) -> dict[str, Any]:
-    """JSON-like data of an entry, with its type."""
-    data: dict[str, Any] = to_data(entry)
-    return {"type": type(entry).__name__, **data}
-
-
 def entry_of(line: bytes | str) -> Entry | None:
-    """The entry in a line; None for one that was not written to its end."""
+    """The entry in a line; None for one that was not written to its end, or is none."""
     try:
         data = json.loads(line)
-    except ValueError:
+        kind = _ENTRIES[data.pop("type")]
+        entry: Entry = from_data(kind, data)
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
         return None
-    kind = _ENTRIES[data.pop("type")]
-    entry: Entry = from_data(kind, data)
     return entry
 
 
@@ -206,9 +219,16 @@ def tests_in(folder: Path) -> list[str]:
     """Node ids of the tests by their numbers; the empty one stands for before any."""
     try:
         text = (folder / TESTS).read_text(encoding="utf-8")
-    except OSError:
+        return ["", *(str(json.loads(line)) for line in text.splitlines())]
+    except (OSError, ValueError):
         return [""]
-    return ["", *(json.loads(line) for line in text.splitlines())]
+
+
+def _bytes_of(file: Path) -> bytes:
+    try:
+        return file.read_bytes() if file.is_file() else b""
+    except OSError:  # somebody has deleted it, or nobody may read it
+        return b""
 
 
 def acted_in(home: Path) -> list[str]:
@@ -217,11 +237,11 @@ def acted_in(home: Path) -> list[str]:
     tests = tests_in(folder)
     found: dict[str, None] = {}
     for file in sorted(folder.glob(f"*{SUFFIX}")):
-        for line in file.read_bytes().splitlines():
+        for line in _bytes_of(file).splitlines():
             if not line.startswith((b'{"type":"Did"', b'{"type":"MutatedCall"')):
                 continue
             match entry_of(line):
-                case Did(acted=acted, test=test) if acted:
+                case Did(acted=acted, test=test) if acted and 0 <= test < len(tests):
                     found[tests[test]] = None
                 case MutatedCall(began=True, test=name):
                     found[name] = None

@@ -14,7 +14,7 @@ import socket
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -135,15 +135,17 @@ class Starter:
         subprocess._fork_exec = fork_exec  # type: ignore[attr-defined]
 
     @contextmanager
-    def at_work(self) -> Iterator[None]:
-        """Take it over for a moment."""
+    def at_work(self, before: Sequence[str] = ()) -> Iterator[None]:
+        """Take it over for a moment. What goes the plain way gets these words before its command line."""
         import subprocess  # noqa: PLC0415
 
         module: Any = subprocess
         plain = module._fork_exec
+        program = (os.fsencode(before[0]),) if before else None
 
-        def fork_exec(*arguments: Any) -> int:
-            return self.fork_exec(plain, *arguments)
+        def fork_exec(command: list[Any], executables: Any, *arguments: Any) -> int:
+            pid = self.start((command, executables, *arguments))
+            return plain([*before, *command], program or executables, *arguments) if pid is None else pid
 
         module._fork_exec = fork_exec
         try:

@@ -26,9 +26,14 @@ class TestEnd:
         message: first lines of the exception's text.
         place: ``file:line`` where the failure was noticed.
         timeout: which limit was exceeded, or None.
+        hindered: why the limit of wall clock that it exceeded says little, as the machine was busy, in words;
+            else None.
         failure: the simulator's failure, or None.
         invalid: whether the mutated call rejected its arguments' types.
         refused: text of the refusal of a mutated call, or None.
+        refused_calls: in the baseline, the calls that the robot refused: site index, and the call's number
+            among those of its site, from 1.
+        live: in the baseline, indexes of sites that returned the robot's own memory, not a copy of it.
         caught: whether the program handled that refusal, so that the test ended for another reason.
         hits: calls at the mutant's site (with its operation and pattern).
         acted: hits at which the mutant changed something.
@@ -73,6 +78,8 @@ class TestEnd:
     failure: str | None = None
     invalid: bool = False
     refused: str | None = None
+    refused_calls: tuple[tuple[int, int], ...] = ()
+    live: tuple[int, ...] = ()
     caught: bool = False
     hits: int = 0
     acted: int = 0
@@ -97,6 +104,7 @@ class TestEnd:
     checks: tuple[Check, ...] = ()
     more_checks: int = 0
     recording: str | None = None
+    hindered: str | None = None
 
     @property
     def lasting(self) -> str:

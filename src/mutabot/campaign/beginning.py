@@ -18,6 +18,7 @@ from mutabot.campaign.plan.sampling import draw
 from mutabot.campaign.plan.second_order import pairs
 from mutabot.campaign.plan.selection import select
 from mutabot.campaign.plan.typos import refuse_typos
+from mutabot.campaign.workers.descriptors import provide
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Result
@@ -42,7 +43,11 @@ def open_executor(request: Request, progress: Progress) -> AbstractContextManage
 
 @contextmanager
 def at_it(request: Request, progress: Progress) -> Iterator[Executor]:
-    """The same, while the project is locked and Ctrl-C takes effect where it is safe."""
+    """The same, while the project is locked and Ctrl-C takes effect where it is safe.
+
+    Raises UsageError if the system allows too few open files.
+    """
+    provide(request.jobs, served=request.pause is not None)
     with (
         interruptions_kept(),
         at_work(request.journal_path.parent),

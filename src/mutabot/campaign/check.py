@@ -7,10 +7,14 @@ from collections.abc import Collection, Iterator, Sequence
 
 from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.cluster.shipping import Shipment
+from mutabot.campaign.cluster.telling import check_lines
 from mutabot.campaign.engines.choice import try_controls
 from mutabot.campaign.engines.engine import Remainder
 from mutabot.campaign.plan.planned import Plan
+from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.families import CATALOGUE
+from mutabot.journal.tracked import refuse_tracked
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.named import MAIN
 from mutabot.operators import load_all
@@ -23,12 +27,19 @@ from .request import CheckReport, Progress, Request
 
 def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running mutants."""
+    refuse_tracked(request.journal_path)
+    shipment = Shipment.of_configuration(request.configuration) if request.configuration.cluster else None
     with at_it(request, progress) as opened:
-        campaign, _ = begin(request, opened, progress)
+        with OpenedFiles(request.root, shipment.folders_left_out if shipment is not None else ()) as watch:
+            campaign, _ = begin(request, opened, progress)
         plan = plan_of(request, campaign.baseline)
         mutants = selected(campaign, plan).mutants
         controls, remainder = try_controls(campaign, mutants)
-    return _report(campaign, plan, mutants, controls, remainder)
+    report = _report(campaign, plan, mutants, controls, remainder)
+    if shipment is None:
+        return report
+    lines, data = check_lines(shipment, watch.opened)
+    return CheckReport([*report.lines, *lines], {**report.data, "cluster": data})
 
 
 def _report(

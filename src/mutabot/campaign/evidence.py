@@ -8,8 +8,10 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 from mutabot.border.test_end import TestEnd
+from mutabot.errors import JournalError
 from mutabot.evidence.divergence import Seen, diverged, noise_between
 from mutabot.evidence.recording import bytes_of, from_bytes
+from mutabot.journal.fitting import UNFIT
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model import Diverged, Mutant
 
@@ -30,10 +32,12 @@ class Evidence:
 
     Attributes:
         problems: what could not be recorded, one line each.
+        is_lost: whether the recordings cannot be used any more.
     """
 
     recordings: Recordings
     problems: dict[str, None] = field(default_factory=dict)
+    is_lost: bool = False
     _noise: dict[tuple[int, str], Mapping[str, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -73,7 +77,22 @@ class Evidence:
     def take(
         self, mutant: str, round: int, ends: Iterable[TestEnd], *, survived: bool
     ) -> tuple[Diverged, ...]:
-        """Keep what differs of a mutant's tests. Returns how it does, the worst first."""
+        """Keep what differs of a mutant's tests. Returns how it does, the worst first.
+
+        Recordings that cannot be read or written any more, whoever has spoiled them, cost no outcome.
+        """
+        if self.is_lost:
+            return ()
+        try:
+            return self._take(mutant, round, ends, survived=survived)
+        except (JournalError, *UNFIT) as error:
+            self.is_lost = True
+            self.problems[f"nothing is recorded any more from mutant {mutant} on: {error}"] = None
+            return ()
+
+    def _take(
+        self, mutant: str, round: int, ends: Iterable[TestEnd], *, survived: bool
+    ) -> tuple[Diverged, ...]:
         found = []
         self.recordings.forget(mutant, round)
         for end in ends:

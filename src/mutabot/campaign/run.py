@@ -16,6 +16,8 @@ from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.program_text import family_of
 from mutabot.campaign.budget.budget import OUT_OF_TIME, run_within
+from mutabot.campaign.cluster.shipping import Shipment
+from mutabot.campaign.cluster.telling import lacking
 from mutabot.campaign.engines.choice import first_engine, run_mutants
 from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
@@ -39,7 +41,7 @@ from mutabot.campaign.workers.task import Result
 from mutabot.errors import JournalError
 from mutabot.journal.journal import Journal
 from mutabot.journal.reader import JournalReader
-from mutabot.journal.records import DRAWING, DRAWS, OPERATORS, REACHING, REMARKS
+from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS
 from mutabot.model import LeftOut, Mutant
 
 from .beginning import at_it, begin, plan_of, selected
@@ -48,6 +50,8 @@ from .evidence import Evidence, recorded, without_recording
 from .request import Progress, Request
 from .sink import Sink
 
+#: rows that could not be stored, as far as they are told one by one
+_UNSTORED = 5
 #: what else decides how a campaign ends, beside the user's own files
 _VERSIONS = ("pytest", "wrapt", "mujoco", "mink", "ruckig", "numpy", "pytest-bdd")
 
@@ -74,15 +78,17 @@ def run_campaign(request: Request, progress: Progress) -> Path:
             ):
                 others = [stack.enter_context(one) for one in open_others(request, progress)]
                 try:
-                    is_whole = _run(request, opened, progress, journal, others, evidence)
+                    end = _run(request, opened, progress, journal, others, evidence)
                 finally:
                     _remember(journal, opened)
             journal.set_meta("seconds", request.clock() - started)
-            journal.finish("complete" if is_whole else OUT_OF_TIME)
+            journal.finish(end)
         except BaseException as error:
             with suppress(JournalError):  # on a full disk not even this can be written
                 journal.finish(_reason(error))
             raise
+        finally:
+            _note_others(journal, progress)
     return request.journal_path
 
 
@@ -93,18 +99,19 @@ def _run(
     journal: Journal,
     others: Sequence[JournalReader],
     evidence: Evidence | None,
-) -> bool:
-    """Returns whether all was run: a budget may end before."""
+) -> str:
+    """Returns how it ended: a budget may end before all was run."""
     started = request.clock()
     revision = Revision.find(request.root, request.since) if request.since is not None else None
     before = Snapshot.take(request.root)
     with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress, evidence)
+    _note_lacking(request, watch.opened, progress)
     baseline = campaign.baseline
     whole = plan_of(request, baseline)
     plan = selected(campaign, whole)
     part = part_of(plan, request.shard, baseline)
-    _write_beginning(journal, request, results, plan, whole)
+    _write_beginning(journal, request, results, plan, whole, progress)
     write_shard(journal, request.shard, part)
     if request.fresh:
         journal.forget(mutant.id for mutant in part.mutants)
@@ -123,8 +130,8 @@ def _run(
     edited = after.edited_programs(before)
     if edited:
         progress.note(f"{_listed(edited)} changed during the baseline: no outcome is reused, now or later")
-        sink = Sink(journal)
-        return _run_all(campaign, part, sink, Reused(), started)
+        is_whole = _run_all(campaign, part, Sink(journal), Reused(), started)
+        return _end(journal, part, request, progress, is_whole=is_whole)
     state = State.now(request, before, after, watch.opened)
     dependencies = Dependencies(request, baseline, _collected(results), state)
     journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
@@ -142,7 +149,33 @@ def _run(
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
     _tidy(request, journal, whole, found.presumed.values())
-    return is_whole
+    return _end(journal, part, request, progress, is_whole=is_whole)
+
+
+def _end(journal: Journal, part: Plan, request: Request, progress: Progress, *, is_whole: bool) -> str:
+    """How the campaign has ended, by what is in the journal. What could not be stored is told."""
+    known = journal.rounds_known()
+    for text in journal.unstored[:_UNSTORED]:
+        progress.note(f"the journal cannot hold this row: {text}")
+    if len(journal.unstored) > _UNSTORED:
+        progress.note(f"nor can it hold {len(journal.unstored) - _UNSTORED} more rows")
+    if not is_whole:
+        return OUT_OF_TIME
+    alone, _ = apart(part.mutants)  # of ladders, not every mutant is run
+    is_known = all(known.get(mutant.id, 0) >= request.rounds for mutant in alone)
+    return "complete" if is_known and not journal.unstored else INCOMPLETE
+
+
+def _note_others(journal: Journal, progress: Progress) -> None:
+    """Say what others did to the journal while the campaign ran."""
+    if journal.lost:
+        times = f", {len(journal.lost)} times" if len(journal.lost) > 1 else ""
+        progress.note(
+            f"the journal {journal.lost[0]} while the campaign ran{times}: it was written again, nothing is "
+            "lost. Does a test, or a mutant of the program, delete or replace files in .mutabot?"
+        )
+    for line in journal.altered:
+        progress.note(f"the journal was changed by something else and was restored: {line}")
 
 
 def _remember(journal: Journal, opened: Executor) -> None:
@@ -244,10 +277,21 @@ def plan_only(request: Request, progress: Progress) -> tuple[list[Mutant], list[
 
 
 def _write_beginning(
-    journal: Journal, request: Request, results: Sequence[Result], plan: Plan, whole: Plan
+    journal: Journal,
+    request: Request,
+    results: Sequence[Result],
+    plan: Plan,
+    whole: Plan,
+    progress: Progress,
 ) -> None:
     """From here on the journal is that of this campaign."""
     journal.begin(_meta(request))
+    if journal.set_aside:
+        count = len(journal.set_aside)
+        progress.note(
+            f"{count} {'row' if count == 1 else 'rows'} in the journal, such as {journal.set_aside[0]}, "
+            "mutabot had not written, or they were damaged: nothing of them is reused"
+        )
     for result in results:
         for end in result.ends:
             journal.add_test(result.task.key.round, result.task.key.repetition, without_recording(end))
@@ -263,6 +307,14 @@ def _write_beginning(
     journal.set_known((mutant, True) for mutant in carried)
     if plan.drawing is not None:
         journal.set_meta(DRAWING, to_data(plan.drawing))
+
+
+def _note_lacking(request: Request, opened: Collection[str] | None, progress: Progress) -> None:
+    """Name what tests need and workers will not have, before anything is sent."""
+    if request.cluster is not None:
+        missed = lacking(Shipment.of_configuration(request.configuration), opened)
+        if missed is not None:
+            progress.note(missed)
 
 
 def _note_unstable(baseline: Baseline, progress: Progress) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 import traceback
 from collections.abc import Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +16,7 @@ import typer
 
 from mutabot.errors import MutabotError
 from mutabot.exit_codes import ExitCode
+from mutabot.limits import shortened
 
 from . import campaign, init, replay, report, results, suggest, thresholds
 from .gone import gone
@@ -23,6 +25,8 @@ from .merging import merge
 from .options import Version
 from .termination import terminated_like_ctrl_c
 
+#: signs of a message about the command line
+_LONGEST = 400
 _SETUP, _LOOK, _RUN = "Set up", "Look at results", "Run"
 
 app = typer.Typer(
@@ -84,20 +88,21 @@ def _code_of(arguments: Sequence[str]) -> int:
         typer.echo(f"mutabot: {error}", err=True)
         return error.exit_code
     except Exception as error:
-        return _usage_or_crash(error)
+        return _usage_or_crash(error, arguments)
     return code if isinstance(code, int) else ExitCode.FINE  # typer itself makes INTERRUPTED of Ctrl-C
 
 
-def _usage_or_crash(error: Exception) -> int:
+def _usage_or_crash(error: Exception, arguments: Sequence[str]) -> int:
     show = getattr(error, "show", None)
     if callable(show) and hasattr(error, "exit_code"):  # the parser's own errors, for a wrong command line
         if (told := gone(error)) is not None:
             typer.echo(f"mutabot: {told}", err=True)
             return ExitCode.USAGE
+        error.message = shortened(str(getattr(error, "message", "")), _LONGEST)  # type: ignore[attr-defined]
         show()
         return ExitCode.USAGE
     text = "".join(traceback.format_exception(error))
-    file = Path(".mutabot", "crash.txt")
+    file = _project(arguments) / ".mutabot" / "crash.txt"
     try:
         file.parent.mkdir(exist_ok=True)
         file.write_text(text, encoding="utf-8")
@@ -106,6 +111,20 @@ def _usage_or_crash(error: Exception) -> int:
         file = Path("the lines above")
     typer.echo(f"mutabot: internal error ({type(error).__name__}: {error}); details are in {file}", err=True)
     return ExitCode.INTERNAL_ERROR
+
+
+def _project(arguments: Sequence[str]) -> Path:
+    """The project of a command line that may be wrong elsewhere."""
+    for word, following in zip_longest(arguments, arguments[1:], fillvalue=""):
+        if word in ("-C", "--project"):
+            return Path(following)
+        if word.startswith("--project="):
+            return Path(word.removeprefix("--project="))
+        if word.startswith("-C"):
+            return Path(word.removeprefix("-C"))
+        if not word.startswith("-"):
+            break  # the command: the project stands before it
+    return Path()
 
 
 if __name__ == "__main__":

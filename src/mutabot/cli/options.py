@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from mutabot import __version__
+from mutabot import __version__, limits
 from mutabot.families import FAMILIES
 
 _KINDS = Path(__file__).parent.parent / "campaign" / "engines" / "kinds"
@@ -19,6 +20,12 @@ def _print_version(wanted: bool) -> None:
     if wanted:
         typer.echo(f"mutabot {__version__}")
         raise typer.Exit
+
+
+def _number(value: float | None) -> float | None:
+    if value is not None and math.isnan(value):
+        raise typer.BadParameter("nan is no number")
+    return value
 
 
 Version = Annotated[
@@ -63,11 +70,17 @@ Sample = Annotated[
     ),
 ]
 Rounds = Annotated[
-    int | None, typer.Option("--rounds", metavar="N", min=1, help="Repetitions, each with its own seeds.")
+    int | None,
+    typer.Option(
+        "--rounds", metavar="N", min=1, max=limits.ROUNDS, help="Repetitions, each with its own seeds."
+    ),
 ]
-Seed = Annotated[int | None, typer.Option("--seed", metavar="N", min=0, help="The campaign's seed.")]
+Seed = Annotated[
+    int | None, typer.Option("--seed", metavar="N", min=0, max=limits.SEED, help="The campaign's seed.")
+]
 Jobs = Annotated[
-    int | None, typer.Option("-j", "--jobs", metavar="N", min=1, help="Number of parallel runs.")
+    int | None,
+    typer.Option("-j", "--jobs", metavar="N", min=1, max=limits.JOBS, help="Number of parallel runs."),
 ]
 Engine = Annotated[
     str,
@@ -118,10 +131,13 @@ Verify = Annotated[
         "--verify",
         metavar="N",
         min=0,
+        max=limits.VERIFIED,
         help="Re-run N random outcomes in fresh processes; exit with 4 if one ends differently.",
     ),
 ]
-Round = Annotated[int | None, typer.Option("--round", metavar="N", min=1, help="Only this round.")]
+Round = Annotated[
+    int | None, typer.Option("--round", metavar="N", min=1, max=limits.ROUNDS, help="Only this round.")
+]
 Cluster = Annotated[
     str | None,
     typer.Option(
@@ -141,6 +157,7 @@ MinScore = Annotated[
         metavar="PERCENT",
         min=0,
         max=100,
+        callback=_number,
         help="Exit with 1 if a score is under this many percent.",
     ),
 ]

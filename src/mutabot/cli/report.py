@@ -176,7 +176,7 @@ def _changes(campaign: StoredCampaign, journal: Path, old: Path) -> Changes:
     from mutabot.analysis.stored.campaign import journal_at
     from mutabot.analysis.stored.campaign import open as open_campaign
     from mutabot.analysis.stored.changes import changes
-    from mutabot.journal.succession import previous_of
+    from mutabot.journal.files import previous_of
     from mutabot.report.shaping.portable import portable
 
     other = journal_at(old)

@@ -88,7 +88,8 @@ def _cluster(configuration: Configuration, address: str) -> ClusterSettings:
 
     if address.startswith(("tcp://", "local:")):
         return cluster_settings(address)
-    files = {name: str(configuration.root / file) for name, file in configuration.cluster.items()}
+    table, root = configuration.cluster, configuration.root
+    files = {name: str(root / table[name]) for name in ("ca", "cert", "key") if name in table}
     return cluster_settings(address, ca=files.get("ca"), cert=files.get("cert"), key=files.get("key"))
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mutabot import limits
 from mutabot.errors import NothingToDoError, UsageError
 from mutabot.journal.files import find_journal
 
@@ -29,7 +30,11 @@ Write = Annotated[
 Seeds = Annotated[
     int,
     typer.Option(
-        "--seeds", metavar="N", min=5, help="Fresh seeds for the tolerances, and as many for the proof."
+        "--seeds",
+        metavar="N",
+        min=5,
+        max=limits.SEEDS,
+        help="Fresh seeds for the tolerances, and as many for the proof.",
     ),
 ]
 

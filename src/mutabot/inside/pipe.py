@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import fcntl
-import json
 import os
 from typing import Any, Protocol
 
-from mutabot.border.lines import Line, line_to_data
+from mutabot.border.frame import framed
+from mutabot.border.lines import Line
 
 
 class Sink(Protocol):
@@ -25,19 +25,18 @@ class Pipe:
 
     Args:
         descriptor: the writing end.
+        key: of the seals on the lines.
         lock: descriptor of a file to lock while writing, where a trunk and its branches share the pipe.
     """
 
-    def __init__(self, descriptor: int, lock: int | None = None) -> None:
+    def __init__(self, descriptor: int, key: str = "", lock: int | None = None) -> None:
         self.descriptor = descriptor
-        self._lock = lock
+        self._key, self._lock = key, lock
         os.set_inheritable(descriptor, False)
 
     def send(self, line: Line) -> None:
         """Write one line."""
-        text = json.dumps(line_to_data(line), default=plain, separators=(",", ":"))
-        # The line break before it ends what a process that was killed while writing left unfinished.
-        data = b"\n" + text.encode() + b"\n"
+        data = framed(line, self._key, plain)
         if self._lock is None:
             self._write(data)
             return

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE
+from mutabot.inside.node_ids import node_id
 from mutabot.inside.suite.any_scope import offer_at_every_scope
 from mutabot.model.seed import ROUND_VARIABLE, SEED_VARIABLE
 
@@ -102,7 +103,7 @@ def _mutabot_class_seed(request: pytest.FixtureRequest) -> int:
 def _seed(request: pytest.FixtureRequest) -> int:
     seeded = _conductor or _plain_round
     if seeded is not None:
-        return seeded.seed_of(request.node.nodeid)
+        return seeded.seed_of(node_id(request.node))
     return int(os.environ.get(SEED_VARIABLE, "0"))
 
 

@@ -13,11 +13,12 @@ from typing import Any
 
 from mutabot.border.job import Budget, Job
 from mutabot.border.lines import Acted, CalledAtImport, Line, MutatedCall, SiteSeen, TextsSeen
-from mutabot.inside.calls.activation import Activation
+from mutabot.inside.calls.activation import Activation, is_refusal
 from mutabot.inside.calls.answers import Answers, handles_of
 from mutabot.inside.calls.bypasses import Bypasses
 from mutabot.inside.calls.door import Door
 from mutabot.inside.calls.passing import Aside, Passing, is_under_way
+from mutabot.inside.calls.refusing import Made
 from mutabot.inside.calls.trace import Recorder
 from mutabot.inside.fork.bunch import Bunch
 from mutabot.inside.fork.trunk import Trunk
@@ -31,7 +32,7 @@ from mutabot.inside.targets.interception import Interception
 from mutabot.inside.targets.target import Finding, Handler
 from mutabot.inside.text.returns import Returns
 from mutabot.inside.text.session_text import SessionText
-from mutabot.model import Call, Moment, Mutant, Operation, Probe, Role, Span
+from mutabot.model import Moment, Mutant, Operation, Probe, Role, Span
 from mutabot.model.values.quantity import Value
 
 from .evidence import Evidence, together
@@ -58,6 +59,9 @@ class Session:
         returns: what the program returns to its tests; None if that is not noted.
         recording: what the world does while the test runs.
         test: node id of the running test.
+        refused_calls: in the baseline, calls of the running test that the robot refused: see ``TestEnd``.
+        live: in the baseline, sites that returned the robot's own memory: see ``TestEnd``.
+        on_refused, on_live: told of each of them; None if nobody asks.
         parts: the mutants of which its own consists that changed something in it; that of the text has no
             name.
     """
@@ -78,6 +82,10 @@ class Session:
     text: SessionText | None = None
     returns: Returns | None = None
     test: str = ""
+    refused_calls: list[tuple[int, int]] = field(default_factory=list)
+    live: set[int] = field(default_factory=set)
+    on_refused: Callable[[int, int], None] | None = None
+    on_live: Callable[[int], None] | None = None
     parts: set[str] = field(default_factory=set)
     _doors: list[Door] = field(default_factory=list)
     _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
@@ -141,6 +149,7 @@ class Session:
     def _heard(self, name: str, message: Any) -> None:
         for activation in self.activations:
             activation.heard(name, message)
+        self.passing.refused.heard(name, message)
         for door in self._telling:
             door.hear(name, message)
 
@@ -192,10 +201,16 @@ class Session:
     @property
     def evidence(self) -> Evidence:
         """What the mutant did in the running test."""
+        self.look_back()
         found = [activation.evidence for activation in self.activations]
         if self.text is not None and self.text.is_mutant:
             found.append(self.text.evidence)
         return together(found)
+
+    def look_back(self, *, at_all: bool = False) -> None:
+        """Look whether the program has written to copies that mutants handed out; ``at_all`` of them."""
+        for activation in self.activations:
+            activation.look_back(at_all=at_all)
 
     @property
     def commands(self) -> int:
@@ -233,8 +248,11 @@ class Session:
         if self.text is not None:
             self.text.pipe = pipe
 
-    def start_test(self, test: str) -> None:
-        """A test begins, before its fixtures."""
+    def start_test(self, test: str, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
+        """A test begins, before its fixtures.
+
+        ``fixtures`` tells what objects they hold; None in a process below the tests.
+        """
         self._end_imports()
         self.test = test
         self.parts.clear()
@@ -243,8 +261,13 @@ class Session:
         is_baseline = self.job.record and self.job.mutant is None and self.job.branching is None
         self.recorder.answers = Answers.of(self.job.vocabulary) if is_baseline else None
         self.recorder.start()
-        self.instances.start()
+        self.instances.start(fixtures)
         self.passing.calls.clear()
+        self.refused_calls.clear()
+        self.live.clear()
+        self.passing.on_live = self._is_live if is_baseline else None
+        self.passing.refused.on_refused = self._refused if is_baseline else None
+        self.passing.refused.start(self.job.refused.get(test, ()))
         self.along.start(self.job.moments.get(test, 0))
         if self.returns is not None:
             self.returns.start()
@@ -278,7 +301,9 @@ class Session:
             # all magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger
             name = activation.mutant.ladder or activation.mutant.id
             seed = derive(self.job.seed, self.job.round, self.test, name)
-            activation.start(seed, self.job.round, self.test, self._moment_of(activation.mutant))
+            mutant = activation.mutant
+            usual = self.passing.refused.at(mutant.site.span, mutant.operation, mutant.pattern)
+            activation.start(seed, self.job.round, self.test, self._moment_of(mutant), usual)
 
     def _moment_of(self, mutant: Mutant) -> Moment | None:
         """At which calls of the running test a mutant acts."""
@@ -302,12 +327,13 @@ class Session:
 
     def take_probes(self) -> Reading:
         """Read all probes: at the end of a test, before its fixtures take the world down."""
+        self.look_back(at_all=True)
         if self.returns is not None:
             self.returns.stop()
         self.along.stop()
         self.recording.stop()
         reading, self.rehearsal = rehearse(self._read_probes)
-        self.instances.start()  # what the program is done with may go
+        self.instances.let_go()  # what the program is done with may go
         return reading
 
     def _read_probes(self, *, along: bool = False) -> Reading:
@@ -349,9 +375,32 @@ class Session:
         """Look at every target of the vocabulary, also of what no test has led to."""
         self.inspection.inspect(self.interception)
 
-    def _raised(self, error: BaseException, call: Call) -> None:
-        if self.text is not None:
-            self.text.raised(error, call, self._refusals(call.operation))
+    def _raised(self, error: BaseException, made: Made) -> None:
+        names = self._refusals(made.call.operation)
+        refused = self.passing.refused
+        if refused.on_refused is not None and is_refusal(error, names):
+            refused.on_refused(made)
+        if self.text is not None and not refused.has(made):
+            self.text.raised(error, made.call, names)
+
+    def _refused(self, made: Made) -> None:
+        """The robot refused a call of the original."""
+        self.refused_calls.append((self._index_of(made), made.number))
+        if self.on_refused is not None:
+            self.on_refused(*self.refused_calls[-1])
+
+    def _is_live(self, made: Made) -> None:
+        """A call of the original returned the robot's own memory."""
+        site = self._index_of(made)
+        if site not in self.live and self.on_live is not None:
+            self.on_live(site)
+        self.live.add(site)
+
+    def _index_of(self, made: Made) -> int:
+        (span, role), call = made.site, made.call
+        pattern = call.pattern.text if call.pattern is not None else None
+        seen = SiteSeen(-1, span, call.operation.target, pattern, role is Role.ORACLE)
+        return self.recorder.index_of(seen)
 
     @property
     def _on_end(self) -> Callable[..., None] | None:

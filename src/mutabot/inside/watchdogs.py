@@ -10,6 +10,7 @@ from time import monotonic  # before a simulation takes over the clock
 from typing import TYPE_CHECKING
 
 from mutabot.border.lines import Watched
+from mutabot.inside.node_ids import node_id
 
 if TYPE_CHECKING:
     import pytest  # processes below the tests need none
@@ -37,7 +38,7 @@ def watched(test: str, seconds: float, by: str) -> Watched:
 def watched_by_faulthandler(item: pytest.Item) -> Watched | None:
     """The same for pytest's own limit; None if there is none, or it only prints."""
     seconds, ends = _faulthandler(item.config)
-    return watched(item.nodeid, seconds, "faulthandler_timeout") if seconds > 0 and ends else None
+    return watched(node_id(item), seconds, "faulthandler_timeout") if seconds > 0 and ends else None
 
 
 def drop_idle_watchdog(item: pytest.Item) -> None:

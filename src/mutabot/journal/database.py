@@ -4,27 +4,53 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import RLock, Timer
 from time import monotonic
-from typing import Any
+from typing import Any, Protocol
 
 from mutabot.errors import JournalError
 
 #: seconds after which a row that was added is in the file, and how long it waits: timers may be late
 WITHIN = 1.0
 PATIENCE = WITHIN / 2
+#: what Python raises for values that SQLite cannot take: beyond 64 bits, no UTF-8, of no type that it knows
+_ABOUT_VALUES = (OverflowError, ValueError, TypeError)
+#: what SQLite raises because of one row, and not because of the file
+_OF_ONE_ROW = (sqlite3.DataError, sqlite3.InterfaceError, sqlite3.ProgrammingError, sqlite3.IntegrityError)
+#: characters of a value that are shown
+_SHOWN = 100
+
+
+class Connection(Protocol):
+    """What the journal needs of a connection."""
+
+    @property
+    def in_transaction(self) -> bool: ...
+
+    def execute(self, statement: str, values: tuple[Any, ...] = ..., /) -> sqlite3.Cursor: ...
+
+    def backup(self, target: sqlite3.Connection, /) -> None: ...
+
+    def close(self) -> None: ...
+
+
+def decode(text: bytes) -> str:
+    """Text of a database, also such as is no UTF-8: that is for whoever knows what it should be."""
+    return text.decode("utf-8", "surrogateescape")
 
 
 def connect(path: Path) -> sqlite3.Connection:
     """A connection that writes; the file is made if it does not exist."""
     # The writer may hand the journal from one thread to another; it never uses it from two at once.
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False, timeout=10)
+    connection.text_factory = decode
     # WAL lets readers work beside the writer. NORMAL survives the death of the process; only a power cut
     # can take the last outcomes, and those are simply run again.
     try:
+        connection.execute("PRAGMA trusted_schema = OFF")
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("PRAGMA synchronous = NORMAL")
     except sqlite3.Error:
@@ -53,12 +79,21 @@ def connect_to_read(path: Path) -> tuple[sqlite3.Connection, TemporaryDirectory[
 def _connect_read_only(path: Path) -> sqlite3.Connection:
     uri = f"{path.absolute().as_uri()}?mode=ro"
     connection = sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False, timeout=10)
+    connection.text_factory = decode
     try:
+        connection.execute("PRAGMA trusted_schema = OFF")
         connection.execute("SELECT count(*) FROM sqlite_master")
     except sqlite3.Error:
         connection.close()
         raise
     return connection
+
+
+@contextmanager
+def read_now(path: Path) -> Iterator[sqlite3.Connection]:
+    """A connection that sees what is in the file now."""
+    with closing(_connect_read_only(path)) as connection:
+        yield connection
 
 
 class Batch:
@@ -69,15 +104,17 @@ class Batch:
 
     Attributes:
         lock: to be held by whoever uses the connection.
+        unstored: why rows could not be stored, one line each, though the file can be written.
     """
 
-    def __init__(self, connection: sqlite3.Connection, *, clock: Callable[[], float] = monotonic) -> None:
+    def __init__(self, connection: Connection, *, clock: Callable[[], float] = monotonic) -> None:
         self.lock = RLock()
         self._connection, self._clock = connection, clock
         self._waiting: list[tuple[str, tuple[Any, ...]]] = []
         self._committed = float("-inf")
         self._timer: Timer | None = None
         self._problem: sqlite3.Error | None = None
+        self.unstored: list[str] = []
 
     def add(self, statement: str, *values: Any) -> None:
         """Have a statement carried out. Raises what SQLite did when statements before were."""
@@ -109,7 +146,7 @@ class Batch:
             for statement, values in waiting:
                 self._connection.execute(statement, values)
             self._connection.execute("COMMIT")
-        except sqlite3.Error:
+        except (sqlite3.Error, *_ABOUT_VALUES):
             if self._connection.in_transaction:  # SQLite itself rolls back when the disk is full
                 self._connection.execute("ROLLBACK")
             self._one_by_one(waiting)
@@ -119,6 +156,9 @@ class Batch:
         for statement, values in waiting:
             try:
                 self._connection.execute(statement, values)
+            except (*_OF_ONE_ROW, *_ABOUT_VALUES) as error:
+                what = ", ".join(str(value)[:_SHOWN] for value in values[:2])
+                self.unstored.append(f"{what}: {type(error).__name__}: {error}")
             except sqlite3.Error as error:
                 self._problem = self._problem or error
 

@@ -19,3 +19,8 @@ def find_journal(project: Path) -> Path:
     folders = (project.resolve(), *project.resolve().parents)
     paths = [folder / HOME / JOURNAL for folder in folders]
     return next((path for path in paths if path.is_file()), paths[0])
+
+
+def previous_of(journal: Path) -> Path:
+    """Where the last complete campaign before a journal's is kept: ``journal.previous.sqlite``."""
+    return journal.with_name(f"{journal.stem}.previous{journal.suffix}")

@@ -24,22 +24,22 @@ from mutabot.model import LeftOut, Mutant, Outcome
 from . import merging
 from .database import guarded
 from .lock import WriterLock
+from .marks import Unmarked, remove
 from .reader import JournalReader
-from .records import Row
+from .records import ALTERED, Row
 from .schema import (
     ADOPT,
     ATTEMPT_KEY,
     FINISHED_KEY,
-    KNOWN,
     KNOWN_BEFORE,
     PRESUMED,
     SCHEMA_VERSION,
     TABLES,
-    TEXT,
     VERSION_KEY,
 )
 from .store import Store, dump
 from .succession import keep_copy, make_way
+from .tracked import refuse_tracked
 
 
 class Journal(JournalReader):
@@ -70,6 +70,7 @@ class Journal(JournalReader):
         to version), ``root``, ``seed``, ``rounds``, ``engine``, ``jobs``, ``started``, ``vocabulary`` (what
         ``to_data`` makes of one).
         """
+        refuse_tracked(path)
         with guarded(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             lock = WriterLock.take(path)
@@ -81,6 +82,7 @@ class Journal(JournalReader):
                 raise
             with journal._store.closed_on_error():
                 if is_journal:
+                    journal._store.mark_rows()
                     journal._wait()
                 else:
                     journal._begin(meta, TABLES)
@@ -109,11 +111,31 @@ class Journal(JournalReader):
 
     def _begin(self, meta: Mapping[str, Any], statements: str) -> None:
         with self._store.transaction() as execute:
-            for statement in statements.split(";"):
+            if self._waits:
+                self._set_aside()
+            for statement in filter(str.strip, statements.split(";")):
                 execute(statement)
+            if not self._waits:
+                self._store.mark_rows()
             self._store.put(VERSION_KEY, SCHEMA_VERSION)
             for key, value in meta.items():
                 self._store.put(key, value)
+
+    def _set_aside(self) -> None:
+        """Drop what something else than Mutabot has written, before any of it is believed."""
+        found = Unmarked(self._store.connection)
+        remove(self._store.connection, found)
+        self._store.unmarked = list(found.lines())
+
+    @property
+    def lost(self) -> list[str]:
+        """How often the file was deleted or replaced while it was written, in words; it was written again."""
+        return self._store.lost
+
+    @property
+    def altered(self) -> list[str]:
+        """What somebody else changed in the file meanwhile, in words; it was written again."""
+        return self._store.altered
 
     # What the campaign was and how it ended
 
@@ -126,7 +148,15 @@ class Journal(JournalReader):
 
         If it has not even begun, the journal stays that of the one before, and tells about the attempt.
         """
+        self._store.check()
+        if self._store.altered:
+            self._store.put(ALTERED, [*(self.meta().get(ALTERED) or []), *self._store.altered])
         self._store.put(ATTEMPT_KEY if self._waits else FINISHED_KEY, reason)
+
+    @property
+    def unstored(self) -> tuple[str, ...]:
+        """Why rows of this campaign could not be stored, one line each: all others are."""
+        return self._store.unstored
 
     # The baseline and the plan
 
@@ -207,7 +237,6 @@ class Journal(JournalReader):
     def add_texts(self, texts: Mapping[str, bytes]) -> None:
         """Write down what stands in Python files, by the digest."""
         with self._store.transaction() as execute:
-            execute(TEXT)
             for digest, text in texts.items():
                 execute("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, zlib.compress(text))
 
@@ -220,7 +249,6 @@ class Journal(JournalReader):
     def set_known(self, known: Iterable[tuple[Mutant, bool]]) -> None:
         """Write down the mutants of earlier campaigns that the program still has."""
         with self._store.transaction() as execute:
-            execute(KNOWN)
             execute("DELETE FROM known")
             for mutant, outdated in known:
                 execute("INSERT INTO known VALUES (?, ?, ?)", mutant.id, dump(mutant), int(outdated))
@@ -247,7 +275,6 @@ class Journal(JournalReader):
             for (digest,) in execute("SELECT digest FROM parts").fetchall():
                 if digest not in needed:
                     execute("DELETE FROM parts WHERE digest = ?", digest)
-            execute(TEXT)
             trees = {key.split()[3] for (key,) in keys if len(key.split()) > 3}
             rows = (execute("SELECT data FROM parts WHERE digest = ?", tree).fetchone() for tree in trees)
             texts = {digest for row in rows if row is not None for digest in json.loads(row[0]).values()}

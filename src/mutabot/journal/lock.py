@@ -16,7 +16,8 @@ from mutabot.errors import JournalError
 class WriterLock:
     """Held by the one process that writes a journal; the system gives it back when that process dies."""
 
-    def __init__(self, descriptor: int) -> None:
+    def __init__(self, journal: Path, descriptor: int) -> None:
+        self._journal = journal
         self._descriptor: int | None = descriptor
 
     @classmethod
@@ -30,9 +31,23 @@ class WriterLock:
             except BlockingIOError:
                 time.sleep(0.02)
             else:
-                return cls(descriptor)
+                return cls(journal, descriptor)
         os.close(descriptor)
         raise JournalError(f"{journal} is being written by another `mutabot run`", path=str(journal))
+
+    def renew(self) -> None:
+        """Take it again if its file is gone. Raises JournalError if another process has it by now."""
+        if self._descriptor is None:
+            return
+        try:
+            found = self._journal.with_name(self._journal.name + ".lock").stat()
+        except OSError:
+            found = None
+        held = os.fstat(self._descriptor)
+        if found is None or (found.st_dev, found.st_ino) != (held.st_dev, held.st_ino):
+            other = WriterLock.take(self._journal)
+            os.close(self._descriptor)
+            self._descriptor, other._descriptor = other._descriptor, None
 
     def release(self) -> None:
         """Give the lock back; a second time does nothing."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from .recordings import Recordings
-from .schema import KNOWN, LAST, TABLES
-from .store import Execute, Store
+from .schema import LAST
+from .store import Store
 
 #: what all shards have alike: plan, baseline and sources
 _OF_PLAN = {
@@ -16,8 +15,6 @@ _OF_PLAN = {
     "left_out": "SELECT * FROM left_out ORDER BY rowid",
     "source": "SELECT * FROM source",
 }
-#: the tables that are taken over as below says, or not at all
-_FIRST = set(re.findall(r"CREATE TABLE (?:IF NOT EXISTS )?(\w+)", f"{TABLES}{KNOWN}"))
 _OUTCOMES = f'SELECT mutant, round, verdict, "by", data, key, reused FROM outcome WHERE rowid IN ({LAST})'
 #: the first that comes counts
 _OF_EACH = (
@@ -32,6 +29,7 @@ _OF_EACH = (
         "(SELECT 1 FROM control WHERE test_file = ?1 AND control = ?2 AND ok = ?3)",
     ),
     ("SELECT digest, data FROM parts", "INSERT OR IGNORE INTO parts VALUES (?, ?)"),
+    ("SELECT digest, data FROM text", "INSERT OR IGNORE INTO text VALUES (?, ?)"),
     (
         'SELECT mutant, round, verdict, "by", data, key FROM kept',
         "INSERT OR IGNORE INTO kept VALUES (?, ?, ?, ?, ?, ?)",
@@ -51,19 +49,9 @@ def take_plan(store: Store, other: Store) -> None:
 def take_outcomes(store: Store, other: Store) -> None:
     """What another journal has found, and knows of earlier campaigns, as far as that is not there already."""
     with store.transaction() as execute:
-        execute(KNOWN)
-        for question, statement in (*_OF_EACH, *_later(execute, other)):
+        for question, statement in _OF_EACH:
             for row in other.each(question):
                 execute(statement, *row)
-
-
-def _later(execute: Execute, other: Store) -> Iterator[tuple[str, str]]:
-    """Tables that came after the first version, whatever they hold: what is there under a key stays."""
-    for name, made in other.rows("SELECT name, sql FROM sqlite_master WHERE type = 'table'"):
-        if name not in _FIRST and made:
-            execute(made.replace("CREATE TABLE", "CREATE TABLE IF NOT EXISTS", 1))
-            columns = len(other.rows(f"SELECT name FROM pragma_table_info('{name}')"))
-            yield f"SELECT * FROM {name}", f"INSERT OR IGNORE INTO {name} VALUES ({', '.join('?' * columns)})"
 
 
 def take_recordings(target: Recordings, others: Iterable[Recordings], mutants: Iterable[str]) -> None:

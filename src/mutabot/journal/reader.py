@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import errno
-import json
 import os
-import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -14,6 +14,19 @@ from mutabot.border.codec import from_data
 from mutabot.border.test_end import TestEnd
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
 
+from .fitting import (
+    UNFIT,
+    agreed,
+    fact,
+    inflated,
+    is_round,
+    load,
+    mutant_in,
+    outcome_in,
+    round_in,
+    text_in,
+)
+from .marks import named, word_for
 from .records import BaselineTest, ControlEnd, Kept, Row
 from .schema import ATTEMPT_KEY, FINISHED_KEY, LAST, PRESUMED
 from .store import Store
@@ -30,6 +43,15 @@ class JournalReader:
 
     def __init__(self, store: Store) -> None:
         self.path, self._store = store.path, store
+        self._unfit: dict[str, None] = {}
+
+    @property
+    def set_aside(self) -> list[str]:
+        """Rows that were not written by Mutabot, or that hold what cannot be, in words: nobody believes them.
+
+        What a row holds is looked at when it is read.
+        """
+        return [*self._store.unmarked, *self._unfit]
 
     @staticmethod
     def open(path: Path) -> JournalReader:
@@ -52,8 +74,12 @@ class JournalReader:
 
     def meta(self) -> dict[str, Any]:
         """What the campaign said about itself."""
-        rows = self._store.rows("SELECT key, value FROM meta")
-        return {key: json.loads(value) for key, value in rows if not key.startswith("journal:")}
+        found = {}
+        for key, text in self._store.rows("SELECT key, value FROM meta"):
+            if isinstance(key, str) and not key.startswith("journal:"):
+                with self._checked("meta", key):
+                    found[key] = fact(key, load(text))
+        return {key: value for key, value in found.items() if value is not None}
 
     @property
     def vocabulary(self) -> Vocabulary | None:
@@ -64,8 +90,10 @@ class JournalReader:
     @property
     def finished(self) -> str | None:
         """Why the campaign ended; None while it runs and after it was killed."""
-        found = self._store.fact(FINISHED_KEY)
-        return None if found is None else str(found)
+        with self._checked("meta", FINISHED_KEY):
+            found = self._store.fact(FINISHED_KEY)
+            return None if found is None else str(found)
+        return None
 
     @property
     def attempt(self) -> str | None:
@@ -74,41 +102,77 @@ class JournalReader:
         None if there was no such campaign.
         """
         rows = self._store.rows("SELECT value FROM meta WHERE key = ?", ATTEMPT_KEY)
-        return str(json.loads(rows[0][0]) or "") if rows else None
+        with self._checked("meta", ATTEMPT_KEY):
+            return str(load(rows[0][0]) or "") if rows else None
+        return ""
 
     # The baseline and the plan
 
     def tests(self) -> list[BaselineTest]:
         """The tests of the baseline in the order they were added."""
-        rows = self._store.rows("SELECT round, repetition, data FROM test ORDER BY rowid")
-        return [
-            BaselineTest(round, repetition, from_data(TestEnd, json.loads(data)))
-            for round, repetition, data in rows
-        ]
+        found = []
+        for round, repetition, name, text in self._store.rows(
+            "SELECT round, repetition, test, data FROM test ORDER BY rowid"
+        ):
+            with self._checked("test", name):
+                one = BaselineTest(round_in(round), round_in(repetition), from_data(TestEnd, load(text)))
+                found.append(agreed(one, (one.test.test, name)))
+        return found
 
     def controls(self) -> list[ControlEnd]:
         """The controls in the order they were added."""
-        rows = self._store.rows("SELECT test_file, control, ok, detail FROM control ORDER BY rowid")
-        return [ControlEnd(file, control, bool(ok), detail) for file, control, ok, detail in rows]
+        found = []
+        for row in self._store.rows("SELECT test_file, control, ok, detail FROM control ORDER BY rowid"):
+            with self._checked("control", row[0]):
+                file, control, ok, detail = row
+                texts = [text_in(one) for one in (file, control, detail)]
+                found.append(ControlEnd(texts[0], texts[1], ok == 1, texts[2]))
+        return found
 
     def mutants(self) -> list[Mutant]:
         """The planned mutants by number."""
-        return self._store.read(Mutant, "SELECT data FROM mutant ORDER BY number, rowid")
+        found = []
+        for number, name, text in self._store.rows(
+            "SELECT number, id, data FROM mutant ORDER BY number, rowid"
+        ):
+            with self._checked("mutant", name):
+                one = mutant_in(text)
+                found.append(agreed(one, (one.number, number), (one.id, name)))
+        return found
 
     def left_out(self) -> list[LeftOut]:
         """What the plan leaves out, in its order."""
-        return self._store.read(LeftOut, "SELECT data FROM left_out ORDER BY rowid")
+        found = []
+        for name, text in self._store.rows("SELECT id, data FROM left_out ORDER BY rowid"):
+            with self._checked("left_out", name):
+                one = from_data(LeftOut, load(text))
+                found.append(agreed(one, (one.id, name)))
+        return found
 
     def source(self, file: str) -> str | None:
         """The text of a mutated file at the time of the campaign, or None if it was not written down."""
         rows = self._store.rows("SELECT text FROM source WHERE file = ?", file)
-        return str(rows[0][0]) if rows else None
+        with self._checked("source", file):
+            return text_in(rows[0][0]) if rows else None
+        return None
 
     # Outcomes
 
     def outcomes(self) -> list[Outcome]:
         """The last outcome of each (mutant, round), in the order they came."""
-        return self._store.read(Outcome, f"SELECT data FROM outcome WHERE rowid IN ({LAST}) ORDER BY rowid")
+        return self._outcomes("outcome", f"WHERE rowid IN ({LAST}) ORDER BY rowid")
+
+    def _outcomes(self, table: str, condition: str = "") -> list[Outcome]:
+        found = []
+        rows = self._store.rows(f'SELECT mutant, round, verdict, "by", data FROM {table} {condition}')
+        for mutant, round, verdict, by, text in rows:
+            with self._checked(table, mutant, round):
+                found.append(outcome_in(text, mutant, round, verdict, by))
+        return found
+
+    def rounds_known(self) -> dict[str, int]:
+        """In how many rounds each mutant has an outcome; those without any are missing."""
+        return dict(self._store.rows("SELECT mutant, count(DISTINCT round) FROM outcome GROUP BY mutant"))
 
     def reused(self) -> set[tuple[str, int]]:
         """The mutants and rounds whose outcomes were taken over from an earlier campaign."""
@@ -126,57 +190,75 @@ class JournalReader:
 
     def kept(self) -> dict[tuple[str, int], Kept]:
         """The last outcome of each mutant and round that earlier campaigns found, if it can be reused."""
-        return self._of_rows("SELECT mutant, round, verdict, data, key FROM kept")
+        return self._of_rows("kept", "SELECT mutant, round, verdict, data, key FROM kept")
 
     def found(self) -> dict[tuple[str, int], Kept]:
         """The same, with those that the last campaign itself found or knew."""
         return self.kept() | self._of_rows(
+            "outcome",
             f"SELECT mutant, round, verdict, data, key FROM outcome "
-            f"WHERE rowid IN ({LAST}) AND reused != {PRESUMED}"
+            f"WHERE rowid IN ({LAST}) AND reused != {PRESUMED}",
         )
 
-    def row(self, mutant: str, round: int) -> Row:
-        """One of those that were ``found``."""
+    def row(self, mutant: str, round: int) -> Row | None:
+        """One of those that were ``found``; None if it holds what no outcome can."""
         for table, condition in (("outcome", f"AND reused != {PRESUMED} ORDER BY rowid DESC"), ("kept", "")):
             rows = self._store.rows(
                 f'SELECT verdict, "by", data, key FROM {table} '
                 f"WHERE mutant = ? AND round = ? AND key != '' {condition} LIMIT 1",
                 mutant, round,
             )  # fmt: skip
-            if rows:
-                return Row(mutant, round, *rows[0])
+            for verdict, by, text, key in rows:
+                with self._checked(table, mutant, round):
+                    outcome_in(text, mutant, round, verdict, by)
+                    return Row(mutant, round, verdict, by, text, key)
+                return None
         raise KeyError((mutant, round))
 
-    def _of_rows(self, question: str) -> dict[tuple[str, int], Kept]:
+    def _of_rows(self, table: str, question: str) -> dict[tuple[str, int], Kept]:
         rows = self._store.rows(
             "SELECT mutant, round, key, verdict NOT IN ('error', 'unstable') AND data NOT LIKE ?, verdict "
             f"FROM ({question}) WHERE key != ''",
             f"%{os.strerror(errno.ENOSPC)}%",
         )
-        return {
-            (mutant, round): Kept(key, bool(sound), Verdict(verdict))
-            for mutant, round, key, sound, verdict in rows
-        }
+        found = {}
+        for mutant, round, key, sound, verdict in rows:
+            with self._checked(table, mutant, round):
+                found[text_in(mutant), round_in(round)] = Kept(text_in(key), bool(sound), Verdict(verdict))
+        return found
 
     def kept_outcomes(self) -> list[Outcome]:
         """All that earlier campaigns found, also what cannot be reused."""
-        return self._store.read(Outcome, "SELECT data FROM kept")
+        return self._outcomes("kept")
 
     def known(self) -> list[tuple[Mutant, bool]]:
         """Mutants of earlier campaigns, and whether something has changed since that they depend on."""
-        if not self._store.rows("SELECT 1 FROM sqlite_master WHERE name = 'known'"):
-            return []
-        rows = self._store.rows("SELECT data, outdated FROM known ORDER BY rowid")
-        return [(from_data(Mutant, json.loads(data)), bool(outdated)) for data, outdated in rows]
+        found = []
+        for name, text, outdated in self._store.rows("SELECT id, data, outdated FROM known ORDER BY rowid"):
+            with self._checked("known", name):
+                one = mutant_in(text)
+                found.append((agreed(one, (one.id, name)), outdated != 0))
+        return found
 
     def parts(self, digest: str) -> dict[str, str] | None:
         """What a digest in a key stands for, or None if that is not known any more."""
         rows = self._store.rows("SELECT data FROM parts WHERE digest = ?", digest)
-        return dict(json.loads(rows[0][0])) if rows else None
+        with self._checked("parts", digest):
+            return from_data(dict[str, str], load(rows[0][0])) if rows else None
+        return None
 
     def text(self, digest: str) -> bytes | None:
         """What stood in a Python file with this digest, or None if that is not known any more."""
-        if not self._store.rows("SELECT 1 FROM sqlite_master WHERE name = 'text'"):
-            return None
         rows = self._store.rows("SELECT data FROM text WHERE digest = ?", digest)
-        return zlib.decompress(rows[0][0]) if rows else None
+        with self._checked("text", digest):
+            return inflated(rows[0][0]) if rows else None
+        return None
+
+    @contextmanager
+    def _checked(self, table: str, name: Any, round: Any = None) -> Iterator[None]:
+        """Leave a row that holds what cannot be, and go on with the next."""
+        try:
+            yield
+        except UNFIT:
+            where = f" in round {round + 1}" if is_round(round) else ""
+            self._unfit[f"{word_for(table)} {named(name)}{where}"] = None

@@ -17,6 +17,10 @@ SINCE, BUDGET = "since", "budget"
 SHARD = "shard"
 #: what is to be known of the machines that the campaign ran on, a line each
 REMARKS = "remarks"
+#: how a campaign ended of which all has run, but not every outcome is in the journal
+INCOMPLETE = "incomplete"
+#: rows of the journal that something else changed while the campaign ran, and that were restored, in words
+ALTERED = "altered"
 #: summaries of the operators of the plan by their names, and ``Reaching``
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 
 TABLES = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -22,20 +22,32 @@ CREATE TABLE kept (
     mutant TEXT NOT NULL, round INTEGER NOT NULL, verdict TEXT NOT NULL, "by" TEXT, data TEXT NOT NULL,
     key TEXT NOT NULL, PRIMARY KEY (mutant, round));
 CREATE TABLE parts (digest TEXT PRIMARY KEY, data TEXT NOT NULL);
+CREATE TABLE known (id TEXT PRIMARY KEY, data TEXT NOT NULL, outdated INTEGER NOT NULL);
+CREATE TABLE text (digest TEXT PRIMARY KEY, data BLOB NOT NULL);
+CREATE TABLE mark (
+    "table" TEXT NOT NULL, row INTEGER NOT NULL, digest BLOB NOT NULL, PRIMARY KEY ("table", row)
+) WITHOUT ROWID;
 """
+#: the tables with rows of their own, and their columns; ``mark`` holds a digest of each row
+COLUMNS = {
+    "meta": ("key", "value"),
+    "test": ("round", "repetition", "test", "outcome", "data"),
+    "mutant": ("number", "id", "data"),
+    "left_out": ("id", "reason", "data"),
+    "source": ("file", "text"),
+    "outcome": ("mutant", "round", "verdict", "by", "data", "key", "reused"),
+    "control": ("test_file", "control", "ok", "detail"),
+    "kept": ("mutant", "round", "verdict", "by", "data", "key"),
+    "parts": ("digest", "data"),
+    "known": ("id", "data", "outdated"),
+    "text": ("digest", "data"),
+}
 #: the rows that hold the last outcome of each mutant and round
 LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
-#: came later: journals of before are read without it
-KNOWN = (
-    "CREATE TABLE IF NOT EXISTS known (id TEXT PRIMARY KEY, data TEXT NOT NULL, outdated INTEGER NOT NULL)"
-)
-#: came later as well: what stood in the Python files, compressed, by digest
-TEXT = "CREATE TABLE IF NOT EXISTS text (digest TEXT PRIMARY KEY, data BLOB NOT NULL)"
 #: what ``reused`` says of an outcome: found by this campaign, known from another, or only presumed
 FOUND, KNOWN_BEFORE, PRESUMED = 0, 1, 2
 #: from one campaign to the next; what was only presumed is not known
 ADOPT = f"""
-{KNOWN};
 INSERT OR REPLACE INTO known SELECT id, data, 1 FROM mutant;
 INSERT OR REPLACE INTO kept
     SELECT mutant, round, verdict, "by", data, key FROM outcome

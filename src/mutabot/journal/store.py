@@ -7,18 +7,22 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Protocol, Self, TypeVar
 
-from mutabot.border.codec import from_data, to_data
-from mutabot.errors import JournalError
+from mutabot.border.codec import to_data
+from mutabot.border.storable import printable, storable
 
-from .database import Batch, connect, connect_to_read, guarded
+from .database import Batch, Connection, connect_to_read, guarded
+from .fitting import load
 from .lock import WriterLock
-from .schema import SCHEMA_VERSION, VERSION_KEY
+from .marks import leave_out
+from .mirrored import Mirrored
+from .sound import check_schema, no_journal
+from .tracked import refuse_tracked
 
 T = TypeVar("T")
 
@@ -37,12 +41,13 @@ class Store:
     Attributes:
         path: the file.
         connection: SQLite's own; whoever uses it beside the methods calls ``flush`` before.
+        unmarked: rows that something else than Mutabot has written, in words: questions leave them out.
     """
 
     def __init__(
         self,
         path: Path,
-        connection: sqlite3.Connection,
+        connection: Connection,
         *,
         lock: WriterLock | None = None,
         copy: TemporaryDirectory[str] | None = None,
@@ -50,24 +55,28 @@ class Store:
         self.path, self.connection = path, connection
         self._lock, self._copy = lock, copy
         self._batch, self._is_whole = Batch(connection), False
+        self.unmarked: list[str] = []
 
     @classmethod
     def to_read(cls, path: Path) -> Self:
         """Open an existing journal of this version to read it."""
         if not path.is_file():
-            raise _no_journal(path)
+            raise no_journal(path)
+        refuse_tracked(path)
         with guarded(path):
             connection, copy = connect_to_read(path)
             store = cls(path, connection, copy=copy)
             with store.closed_on_error():
-                store.check_version()
+                check_schema(path, connection)
+                store.unmarked = leave_out(connection)
+                connection.execute("PRAGMA query_only = ON")
         return store
 
     @classmethod
     def to_write(cls, path: Path, lock: WriterLock) -> Self:
         """Open a journal to write it, whatever is in it; the file is made if there is none."""
         with guarded(path):
-            return cls(path, connect(path), lock=lock)
+            return cls(path, Mirrored(path, lock), lock=lock)
 
     def close(self) -> None:
         """Close the file; the lock of a writer is given back."""
@@ -89,42 +98,45 @@ class Store:
             self.close()
             raise
 
-    def check_version(self) -> None:
-        """Raise JournalError if this is no journal of this version."""
-        path = str(self.path)
-        tables = {name for (name,) in self.rows("SELECT name FROM sqlite_master WHERE type = 'table'")}
-        if not tables:  # of a campaign that was killed before it had begun
-            raise _no_journal(self.path)
-        if not {"meta", "outcome"} <= tables:
-            raise JournalError(f"{path} is a database, but not a journal of mutabot", path=path)
-        found = self.fact(VERSION_KEY)
-        if found != SCHEMA_VERSION:
-            raise JournalError(
-                f"{path} was written by another version of mutabot (journal version {found}, this one reads "
-                f"{SCHEMA_VERSION}); run the campaign again",
-                path=path,
-            )
+    def mark_rows(self) -> None:
+        """Have all rows marked that are written from now on."""
+        assert isinstance(self.connection, Mirrored)
+        with guarded(self.path):
+            self.connection.mark_rows()
+
+    def check(self) -> None:
+        """Compare the file with what was written, and write again what is not so."""
+        assert isinstance(self.connection, Mirrored)
+        self.flush()
+        with guarded(self.path), self._batch.lock:
+            self.connection.check()
+
+    @property
+    def lost(self) -> list[str]:
+        """How often the file was deleted or replaced, and written again, in words."""
+        return self.connection.lost if isinstance(self.connection, Mirrored) else []
+
+    @property
+    def altered(self) -> list[str]:
+        """What somebody else changed in the file, and was written again."""
+        return self.connection.altered if isinstance(self.connection, Mirrored) else []
 
     def rows(self, statement: str, *values: Any) -> list[Any]:
         """What a question is answered with."""
         with guarded(self.path), self._batch.lock:
             if not self._is_whole:
                 self._batch.commit()
-            return self.connection.execute(statement, values).fetchall()
+            return self.connection.execute(statement, stored(values)).fetchall()
 
     def each(self, statement: str) -> Iterator[Any]:
         """What a question is answered with, one row after the other."""
         with guarded(self.path):
             yield from self.connection.execute(statement)
 
-    def read(self, kind: type[T], statement: str) -> list[T]:
-        """The objects whose data a question of one column is answered with."""
-        return [from_data(kind, json.loads(data)) for (data,) in self.rows(statement)]
-
     def fact(self, key: str) -> Any:
         """The value of a key of meta; None if it is not there."""
         rows = self.rows("SELECT value FROM meta WHERE key = ?", key)
-        return json.loads(rows[0][0]) if rows else None
+        return load(rows[0][0]) if rows else None
 
     def put(self, key: str, value: Any) -> None:
         """Add or replace the value of a key of meta."""
@@ -134,15 +146,20 @@ class Store:
         """Carry out one statement, at once with all that waits; within ``transaction``, as a part of it."""
         with guarded(self.path):
             if self._is_whole:
-                self.connection.execute(statement, values)
+                self.connection.execute(statement, stored(values))
                 return
-            self._batch.add(statement, *values)
+            self._batch.add(statement, *stored(values))
             self._batch.commit()
 
     def add(self, statement: str, *values: Any) -> None:
         """Carry out one statement; it is committed within a second, or with the next that is at once."""
         with guarded(self.path):
-            self._batch.add(statement, *values)
+            self._batch.add(statement, *stored(values))
+
+    @property
+    def unstored(self) -> tuple[str, ...]:
+        """Why rows could not be stored, one line each: all others are."""
+        return tuple(self._batch.unstored)
 
     def flush(self) -> None:
         """Commit all that waits."""
@@ -157,7 +174,7 @@ class Store:
             self.connection.execute("BEGIN IMMEDIATE")
             self._is_whole = True
             try:
-                yield lambda statement, *values: self.connection.execute(statement, values)
+                yield lambda statement, *values: self.connection.execute(statement, stored(values))
             except BaseException:
                 if self.connection.in_transaction:  # SQLite itself rolls back when the disk is full
                     self.connection.execute("ROLLBACK")
@@ -167,10 +184,16 @@ class Store:
             self.connection.execute("COMMIT")
 
 
-def _no_journal(path: Path) -> JournalError:
-    return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it", path=str(path))
+def stored(values: Iterable[Any]) -> tuple[Any, ...]:
+    """Values of a row, with texts that can be stored."""
+    return tuple(printable(value) if isinstance(value, str) else value for value in values)
 
 
 def dump(value: Any) -> str:
-    """A value as JSON."""
-    return json.dumps(to_data(value), ensure_ascii=False, default=str)
+    """A value as JSON that can be stored."""
+    try:
+        text = json.dumps(to_data(value), ensure_ascii=False, default=str)
+        text.encode()
+    except (ValueError, RecursionError):  # what no other process said: the names of files, for instance
+        return json.dumps(storable(value, str), ensure_ascii=False)
+    return text

@@ -9,12 +9,9 @@ from pathlib import Path
 from mutabot.errors import JournalError
 
 from .database import connect, guarded
+from .files import previous_of
+from .sound import check_schema
 from .store import Store
-
-
-def previous_of(path: Path) -> Path:
-    """Where the last complete campaign before this journal's is kept: ``journal.previous.sqlite``."""
-    return path.with_name(f"{path.stem}.previous{path.suffix}")
 
 
 def make_way(path: Path) -> bool:
@@ -48,7 +45,8 @@ def keep_copy(store: Store) -> None:
     store.flush()
     with guarded(store.path):
         try:
-            store.connection.execute("VACUUM INTO ?", (str(new),))
+            with closing(sqlite3.connect(new)) as target:
+                store.connection.backup(target)
             _remove(kept)
             new.replace(kept)
         finally:
@@ -68,7 +66,7 @@ def _is_empty(path: Path) -> bool:
 def _is_journal(path: Path) -> bool:
     try:
         with closing(connect(path)) as connection:
-            Store(path, connection).check_version()
+            check_schema(path, connection)
             (sound,) = connection.execute("PRAGMA quick_check(1)").fetchone()
     except (JournalError, sqlite3.DatabaseError) as error:
         cause = error.__cause__ if isinstance(error, JournalError) else error

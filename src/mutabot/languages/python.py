@@ -54,6 +54,16 @@ class Python:
 FRONT_END = Python()
 
 
+def unused_calls(source: str) -> frozenset[Extent]:
+    """Where calls stand whose value nobody uses: each is a statement by itself, or is awaited in one.
+
+    Raises SyntaxError or ValueError for a file that cannot be read.
+    """
+    statements = (node.value for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Expr))
+    values = (one.value if isinstance(one, ast.Await) else one for one in statements)
+    return frozenset(extent_of(one) for one in values if isinstance(one, ast.Call))
+
+
 def extent_of(node: ast.expr | ast.stmt) -> Extent:
     """Where a node stands."""
     return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or 0)

@@ -12,6 +12,8 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from random import Random
 
+from mutabot.limits import shortened
+
 
 class When(StrEnum):
     """The kinds of moments, by the words that select them."""
@@ -28,10 +30,10 @@ class When(StrEnum):
 
 #: the word for no moment
 EVERY = "every"
-_NUMBER = r"\d+(?:\.\d*)?"
+_NUMBER = r"\d{1,9}(?:\.\d{0,9})?"
 _FORMS: Mapping[When, re.Pattern[str]] = {
-    When.NTH: re.compile(r"(?P<first>[1-9]\d*)"),
-    When.FROM: re.compile(r"from (?P<first>[1-9]\d*)"),
+    When.NTH: re.compile(r"(?P<first>[1-9]\d{0,8})"),
+    When.FROM: re.compile(r"from (?P<first>[1-9]\d{0,8})"),
     When.ONCE: re.compile(r"once"),
     When.BETWEEN: re.compile(rf"(?P<first>{_NUMBER}) ?s? ?(?:-|–|to) ?(?P<last>{_NUMBER}) ?s"),
 }
@@ -70,8 +72,8 @@ class Moment:
                 raise ValueError(f"{text!r} ends before it begins")
             return moment
         raise ValueError(
-            f'{text!r} is no moment; write "every", the number of a call ("3"), "from 3", "once", or a '
-            'window of simulated time ("2-2.5 s")'
+            f'{shortened(text)!r} is no moment; write "every", the number of a call ("3"), "from 3", "once", '
+            'or a window of simulated time ("2-2.5 s")'
         )
 
     @classmethod

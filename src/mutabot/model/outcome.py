@@ -105,6 +105,8 @@ class Outcome:
             that is not known.
         stuck: where it was when its wall-clock time was up: its innermost calls; None if that is not known.
         repeats: how often it was run once more in a fresh process and had the same verdict.
+        beside: how it had ended before, beside other processes on a busy machine, if the wall clock had ended
+            it and it was run once more alone; else None.
         looked: of a survivor, the tests that ran it and what they checked.
         diverged: how the recordings of its tests differ from the original's, the worst first; empty if they
             do not, or if there are none.
@@ -140,6 +142,7 @@ class Outcome:
     commands: int | None = None
     stuck: str | None = None
     repeats: int = 0
+    beside: str | None = None
     looked: tuple[Looked, ...] = ()
     diverged: tuple[Diverged, ...] = ()
     figures: tuple[Figure, ...] = ()

@@ -172,6 +172,14 @@ class Operator(Rule):
         """Whether it asks for this subject where a quantity is now; by default as ``asks_where`` says."""
         return self.asks_where
 
+    def needs_sign(self, subject: Subject) -> bool:
+        """Whether the subject has a direction is known only if a negative value of it was recorded."""
+        return False
+
+    def only_reads(self, subject: Subject) -> bool:
+        """Whether all it changes is a value that the program reads: without effect where nobody uses that."""
+        return subject.quantity is not None and subject.quantity in subject.read and not self.asks_wait
+
     def is_chance(self, subject: Subject) -> bool:
         """Whether only chance says at which calls it acts, so that nobody can tell beforehand."""
         return False
@@ -247,7 +255,8 @@ def map_numbers(value: Value, change: Any) -> Value | None:
     becomes one of floating-point numbers.
     """
     if is_number(value):
-        return change(value)
+        is_unsigned = getattr(getattr(value, "dtype", None), "kind", "") == "u"  # which has no other sign
+        return change(int(value) if is_unsigned else value)
     if isinstance(value, list | tuple) and value and all(is_number(item) for item in value):
         return type(value)(change(item) for item in value)
     if isinstance(value, array) and len(value):

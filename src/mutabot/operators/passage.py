@@ -12,7 +12,8 @@ from typing import Any, TypeVar
 
 from mutabot.errors import OperatorError
 from mutabot.model import Call, Middleware, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import Value, same, same_values
+from mutabot.model.values.quantity import Value, same
+from mutabot.model.values.sameness import are_same
 
 T = TypeVar("T")
 
@@ -96,8 +97,10 @@ class Passage:
         performed = self.performed[0]
         if performed.reversed != self.call.reversed or performed.mishaps:
             return True
+        meant = self.call.pattern or self.call.operation
         return not (
-            same(performed.payload, self.call.payload) and same_values(performed.values, self.call.values)
+            same(performed.payload, self.call.payload)
+            and are_same(meant.arguments, performed.values, self.call.values)
         )
 
     @property
@@ -110,9 +113,10 @@ class Passage:
         answered = self.answered[-1]
         if not self.received.comes_as_usual:
             return True
+        meant = self.call.pattern or self.call.operation
         return not (
             same(self.received.payload, answered.payload)
-            and same_values(self.received.values, answered.values)
+            and are_same(meant.result, self.received.values, answered.values)
         )
 
 

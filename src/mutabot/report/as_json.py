@@ -13,6 +13,7 @@ from mutabot.analysis.score import KillRate, RoundScores, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.border.codec import to_data
 from mutabot.journal.records import (
+    ALTERED,
     BUDGET,
     CONFIRMATION,
     DRAWING,
@@ -38,7 +39,7 @@ FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
 _ELSEWHERE = {
     "vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS,
-    SINCE, BUDGET, SHARD,
+    SINCE, BUDGET, SHARD, ALTERED,
 }  # fmt: skip
 
 
@@ -97,6 +98,8 @@ def results_data(results: Results) -> dict[str, Any]:
         "confirmation": dict(results.confirmation) if results.confirmation is not None else None,
         "repeats": repeats_data(results.repeats),
         "shard": _shard(results.shard),
+        "set_aside": list(results.set_aside),
+        "altered": list(results.altered),
     }
 
 
@@ -293,6 +296,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         "engine": outcome.engine,
         "stuck": outcome.stuck,
         "repeats": outcome.repeats,
+        "beside": outcome.beside,
         "figures": [{**to_data(one), "is_better": one.is_better} for one in outcome.figures],
         "looked": [to_data(one) for one in outcome.looked],
         "diverged": [{**to_data(one), "worst": one.worst} for one in outcome.diverged],

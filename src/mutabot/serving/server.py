@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import hmac
+import io
 import json
 import re
 import secrets
@@ -30,6 +31,8 @@ HOST = "127.0.0.1"
 _NAMES = re.compile(r"(localhost|127\.0\.0\.1|\[::1\])(:[0-9]{1,5})?", re.IGNORECASE)
 #: seconds: for one request or one write; between two signs of life; between two looks; between two states
 _PATIENCE, _HEARTBEAT, _TICK, _REST = 30.0, 15.0, 1.0, 0.2
+#: connections at a time; further ones are closed. A request must be whole within so many seconds and bytes
+MOST, WITHIN, _LARGEST = 64, 10.0, 1 << 16
 _HEADERS = {
     "Cache-Control": "no-store",
     "Content-Security-Policy": "frame-ancestors 'none'",
@@ -75,21 +78,82 @@ class Server:
 
 
 class _Server(ThreadingHTTPServer):
+    """Connections beyond ``MOST`` are closed: they take descriptors and memory that the campaign needs."""
+
     daemon_threads = True
     block_on_close = False  # a browser that does not read holds up nobody
+    request_queue_size = MOST
 
     def __init__(self, port: int, token: str, pages: Pages, feed: Feed, commands: Commands) -> None:
         self.token, self.pages, self.feed, self.commands = token.encode(), pages, feed, commands
+        self._places = threading.BoundedSemaphore(MOST)
         super().__init__((HOST, port), _Handler)
+
+    def get_request(self) -> tuple[socket.socket, Any]:
+        """The next connection; if there can be none now, not at once again."""
+        try:
+            return super().get_request()
+        except OSError:
+            time.sleep(_REST)
+            raise
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Answer it in a thread of its own, or turn it away."""
+        if not self._places.acquire(blocking=False):
+            self.shutdown_request(request)
+            return
+        try:
+            super().process_request(request, client_address)
+        except BaseException:
+            self._places.release()
+            raise
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """In that thread."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._places.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """A browser that has gone, or is too slow: nothing of it belongs on the terminal."""
+
+
+class _Request(io.RawIOBase):
+    """What a browser sends, as far as it comes in time and is not too much; then it ends."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        self._connection = connection
+        self._until = time.monotonic() + WITHIN
+        self._left = _LARGEST
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        """Raises TimeoutError if its time is up, which ends the connection."""
+        left = self._until - time.monotonic()
+        if left <= 0:
+            raise TimeoutError
+        self._connection.settimeout(left)
+        try:
+            count = self._connection.recv_into(memoryview(buffer)[: self._left])
+        finally:
+            self._connection.settimeout(_PATIENCE)
+        self._left -= count
+        return count
 
 
 class _Handler(BaseHTTPRequestHandler):
     server: _Server
     timeout = _PATIENCE
     server_version, sys_version = "mutabot", ""
+
+    def setup(self) -> None:
+        """Read no longer, and no more, than a request may take."""
+        super().setup()
+        self.rfile.close()
+        self.rfile = io.BufferedReader(_Request(self.connection))
 
     def do_GET(self) -> None:
         """A page, data, or the stream of events."""
@@ -178,10 +242,10 @@ class _Handler(BaseHTTPRequestHandler):
                     written = time.monotonic()
 
     def _is_gone(self) -> bool:
-        """Whether the browser has closed the connection."""
+        """Whether the browser has closed the connection; one that talks on is none."""
         poll = select.poll()
         poll.register(self.connection, select.POLLIN)
-        return bool(poll.poll(0)) and not self.connection.recv(1, socket.MSG_PEEK)
+        return bool(poll.poll(0))
 
     def log_message(self, format: str, *args: Any) -> None:
         """Nothing: the terminal belongs to the campaign, and the address to nobody else."""

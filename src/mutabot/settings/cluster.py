@@ -6,8 +6,9 @@ import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from mutabot.errors import UsageError
 
@@ -22,13 +23,14 @@ _WORKERS, _PER_PROCESSOR = 32, 4
 
 
 class ClusterTable(BaseModel):
-    """``[tool.mutabot.cluster]``: files for TLS, relative to the project."""
+    """``[tool.mutabot.cluster]``: files for TLS, and further ones for workers, relative to the project."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     ca: str | None = None
     cert: str | None = None
     key: str | None = None
+    files: Annotated[tuple[str, ...], Field(strict=False)] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path, PurePosixPath
@@ -10,8 +11,10 @@ from typing import Annotated, Any, Literal, get_origin
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from mutabot import limits
 from mutabot.errors import ConfigurationError, nearest_name
 from mutabot.families import FAMILIES, OF_TEXT, USUAL
+from mutabot.limits import shortened
 from mutabot.model import Moment
 from mutabot.model.graded.demand import Demand
 from mutabot.model.moment import EVERY
@@ -30,8 +33,10 @@ _NO_VOCABULARY = (
 )
 _PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
 _INIT = "run `mutabot init` to propose one"
-_MEMORY = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
+_MEMORY = re.compile(r"\s*(\d{1,18}(?:\.\d{1,18})?)\s*([kmgt]?i?b)\s*", re.IGNORECASE)
 _PREFIXES = {"": 0, "k": 1, "m": 2, "g": 3, "t": 4}
+#: signs of a path, and bytes of a name in it, that a file system takes
+_LONGEST_PATH, _LONGEST_NAME = 4000, 255
 _LEAST_MEMORY = 100_000_000
 _WILD = re.compile(r"[*?\[]")
 
@@ -39,7 +44,7 @@ _WILD = re.compile(r"[*?\[]")
 def parse_memory(value: Any) -> Any:
     """Bytes in a text such as ``4 GB`` or ``512 MiB``; whole numbers are bytes already."""
     if isinstance(value, str) and _MEMORY.fullmatch(value) is None:
-        raise _fault(f"{value!r} is no amount of memory; write it like '4 GB'")
+        raise _fault(f"{shortened(value)!r} is no amount of memory; write it like '4 GB'")
     value = _bytes_in(value)
     if isinstance(value, int) and not isinstance(value, bool) and value < _LEAST_MEMORY:
         raise _fault(f"{value} bytes are too little for Python and pytest; write it like '4 GB'")
@@ -58,7 +63,7 @@ def _bytes_in(value: Any) -> Any:
 def _parse_size(value: Any) -> Any:
     """The same for room on a disk, of which there may be none at all."""
     if isinstance(value, str) and _MEMORY.fullmatch(value) is None:
-        raise _fault(f"{value!r} is no amount of room; write it like '200 MB', or 0 for none")
+        raise _fault(f"{shortened(value)!r} is no amount of room; write it like '200 MB', or 0 for none")
     if isinstance(value, int) and not isinstance(value, bool) and value < 0:
         raise _fault(f"{value} bytes are less than nothing; write it like '200 MB', or 0 for none")
     return _bytes_in(value)
@@ -139,19 +144,19 @@ class Settings(BaseModel):
 
         vocabulary = ["robot.toml"]
     """
-    rounds: Annotated[int, Field(ge=1)] = 1
+    rounds: Annotated[int, Field(ge=1, le=limits.ROUNDS)] = 1
     """How often everything is repeated, each time with other
     seeds. `--rounds` goes before it.
 
         rounds = 5
     """
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: Annotated[int, Field(ge=0, le=limits.SEED)] = 1
     """The campaign's seed, from which those of all rounds and tests
     come. `--seed` goes before it.
 
         seed = 42
     """
-    jobs: Annotated[int, Field(ge=1)] | None = None
+    jobs: Annotated[int, Field(ge=1, le=limits.JOBS)] | None = None
     """Runs at a time. Without it, one per core that
     may be used. A run that only waits, as for a message that never comes, lends its place to another one;
     with 1, there is never more than one. `--jobs` goes before it.
@@ -164,13 +169,13 @@ class Settings(BaseModel):
 
         selection = "published.txt"
     """
-    timeout_factor: Annotated[float, Field(gt=1)] = 10.0
+    timeout_factor: Annotated[float, Field(gt=1, le=limits.FACTOR)] = 10.0
     """How many times the operations and the simulated
     time of the original a mutant may use in a test.
 
         timeout_factor = 3.0
     """
-    timeout_seconds: Annotated[float, Field(gt=0)] = 60.0
+    timeout_seconds: Annotated[float, Field(gt=0, le=limits.SECONDS)] = 60.0
     """Seconds of wall clock that every test gets at
     least, be the original ever so quick: the safety net for mutants that neither operations nor simulated
     time can end.
@@ -184,14 +189,14 @@ class Settings(BaseModel):
 
         private_files = false
     """
-    evidence: Annotated[int, BeforeValidator(_parse_size)] = 200_000_000
+    evidence: Annotated[int, Field(le=limits.BYTES), BeforeValidator(_parse_size)] = 200_000_000
     """How much is kept of what the robot did: where tool and objects were, what was
     commanded and read, of the original and of mutants that differ from it; see
     [evidence](evidence.md). If room is short, that of survivors stays. 0 records nothing.
 
         evidence = "1 GB"
     """
-    memory: Annotated[int, BeforeValidator(parse_memory)] = 4_000_000_000
+    memory: Annotated[int, Field(le=limits.BYTES), BeforeValidator(parse_memory)] = 4_000_000_000
     """Address space of a process, as
     a text with a unit or in bytes.
 
@@ -242,13 +247,13 @@ class Settings(BaseModel):
 
         order = 2
     """
-    pairs: Annotated[int, Field(ge=1)] = 200
+    pairs: Annotated[int, Field(ge=1, le=limits.PAIRS)] = 200
     """How many pairs are planted where `order` is 2, chosen by
     the seed.
 
         pairs = 1000
     """
-    baseline_repetitions: Annotated[int, Field(ge=1)] | None = None
+    baseline_repetitions: Annotated[int, Field(ge=1, le=limits.BASELINES)] | None = None
     """How often the original is run per round; without it, as often as the engine
     needs. More runs find more of the tests that fail at random.
 
@@ -267,10 +272,12 @@ class Settings(BaseModel):
         demand = [{ site = "mission.py:38", quantity = "y", notice = "5 mm" }]
     """
     cluster: dict[str, Any] = {}
-    """Files in PEM format for a [cluster](cluster.md#tls) with TLS; `--cluster` says
-    which cluster it is.
+    """For a [cluster](cluster.md): `files` are sent to workers beside
+    [what git tracks](cluster.md#what-is-shipped); folders and patterns may be named. `ca`, `cert` and
+    `key` are files in PEM format for [TLS](cluster.md#tls). Which cluster it is says `--cluster`. Where this
+    table stands, `mutabot check` lists what is sent.
 
-        cluster = { ca = "ca.pem", cert = "cert.pem", key = "key.pem" }
+        cluster = { files = ["data/table.json"], ca = "ca.pem", cert = "cert.pem", key = "key.pem" }
     """
 
 
@@ -335,7 +342,9 @@ def _checked(
     paths.check_rest(settings)
     if not settings.vocabulary and need_vocabulary(families or settings.families):
         check.error((*place, *(("vocabulary",) if "vocabulary" in raw else ())), _NO_VOCABULARY)
-    check.table(ClusterTable, settings.cluster, (*place, "cluster"))
+    cluster = check.table(ClusterTable, settings.cluster, (*place, "cluster"))
+    if cluster is not None:
+        paths.check_shipped(cluster.files)
     demands = check_demands(settings.demand, check, (*place, "demand"))
     raise_errors(check.errors)
     changed = {"program": program, "oracle": oracle, "root": folder.resolve(), "file": document.file}
@@ -399,6 +408,8 @@ class _Paths:
         path = PurePosixPath(name)
         if not name.strip():
             self.check.error(where, "is an empty path")
+        elif len(name) > _LONGEST_PATH or any(len(os.fsencode(part)) > _LONGEST_NAME for part in path.parts):
+            self.check.error(where, f"{shortened(name)!r} is too long for a path")
         elif "\0" in name:
             self.check.error(where, f"{name!r} is no path")
         elif path.is_absolute() or name.startswith("~"):
@@ -451,11 +462,28 @@ class _Paths:
         if settings.selection is not None and self.is_inside(where, settings.selection):
             self.exists(where, settings.selection)
 
-    def _expanded(self, where: KeyPath, pattern: str) -> list[str]:
+    def check_shipped(self, files: tuple[str, ...]) -> None:
+        """Note each path or pattern of files for workers that fits nothing."""
+        for index, name in enumerate(files):
+            where = (*self.place, "cluster", "files", index)
+            if not self.is_inside(where, name):
+                continue
+            if not _WILD.search(name) or (self.root / name).exists():
+                self.exists(where, name)
+            elif self._matches(where, name) == []:
+                self.check.error(where, f"{name!r} matches nothing")
+
+    def _matches(self, where: KeyPath, pattern: str) -> list[Path] | None:
+        """What a pattern fits; None if it is none, which is noted."""
         try:
-            matches = list(self.root.glob(pattern))
+            return list(self.root.glob(pattern))
         except ValueError as error:
             self.check.error(where, f"{pattern!r} is no pattern of paths: {error}")
+            return None
+
+    def _expanded(self, where: KeyPath, pattern: str) -> list[str]:
+        matches = self._matches(where, pattern)
+        if matches is None:
             return []
         relative = [match.relative_to(self.root) for match in matches]
         found = [path.as_posix() for path in relative if _is_source(self.root, path)]

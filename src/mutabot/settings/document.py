@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from mutabot import limits
 from mutabot.errors import ConfigurationError, VocabularyError
 
 from .toml_lines import KeyPath, key_lines
 
+_TOO_DEEP = f"is nested too deeply: at most {limits.DEPTH} lists and tables lie in each other"
+_TOO_LARGE = (
+    f"a whole number beyond 64 bits; it must lie between {limits.LEAST_WHOLE} and {limits.MOST_WHOLE}"
+)
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 _AT_LINE = re.compile(r" \(at line (\d+), column (\d+)\)$")
 
@@ -37,14 +42,21 @@ class Document:
     def read(cls, path: Path, file: str, error_type: type[ConfigurationError] = VocabularyError) -> Document:
         """Read ``path``, which the user knows as ``file``.
 
-        Raises ``error_type`` if it cannot be read or is no TOML.
+        Raises ``error_type`` if it cannot be read, is no TOML, or holds more than can be meant.
         """
         text = _text_of(path, file, error_type)
         try:
             data = tomllib.loads(text)
         except tomllib.TOMLDecodeError as error:
             raise _syntax_error(str(error), text, file, error_type) from None
-        return cls(file, data, key_lines(text), error_type)
+        except RecursionError:
+            raise error_type(_TOO_DEEP, file=file) from None
+        except ValueError:  # the only other one: Python reads no whole number of thousands of digits
+            raise error_type(f"holds {_TOO_LARGE}", file=file) from None
+        document = cls(file, data, key_lines(text), error_type)
+        for place, problem in _extremes(data):
+            raise document.error(place, problem)
+        return document
 
     def line(self, place: KeyPath) -> int | None:
         """Line of the key, or of the nearest one around it."""
@@ -76,9 +88,30 @@ class Document:
         return " · ".join([*chunks, dotted] if dotted else chunks) or None
 
 
+def _extremes(data: Any) -> Iterator[tuple[KeyPath, str]]:
+    """What is too deep, too long or too large, whatever it stands for."""
+    left: list[tuple[KeyPath, Any]] = [((), data)]
+    while left:
+        place, value = left.pop()
+        if isinstance(value, int) and not limits.LEAST_WHOLE <= value <= limits.MOST_WHOLE:
+            yield place, f"is {_TOO_LARGE}"
+        if not isinstance(value, dict | list):
+            continue
+        items = list(value.items()) if isinstance(value, dict) else list(enumerate(value))
+        if len(place) > limits.DEPTH:
+            yield place[:1], _TOO_DEEP
+        elif len(items) > limits.ENTRIES:
+            yield place, f"has {len(items)} entries; at most {limits.ENTRIES:,} can be meant"
+        else:
+            left += [((*place, key), item) for key, item in items]
+
+
 def _text_of(path: Path, file: str, error_type: type[ConfigurationError]) -> str:
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        data = path.read_bytes()
+        if len(data) > limits.FILE_BYTES:
+            raise error_type(f"has {len(data):,} bytes; at most {limits.FILE_BYTES:,} are read", file=file)
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         problem = f"is not UTF-8 text (byte {error.start + 1})"
         raise error_type(problem, file=file) from None

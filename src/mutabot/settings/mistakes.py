@@ -12,6 +12,7 @@ from pydantic_core import ErrorDetails
 
 from mutabot.border.lines import Problem
 from mutabot.errors import ConfigurationError, UnknownNameError, nearest_name, unknown_name_text
+from mutabot.limits import shortened
 
 from .document import Document
 from .toml_lines import KeyPath
@@ -186,7 +187,7 @@ def shown(value: Any) -> str:
     if isinstance(value, int | float):
         return f"the number {value}"
     if isinstance(value, str):
-        return f"the text {value!r}"
+        return f"the text {shortened(value)!r}"
     if isinstance(value, dict):
         return "a table"
     if isinstance(value, list | tuple):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Decimal
 
 from mutabot.errors import UsageError
+from mutabot.limits import shortened
 
 _SHARE = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)\s*%")
 _COUNT = re.compile(r"[0-9]{1,9}")
@@ -41,7 +42,9 @@ class Sample:
             if int(plain) > 0:
                 return cls(plain, count=int(plain))
             raise UsageError("a sample of 0 mutants says nothing: draw at least 1")
-        raise UsageError(f"{text!r} is no size of a sample; write a share such as 10% or a number such as 50")
+        raise UsageError(
+            f"{shortened(text)!r} is no size of a sample; write a share such as 10% or a number such as 50"
+        )
 
     def sizes(self, roles: Mapping[str, int]) -> dict[str, int]:
         """How many to draw of each role of one family, given how many there are.

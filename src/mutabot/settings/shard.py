@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from mutabot.errors import UsageError
+from mutabot.limits import shortened
 
 _SHARD = re.compile(r"\s*([0-9]{1,6})\s*/\s*([0-9]{1,6})\s*")
 
@@ -32,7 +33,9 @@ class Shard:
         """What ``2/8`` says. Raises UsageError for anything else."""
         found = _SHARD.fullmatch(text)
         if found is None:
-            raise UsageError(f"--shard {text}: write its number and how many there are, such as 2/8")
+            raise UsageError(
+                f"--shard {shortened(text)}: write its number and how many there are, such as 2/8"
+            )
         number, of = int(found[1]), int(found[2])
         if of < 1:
             raise UsageError(f"--shard {text}: there must be at least one shard, 1/1")

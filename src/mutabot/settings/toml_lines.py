@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import re
 import tomllib
+from bisect import bisect_left
 
 #: the way to a value from the top of a document: keys of tables and indices of lists
 KeyPath = tuple[str | int, ...]
@@ -26,7 +27,7 @@ _SCALAR = re.compile(r"[^,\]}#\n]+")
 def key_lines(text: str) -> dict[KeyPath, int]:
     """The 1-based line of every key, table header and list item of a valid TOML text."""
     scanner = _Scanner(text)
-    with contextlib.suppress(_LostError):
+    with contextlib.suppress(_LostError, RecursionError):
         scanner.document()
     return scanner.lines
 
@@ -38,6 +39,7 @@ class _LostError(Exception):
 class _Scanner:
     def __init__(self, text: str) -> None:
         self.text, self.position = text, 0
+        self.ends = [match.start() for match in re.finditer("\n", text)]
         self.lines: dict[KeyPath, int] = {}
         self.tables: dict[KeyPath, int] = {}  # arrays of tables: how many elements so far
 
@@ -133,7 +135,7 @@ class _Scanner:
         return (*place, self.tables[place] - 1) if place in self.tables else place
 
     def note(self, place: KeyPath, position: int) -> None:
-        self.lines.setdefault(place, self.text.count("\n", 0, position) + 1)
+        self.lines.setdefault(place, bisect_left(self.ends, position) + 1)
 
     def sees(self, text: str) -> bool:
         return self.text.startswith(text, self.position)

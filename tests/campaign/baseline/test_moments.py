@@ -19,7 +19,7 @@ from tests.campaign.project import ROBOT, VOCABULARY, Quiet, outcomes, request_f
 
 MISSION = """
     def run(arm):
-        arm.position()
+        _ = arm.position()
         arm.move_by(0.25)
         arm.move_to(0.5)
 """

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.campaign.beginning import at_it, begin
 from mutabot.campaign.check import check
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import ConfigurationError
@@ -112,3 +113,64 @@ def test_a_probe_that_only_the_mutant_cannot_read_is_another_world(tmp_path: Pat
 
 def outcome(found: dict[tuple[str, int], Outcome], part: str) -> Outcome:
     return next(one for (mutant, _), one in found.items() if part in mutant)
+
+
+def test_a_probe_of_a_class_reads_the_object_of_the_present_test(tmp_path: Path) -> None:
+    """No test calls an operation on it, and objects of earlier tests live on in a global and in fixtures."""
+    robot = ROBOT + "\n    def move(arm, dx):\n        arm.x += dx\n"
+    mission = "import robot\n\ndef run(arm, dx):\n    robot.move(arm, dx)\n"
+    tests = """
+        import unittest
+        import pytest
+        import mission
+        from robot import Arm
+
+        KEPT = []
+
+        @pytest.fixture(scope="session")
+        def shared():
+            return {"left": Arm(0.5)}
+
+        def test_a_keeps_an_arm():
+            KEPT.append(Arm(0.125))
+            mission.run(KEPT[0], 0.125)
+
+        def test_b_makes_the_fixture(shared):
+            mission.run(shared["left"], 0.0)
+
+        def test_c_uses_the_fixture_again(shared):
+            mission.run(shared["left"], 0.25)
+
+        def test_d_has_no_arm():
+            mission.run(KEPT[0], 0.0)
+
+        class TestE(unittest.TestCase):
+            @classmethod
+            def setUpClass(cls):
+                cls.arm = Arm(0.75)
+
+            def test_1(self):
+                mission.run(self.arm, 0.0)
+
+            def test_2(self):
+                mission.run(self.arm, 0.125)
+    """
+    vocabulary = VOCABULARY.replace("robot:Arm.move_by", "robot:move") + (
+        '\n    [[probe]]\n    call = "robot:Arm.x"\n    tolerance = 0.001\n'
+    )
+    write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
+    request = request_for(tmp_path, rounds=1)
+    with at_it(request, Quiet()) as executor:
+        campaign, _ = begin(request, executor, Quiet())
+    seen = {
+        test.rpartition("::")[2]: dict(one.probes)
+        for (_, test), one in campaign.baseline.observations.items()
+    }
+    assert seen == {
+        "test_a_keeps_an_arm": {"robot:Arm.x": 0.25},
+        "test_b_makes_the_fixture": {"robot:Arm.x": 0.5},
+        "test_c_uses_the_fixture_again": {"robot:Arm.x": 0.75},
+        "test_d_has_no_arm": {},
+        "test_1": {"robot:Arm.x": 0.75},
+        "test_2": {"robot:Arm.x": 0.875},
+    }

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.border.codec import to_data
+from mutabot.campaign.cluster.link import Link
 from mutabot.campaign.cluster.local import LocalCluster
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
@@ -126,9 +129,27 @@ def cluster(folder: Path, workers: int) -> Iterator[ClusterSettings]:
     there = LocalCluster(workers, folder)
     own = there.certificates
     try:
-        yield ClusterSettings(there.start(), ca=own.ca, cert=own.cert, key=own.key)
+        settings = ClusterSettings(there.start(), ca=own.ca, cert=own.cert, key=own.key)
+        link = Link(settings, settings.address)
+        assert until(lambda: len(link.workers) == workers, 120)
+        link.close()
+        yield settings
     finally:
         there.close()
+
+
+def strange_worker(there: ClusterSettings, folder: Path, how: str) -> subprocess.Popen[bytes]:
+    """A worker that runs some code before all else."""
+    code = (
+        f"import sys\n{how}\n"
+        "from distributed.cli.dask_worker import main\n"
+        "sys.argv[:] = ['dask-worker', *sys.argv[1:]]\n"
+        "main()\n"
+    )
+    own = ["--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder)]
+    own += ["--host", "127.0.0.1", "--protocol", "tls", "--dashboard-address", "127.0.0.1:0"]
+    own += ["--tls-ca-file", str(there.ca), "--tls-cert", str(there.cert), "--tls-key", str(there.key)]
+    return subprocess.Popen([sys.executable, "-c", code, there.address, *own], stderr=subprocess.DEVNULL)
 
 
 def processes(mark: bytes, word: str = "") -> list[int]:

@@ -13,6 +13,7 @@ import pytest
 
 from mutabot.campaign.cluster.bundle import Bundle
 from mutabot.campaign.cluster.environment import apply, decided, differences, module_folders
+from mutabot.campaign.cluster.shipping import Shipment
 from mutabot.campaign.cluster.store import Store
 
 
@@ -21,7 +22,6 @@ def project(folder: Path) -> Path:
         "src/mission.py": "x = 1\n",
         "tests/test_mission.py": "",
         "data/table.csv": "1,2\n",
-        ".git/config": "",
         ".mutabot/journal.sqlite": "",
         "__pycache__/mission.pyc": "",
     }.items():
@@ -34,38 +34,42 @@ def project(folder: Path) -> Path:
     return folder
 
 
+def packed(folder: Path) -> Bundle:
+    return Bundle.make(Shipment.of(folder))
+
+
 def names(bundle: Bundle) -> set[str]:
     with tarfile.open(fileobj=io.BytesIO(bundle.data)) as tar:
         return set(tar.getnames())
 
 
 def test_it_holds_what_outcomes_depend_on(tmp_path: Path) -> None:
-    bundle = Bundle.make(project(tmp_path / "cell"))
+    bundle = packed(project(tmp_path / "cell"))
     assert bundle.inner == "cell"
     expected = {"src/mission.py", "tests/test_mission.py", "data/table.csv", "out", "run.sh"}
     assert names(bundle) == {f"cell/{name}" for name in expected}
 
 
 def test_its_name_is_that_of_its_content(tmp_path: Path) -> None:
-    first = Bundle.make(project(tmp_path / "a" / "cell"))
+    first = packed(project(tmp_path / "a" / "cell"))
     other = project(tmp_path / "b" / "cell")
-    assert Bundle.make(other).digest == first.digest
+    assert packed(other).digest == first.digest
     (other / "src" / "mission.py").write_text("x = 2\n")
-    assert Bundle.make(other).digest != first.digest
+    assert packed(other).digest != first.digest
 
 
 def test_what_tells_pytest_how_to_run_comes_along_from_above(tmp_path: Path) -> None:
     cell = project(tmp_path / "repository" / "robots" / "cell")
     (tmp_path / "repository" / "pytest.ini").write_text("[pytest]\n")
     (tmp_path / "repository" / "secret.txt").write_text("")
-    bundle = Bundle.make(cell)
+    bundle = packed(cell)
     assert bundle.inner == "repository/robots/cell"
     assert "repository/pytest.ini" in names(bundle)
     assert not any("secret" in name for name in names(bundle))
 
 
 def test_a_machine_unpacks_it_once_and_keeps_it_while_it_is_used(tmp_path: Path) -> None:
-    bundle = Bundle.make(project(tmp_path / "cell"))
+    bundle = packed(project(tmp_path / "cell"))
     one, two = Store(tmp_path / "store"), Store(tmp_path / "store")
     assert not one.has(bundle.digest)
     half = len(bundle.data) // 2
@@ -83,7 +87,7 @@ def test_a_machine_unpacks_it_once_and_keeps_it_while_it_is_used(tmp_path: Path)
 
 
 def test_what_a_killed_worker_used_is_removed_by_the_next(tmp_path: Path) -> None:
-    bundle = Bundle.make(project(tmp_path / "cell"))
+    bundle = packed(project(tmp_path / "cell"))
     store = tmp_path / "store"
     code = (
         "import sys\n"

@@ -63,7 +63,7 @@ def workers() -> list[int]:
 
 def when(condition: Callable[[], bool], then: Callable[[], Any]) -> threading.Thread:
     """Do something as soon as it is time."""
-    thread = threading.Thread(target=lambda: until(condition) and then())
+    thread = threading.Thread(target=lambda: until(condition, 300) and then())
     thread.start()
     return thread
 
@@ -83,7 +83,9 @@ def test_outcomes_are_those_of_a_campaign_without_a_cluster(
     assert not any("worker" in line for line in told.lines)
 
 
-def test_a_worker_that_dies_costs_nothing_but_time(there: ClusterSettings, in_peace: Ends, tmp_path: Path) -> None:
+def test_a_worker_that_dies_costs_nothing_but_time(
+    there: ClusterSettings, in_peace: Ends, tmp_path: Path
+) -> None:
     request = slow(tmp_path)
     told, victims = Quiet(), workers()
     killer = when(lambda: has_begun(told), lambda: kill(victims))
@@ -119,7 +121,9 @@ def test_a_mutant_that_takes_its_worker_along_each_time_is_an_error_with_the_rea
 
 
 @pytest.mark.whole
-def test_a_process_that_is_killed_from_outside_each_time_is_an_error(there: ClusterSettings, tmp_path: Path) -> None:
+def test_a_process_that_is_killed_from_outside_each_time_is_an_error(
+    there: ClusterSettings, tmp_path: Path
+) -> None:
     tests = """
     import os, signal
     from mission import run
@@ -137,7 +141,9 @@ def test_a_process_that_is_killed_from_outside_each_time_is_an_error(there: Clus
     assert Verdict.ERROR in {one["verdict"] for one in found.values()}
 
 
-def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(there: ClusterSettings, tmp_path: Path) -> None:
+def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(
+    there: ClusterSettings, tmp_path: Path
+) -> None:
     tests = """
     import os
     from mission import run

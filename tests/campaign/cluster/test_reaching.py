@@ -15,20 +15,28 @@ from mutabot.campaign.cluster import link
 from mutabot.campaign.cluster.bundle import Bundle
 from mutabot.campaign.cluster.local import LocalCluster, address_in
 from mutabot.campaign.cluster.roster import Roster
+from mutabot.campaign.cluster.shipping import Shipment
 from mutabot.cli.app import main
 from mutabot.cli.request import request_of
 from mutabot.errors import ClusterError, ConfigurationError, UsageError
 from mutabot.settings.cluster import ClusterSettings, cluster_settings
 from tests.campaign.project import CONFIGURATION
 
-from .clusters import cluster, processes, until, write, write_slow
+from .clusters import cluster, processes, strange_worker, until, write, write_slow
 
 
 @pytest.mark.parametrize(
     ("address", "says"),
     [
         ("local:0", "local:2 starts two"),
+        (
+            "local:99999999",
+            r"local:99999999: at most \d+ workers can be started on this machine, which has \d+",
+        ),
+        ("local:" + "9" * 5000, r"local:9+…: at most \d+ workers"),
         ("local:many", "neither an address"),
+        ("x" * 5000, "neither an address"),
+        ("tcp://host:99999", "an address is like tcp://host:8786"),
         ("no/such/file.json", "nor a scheduler file that is there"),
         ("http://host:8786", "an address is like tcp://host:8786"),
         ("tcp://host", "an address is like tcp://host:8786"),
@@ -83,20 +91,6 @@ def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
         link.Link(ClusterSettings("tcp://127.0.0.1:9"), "tcp://127.0.0.1:9")
 
 
-def strange_worker(there: ClusterSettings, folder: Path, how: str) -> subprocess.Popen[bytes]:
-    """A worker that runs some code before all else."""
-    code = (
-        f"import sys\n{how}\n"
-        "from distributed.cli.dask_worker import main\n"
-        "sys.argv[:] = ['dask-worker', *sys.argv[1:]]\n"
-        "main()\n"
-    )
-    own = ["--no-nanny", "--nthreads", "1", "--no-dashboard", "--local-directory", str(folder)]
-    own += ["--host", "127.0.0.1", "--protocol", "tls", "--dashboard-address", "127.0.0.1:0"]
-    own += ["--tls-ca-file", str(there.ca), "--tls-cert", str(there.cert), "--tls-key", str(there.key)]
-    return subprocess.Popen([sys.executable, "-c", code, there.address, *own], stderr=subprocess.DEVNULL)
-
-
 NO_ROOM = """
 from mutabot.campaign.cluster.store import Store
 def take(*given):
@@ -118,7 +112,7 @@ def test_a_worker_that_cannot_take_part_is_told_and_lives_on(
             there = link.Link(settings, settings.address)
             roster = Roster(there, {}, True, lambda text: None)
             if has_bundle:
-                roster.bundle = Bundle.make(write(tmp_path / "project"))
+                roster.bundle = Bundle.make(Shipment.of(write(tmp_path / "project")))
             assert until(lambda: roster.update() is not None and there.workers)
             assert until(lambda: _has_refused(roster))
             (why,) = roster.refusals.values()
@@ -146,7 +140,7 @@ def test_a_file_that_is_no_scheduler_file(tmp_path: Path) -> None:
 def test_without_dask_the_extra_is_named() -> None:
     code = "import sys; sys.modules['distributed'] = None; import mutabot.campaign.cluster.link"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert "pip install 'mutabot[cluster]'" in done.stderr.splitlines()[-1]
+    assert "pip install 'path/to/mutabot[cluster]'" in done.stderr.splitlines()[-1]
 
 
 def test_certificates_that_do_not_fit_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

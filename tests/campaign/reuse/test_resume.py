@@ -11,7 +11,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Collection
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -28,10 +27,10 @@ from mutabot.campaign.reuse.snapshot import Snapshot
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.sink import Sink
 from mutabot.errors import BaselineError, JournalError, NothingToDoError, SelectionError
-from mutabot.journal.database import connect
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant, Outcome, Verdict
 from tests.campaign.project import Quiet, request_for, write_project
+from tests.journal.edited import edited
 
 MISSION = """
     def left(arm):
@@ -365,10 +364,12 @@ def test_an_interrupted_campaign_shows_what_was_there_before(
 def test_errors_and_unstable_outcomes_are_never_reused(quick: Project) -> None:
     first = sorted(quick.run())
     bad = {first[0], first[1]}
-    with closing(connect(quick.journal)) as connection:
+    with edited(quick.journal) as connection:
         for pair, verdict in zip(sorted(bad), (Verdict.ERROR, Verdict.UNSTABLE), strict=True):
             connection.execute(
-                "UPDATE outcome SET verdict = ? WHERE mutant = ? AND round = ?", (verdict.value, *pair)
+                "UPDATE outcome SET verdict = ?1, \"by\" = NULL, data = json_set(json_remove(data, '$.by'), "
+                "'$.verdict', ?1) WHERE mutant = ?2 AND round = ?3",
+                (verdict.value, *pair),
             )
     assert quick.run() == bad
     assert "2 run again: they ended in an error or unstable" in quick.note
@@ -470,7 +471,7 @@ def test_a_full_disk_stops_the_campaign_and_keeps_what_is_there(
 
     def fill(self: Journal, outcome: Outcome, *, key: str) -> None:
         if len(self.outcomes()) == 3:
-            connection = self._store.connection
+            connection = self._store.connection._file
             pages = connection.execute("PRAGMA page_count").fetchone()[0]
             connection.execute(f"PRAGMA max_page_count = {pages}")
             outcome = Outcome(outcome.mutant, outcome.round, outcome.verdict, message="x" * 100_000)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-import sqlite3
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from mutabot.model import Outcome
 from mutabot.settings.shard import Shard
 from tests.campaign.project import Quiet, request_for, write_project
 from tests.campaign.test_evidence import MISSION, ROBOT, TESTS, VOCABULARY
+from tests.journal.edited import edited
 
 ROOM = 100_000_000
 MORE = """
@@ -133,7 +133,7 @@ def test_a_shard_that_was_interrupted_is_told(campaigns: Path, tmp_path: Path) -
     shutil.copytree(campaigns / "1", tmp_path / "1")
     with Journal.open(tmp_path / "1" / "journal.sqlite") as journal:
         lost = journal.outcomes()[0]
-    with sqlite3.connect(tmp_path / "1" / "journal.sqlite") as connection:
+    with edited(tmp_path / "1" / "journal.sqlite") as connection:
         connection.execute("DELETE FROM outcome WHERE mutant = ? AND round = ?", (lost.mutant, lost.round))
         connection.execute("UPDATE meta SET value = '\"interrupted\"' WHERE key = 'journal:finished'")
     (told,) = merge([tmp_path / "1", campaigns / "2"], tmp_path / "m.sqlite", root=tmp_path, room=ROOM)
@@ -150,17 +150,6 @@ def test_a_merged_journal_may_lie_where_a_shard_did(campaigns: Path, tmp_path: P
     assert found is not None
     assert recordings_path(target).is_file()
     found.close()
-
-
-def test_tables_that_come_with_later_versions_are_taken_over(campaigns: Path, tmp_path: Path) -> None:
-    for name in ("1", "2"):
-        shutil.copytree(campaigns / name, tmp_path / name)
-        with sqlite3.connect(tmp_path / name / "journal.sqlite") as connection:
-            connection.execute("CREATE TABLE later (name TEXT PRIMARY KEY, data BLOB)")
-            connection.execute("INSERT INTO later VALUES ('both', 1), (?, 2)", (name,))
-    merge([tmp_path / "1", tmp_path / "2"], tmp_path / "m.sqlite", root=tmp_path, room=ROOM)
-    with sqlite3.connect(tmp_path / "m.sqlite") as connection:
-        assert dict(connection.execute("SELECT * FROM later")) == {"both": 1, "1": 2, "2": 2}
 
 
 def test_the_same_shard_twice_is_refused(campaigns: Path, tmp_path: Path) -> None:
@@ -203,7 +192,7 @@ def test_shards_of_different_plans_are_refused_by_what_differs(
     campaigns: Path, tmp_path: Path, key: str, inner: str, value: object, told: str
 ) -> None:
     shutil.copytree(campaigns / "2", tmp_path / "2")
-    with sqlite3.connect(tmp_path / "2" / "journal.sqlite") as connection:
+    with edited(tmp_path / "2" / "journal.sqlite") as connection:
         (text,) = connection.execute("SELECT value FROM meta WHERE key = ?", (key,)).fetchone()
         new = {**json.loads(text), inner: value} if inner else value
         connection.execute("UPDATE meta SET value = ? WHERE key = ?", (json.dumps(new), key))

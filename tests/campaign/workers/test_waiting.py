@@ -6,15 +6,20 @@ import os
 import subprocess
 import sys
 import time
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from mutabot.border import demand
 from mutabot.border.processes import VARIABLE
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers import waiting
 from mutabot.campaign.workers.waiting import Waiting
+from mutabot.campaign.workers.workers import Workers
 from mutabot.model import Verdict
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
 
@@ -44,9 +49,16 @@ TESTS = """
         subprocess.run([sys.executable, "-c", "pass"], check=True)
         run(Arm())
     """
-SLEEP = "import time; time.sleep(60)"
-#: seconds between two looks here: the kernel counts in hundredths
-PERIOD = 0.2
+SLEEP = "import time; time.sleep(600)"
+#: a node that looks for messages now and then
+POLL = "import time\nwhile True: time.sleep(0.2)"
+LOOP = "while True: pass"
+#: a node below it does the work
+BELOW = "import subprocess, sys; subprocess.run([sys.executable, '-c', {!r}])"
+#: seconds between two looks here
+PERIOD = 0.25
+#: seconds after which nothing more is expected
+PATIENCE = 120.0
 
 
 @dataclass
@@ -57,33 +69,82 @@ class Process:
     processes: Path
 
 
-@dataclass
-class Timed(Quiet):
-    """A progress that notes when it is told of each step."""
+@contextmanager
+def running(*codes: str, on: int | None = None, mark: Path | None = None) -> Iterator[list[int]]:
+    """Processes that run these programs, on one processor if that is named, known by ``mark`` alone."""
+    environment = None if mark is None else {VARIABLE: str(mark)}
+    processes = []
+    try:
+        for code in codes:
+            command = [sys.executable, "-c", code]
+            processes.append(subprocess.Popen(command, env=environment, start_new_session=True))
+            if on is not None:
+                os.sched_setaffinity(processes[-1].pid, {on})
+        yield [process.pid for process in processes]
+    finally:
+        below = demand.below([process.pid for process in processes], demand.children())
+        for pid in below:
+            os.kill(pid, 9)
+        for process in processes:
+            process.wait()
 
-    ends: list[float] = field(default_factory=list)
 
-    def advance(self, line: str | None = None) -> None:
-        self.ends.append(time.monotonic())
-        super().advance(line)
-
-
-@pytest.mark.whole
-def test_mutants_that_only_wait_leave_their_places_to_others(tmp_path: Path) -> None:
-    limits = "timeout_seconds = 6\ntimeout_factor = 1000.0\n"
-    project = write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + limits)
-    request = request_for(project, jobs=2, rounds=1, only=("reverse", "skip"))
-    progress = Timed()
-    found = outcomes(run_campaign(request, progress))
-    assert [one.verdict for one in found] == [Verdict.TIMEOUT] * 6
-    spans = [(end - one.wall, end) for end, one in zip(progress.ends[-6:], found, strict=True)]
-    at_once = (sum(start <= begin < end for start, end in spans) for begin, _ in spans)
-    assert max(at_once) > request.jobs
+def is_lent(workers: list[Process], seconds: float) -> bool:
+    """Whether one of two places is lent within so many seconds."""
+    places = Waiting(2)
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if places.has_place(workers):
+            return True
+        time.sleep(PERIOD / 4)
+    return False
 
 
 @pytest.fixture
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(waiting, "PERIOD", PERIOD)
+
+
+@pytest.fixture
+def _roomy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever else this machine does is none of a test's business."""
+    monkeypatch.setattr(waiting, "shortage", lambda: 0.0)
+
+
+@pytest.fixture
+def begun(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How many workers there were whenever one had begun."""
+    counts: list[int] = []
+    start: Callable[..., Any] = Workers._start
+
+    def counted(workers: Workers, *arguments: Any) -> None:
+        start(workers, *arguments)
+        counts.append(len(workers._workers))
+
+    monkeypatch.setattr(Workers, "_start", counted)
+    return counts
+
+
+@pytest.mark.whole
+@pytest.mark.usefixtures("_roomy")
+def test_mutants_that_only_wait_leave_their_places_to_others(tmp_path: Path, begun: list[int]) -> None:
+    limits = "timeout_seconds = 20\ntimeout_factor = 1000.0\n"
+    project = write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + limits)
+    request = request_for(project, jobs=2, rounds=1, only=("reverse", "skip"))
+    found = outcomes(run_campaign(request, Quiet()))
+    assert [one.verdict for one in found] == [Verdict.TIMEOUT] * 6
+    assert max(begun) > request.jobs
+
+
+@pytest.mark.whole
+def test_beside_busy_programs_no_more_begin_than_there_are_places(tmp_path: Path, begun: list[int]) -> None:
+    limits = "timeout_seconds = 6\ntimeout_factor = 1000.0\n"
+    project = write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + limits)
+    request = request_for(project, jobs=2, rounds=1, only=("reverse",))
+    with running(*[LOOP] * 24):
+        run_campaign(request, Quiet())
+    assert begun
+    assert max(begun) <= request.jobs
 
 
 @pytest.mark.usefixtures("_quick")
@@ -96,27 +157,61 @@ def test_where_one_runs_at_a_time_it_is_one(tmp_path: Path) -> None:
         time.sleep(PERIOD / 2)
 
 
-@pytest.mark.parametrize(("code", "waits"), [(SLEEP, True), ("while True: pass", False)])
-@pytest.mark.parametrize("is_below", [False, True])
+@pytest.mark.parametrize(("code", "waits"), [(SLEEP, True), (POLL, True), (LOOP, False)])
+@pytest.mark.parametrize("where", ["itself", "below", "elsewhere"])
+@pytest.mark.usefixtures("_quick", "_roomy")
+def test_what_a_worker_and_those_below_it_ask_for_counts(
+    tmp_path: Path, code: str, where: str, waits: bool
+) -> None:
+    own = {"itself": code, "below": BELOW.format(code), "elsewhere": SLEEP}[where]
+    elsewhere = [code] if where == "elsewhere" else []
+    with running(own, LOOP) as (worker, other), running(*elsewhere, mark=tmp_path):
+        both = [Process(worker, tmp_path), Process(other, tmp_path / "none")]
+        assert is_lent(both, PATIENCE if waits else 12 * PERIOD) is waits
+
+
+@pytest.mark.usefixtures("_quick", "_roomy")
+def test_a_worker_that_gets_no_processor_does_not_wait(tmp_path: Path) -> None:
+    processor = min(os.sched_getaffinity(0))
+    with running(LOOP, LOOP, *[LOOP] * 8, on=processor) as (one, two, *_):
+        before = demand.accounts_of([one])
+        assert not is_lent([Process(one, tmp_path), Process(two, tmp_path / "none")], 20 * PERIOD)
+        after = demand.accounts_of([one])
+    assert before is not None
+    assert after is not None
+    ran = after[one].ran - before[one].ran
+    assert ran < 0.25 * (ran + after[one].queued - before[one].queued)  # it got what one that polls may take
+
+
 @pytest.mark.usefixtures("_quick")
-def test_what_works_below_a_worker_counts(tmp_path: Path, code: str, waits: bool, is_below: bool) -> None:
-    worker = subprocess.Popen([sys.executable, "-c", SLEEP])
-    mark = {VARIABLE: str(tmp_path)} if is_below else {}
-    other = subprocess.Popen([sys.executable, "-c", code], env=mark, start_new_session=True)
-    try:
-        places = Waiting(2)
-        both = [
-            Process(worker.pid if is_below else other.pid, tmp_path),
-            Process(other.pid, tmp_path / "none"),
-        ]
-        end = time.monotonic() + 10 * PERIOD
-        has_place = False
-        while not has_place and time.monotonic() < end:
-            has_place = places.has_place(both)
-            time.sleep(PERIOD / 2)
-    finally:
-        worker.kill()
-        other.kill()
-        worker.wait()
-        other.wait()
-    assert has_place is waits
+def test_nothing_is_lent_while_processors_are_short(tmp_path: Path) -> None:
+    with running(SLEEP, SLEEP, *[LOOP] * 3 * (os.cpu_count() or 1)) as (one, two, *_):
+        assert not is_lent([Process(one, tmp_path), Process(two, tmp_path / "none")], 20 * PERIOD)
+
+
+@pytest.mark.parametrize("is_crowded", [False, True])
+@pytest.mark.usefixtures("_quick")
+def test_a_kernel_without_pressure_is_asked_for_its_load(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_crowded: bool
+) -> None:
+    monkeypatch.setattr(waiting, "shortage", lambda: None)
+    monkeypatch.setattr(waiting, "is_crowded", lambda: is_crowded)
+    with running(SLEEP, SLEEP) as (one, two):
+        both = [Process(one, tmp_path), Process(two, tmp_path / "none")]
+        assert is_lent(both, 12 * PERIOD if is_crowded else PATIENCE) is not is_crowded
+
+
+@pytest.mark.usefixtures("_quick", "_roomy")
+def test_nothing_is_lent_where_the_kernel_keeps_no_accounts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(waiting, "accounts_of", lambda processes: None)
+    with running(SLEEP, SLEEP) as (one, two):
+        assert not is_lent([Process(one, tmp_path), Process(two, tmp_path / "none")], 12 * PERIOD)
+
+
+def test_what_the_kernel_tells_of_the_load() -> None:
+    assert demand.accounts_of([os.getpid()])
+    demand.is_crowded()
+    total = demand.shortage()
+    assert total is None or total >= 0.0

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mutabot.inside.calls.refusing import answered, heard, refused_of
-from mutabot.model import Call, Operation, Pattern
+from mutabot.border.job import RefusedAt
+from mutabot.inside.calls.refusing import Made, RefusedCalls, answered, heard, refused_of
+from mutabot.model import Call, Operation, Pattern, Role, Span
 from mutabot.model.named import Form, Named, Refused
 
 STATUS = Refused(".status", (5, 6))
@@ -31,6 +32,8 @@ def call(*refused: Refused, named: Named | None = None) -> Call:
         (STATUS, SimpleNamespace(status=5), "answered status 5"),
         (STATUS, SimpleNamespace(status=np.uint8(6)), "answered status 6"),
         (STATUS, SimpleNamespace(status=State.STUCK), "answered status 5"),
+        (Refused(".status", ("STUCK",)), SimpleNamespace(status=State.STUCK), "answered status 5"),
+        (Refused(".status", ("FINE",)), SimpleNamespace(status=State.STUCK), None),
         (STATUS, SimpleNamespace(status=4), None),
         (STATUS, SimpleNamespace(), None),
         (STATUS, None, None),
@@ -68,3 +71,44 @@ def test_what_an_entry_says_of_some_calls_goes_before_the_operation() -> None:
     operation = Operation("a:b", patterns=(own,), refused=(Refused("", (1,)),))
     assert refused_of(Call(operation, own)) == (STATUS,)
     assert refused_of(Call(operation)) == operation.refused
+
+
+SITE = (Span("mission.py", 3, 4, 3, 20, "run"), Role.PROGRAM)
+TOPIC = Refused(".code", (7,), "/arm/note")
+SILENT, TOLD = SimpleNamespace(code=0), SimpleNamespace(code=7)
+
+
+def test_calls_of_the_original_that_are_refused_by_a_message_are_noted_by_their_number() -> None:
+    noted: list[int] = []
+    refused = RefusedCalls(lambda made: noted.append(made.number))
+    first, second, third = (Made(SITE, call(TOPIC), number) for number in (1, 2, 3))
+    refused.begins(first)
+    refused.heard("/arm/note", SILENT)
+    refused.begins(second)
+    refused.heard("/arm/note", TOLD)  # of the second: the first one is over
+    refused.heard("/arm/note", TOLD)
+    refused.begins(third)
+    refused.returned(third, None)
+    refused.start(())
+    refused.heard("/arm/note", TOLD)  # in another test
+    assert noted == [2]
+
+
+def test_a_call_of_the_original_that_answers_so_is_noted() -> None:
+    noted: list[int] = []
+    refused = RefusedCalls(lambda made: noted.append(made.number))
+    for number, status in ((1, 0), (2, 5)):
+        made = Made(SITE, call(STATUS), number)
+        refused.begins(made)
+        refused.returned(made, SimpleNamespace(status=status))
+    assert noted == [2]
+
+
+def test_what_is_known_of_a_test_holds_for_its_calls_alone() -> None:
+    refused = RefusedCalls()
+    refused.start([RefusedAt(SITE[0], "robot:Arm.move", None, (2, 4))])
+    assert [number for number in range(1, 6) if refused.has(Made(SITE, call(), number))] == [2, 4]
+    elsewhere = (Span("mission.py", 4, 4, 4, 20, "run"), Role.PROGRAM)
+    assert not refused.has(Made(elsewhere, call(), 2))
+    refused.start(())
+    assert not refused.has(Made(SITE, call(), 2))

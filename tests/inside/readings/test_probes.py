@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import gc
+import importlib
+import sys
 import weakref
 from typing import Any
 
 import pytest
 
 from mutabot.border.lines import Problem
+from mutabot.campaign.comparing.observation import Observation, compare
 from mutabot.inside.readings.probes import Reading
 from tests.inside.stage import Make, Stage
 
@@ -244,3 +247,68 @@ def inspect(stage: Stage) -> None:
 def problem_of(stage: Stage) -> Problem:
     inspect(stage)
     return next(line for line in stage.pipe.lines if isinstance(line, Problem))
+
+
+CALLED = {
+    "operation": OPERATION.replace("Arm.move_by", "Bare.at").replace("arguments.dx", "command = true #")
+}
+
+
+def test_an_object_of_another_test_is_never_read(make_stage: Make) -> None:
+    """It lives on, as what lies in a garbage cycle or in a global of the tests does."""
+    stage = stage_with(make_stage, "robot:Arm.x", **CALLED)
+    session = stage.session()
+    session.start_test("first", tuple)
+    kept = stage.run(session, "run", 1.0)
+    assert session.take_probes().values == {f"{stage.robot_name}:Arm.x": 1.5}
+    session.start_test("second", tuple)
+    assert session.take_probes().values == {f"{stage.robot_name}:Arm.x": 7.0}  # made with the module
+    session.start_test("third", lambda: kept)  # a fixture of wider scope, which this test uses
+    assert session.take_probes().values == {f"{stage.robot_name}:Arm.x": 1.5}
+
+
+def test_without_an_object_of_its_own_a_test_cannot_read_a_probe(make_stage: Make) -> None:
+    stage = stage_with(make_stage, "robot:Bare.at")
+    session = stage.session()
+    session.start_test("first", tuple)
+    kept = stage.load_robot().Bare()
+    assert session.take_probes().values == {f"{stage.robot_name}:Bare.at": 1}
+    session.start_test("second", tuple)
+    assert "no object of Bare is known" in session.take_probes().unread[f"{stage.robot_name}:Bare.at"]
+    del kept
+
+
+def test_what_a_module_makes_while_a_test_imports_it_is_there_for_all_tests(make_stage: Make) -> None:
+    stage = stage_with(make_stage, "robot:Arm.x", **CALLED)
+    session = stage.session()
+    (stage.folder / "made_late.py").write_text(f"import {stage.robot_name} as robot\nARM = robot.Arm(2.0)\n")
+    session.start_test("first", tuple)
+    importlib.import_module("made_late")
+    session.start_test("second", tuple)
+    assert session.take_probes().values == {f"{stage.robot_name}:Arm.x": 2.0}
+    del sys.modules["made_late"]
+
+
+@pytest.mark.parametrize(
+    ("state", "parts"),
+    [
+        ("{}", {"STATE": {}}),
+        ("[]", {"STATE": []}),
+        ("()", {"STATE": []}),
+        ("{'boxes': [], 'held': {}}", {"STATE.boxes": [], "STATE.held": {}}),
+        ("0", {"STATE": 0}),
+    ],
+)
+def test_what_is_empty_is_a_value(make_stage: Make, state: str, parts: dict[str, Any]) -> None:
+    robot = ROBOT.replace('{"box": (1, 2)}', state)
+    stage = make_stage(robot, PROGRAM, OPERATION + '[[probe]]\ncall = "robot:STATE"\n')
+    assert read(stage, 0.25) == Reading(parts, {})
+
+
+def test_a_list_that_is_empty_at_the_end_differs_from_one_that_is_not() -> None:
+    full, empty = Observation(probes={"robot:boxes[0]": 1}), Observation(probes={"robot:boxes": []})
+    assert compare(full, empty).divergence == (
+        "boxes[0]: nothing instead of 1",
+        "boxes: [] instead of nothing",
+    )
+    assert compare(empty, empty).indistinguishable

@@ -8,7 +8,10 @@ from typing import Any
 
 import pytest
 
+from mutabot.border.idle import Idle
 from mutabot.border.lines import Problem
+from mutabot.inside.calls.answers import LOST
+from mutabot.model.values.answer import keep, restore
 from tests.inside.stage import Make, Stage
 
 rclpy = pytest.importorskip("rclpy")
@@ -480,6 +483,71 @@ def test_the_value_of_a_parameter_is_misread(make: Making) -> None:
         return value
     """
     assert make(program, PARAMETER).mutated("negate", "value")[0] == -0.25
+
+
+def test_a_part_of_a_parameter_is_misread(make: Making) -> None:
+    program = """
+    def run():
+        node = begin()
+        value = node.declare_parameter("speed", [0.25, 0.5]).value
+        node.destroy_node()
+        return list(value)
+    """
+    vocabulary = PARAMETER.replace("value =", 'value."[1]" =')
+    assert make(program, vocabulary).mutated("negate", "[1]")[0] == [0.25, -0.5]
+
+
+def test_a_parameter_that_is_set_is_one_of_a_list(make: Making) -> None:
+    program = """
+    from rclpy.parameter import Parameter
+
+    def run():
+        node = begin()
+        node.declare_parameter("speed", 0.25)
+        given = [Parameter("speed", value=0.5)]
+        node.set_parameters(given)
+        value = node.get_parameter("speed").value
+        node.destroy_node()
+        return value, given[0].value
+    """
+    vocabulary = """
+    [[operation]]
+    call = "rclpy.node:Node.set_parameters"
+    arguments.parameter_list."[0].value" = { kind = "speed", unit = "m/s", range = [-1, 1] }
+    """
+    assert make(program, vocabulary).mutated("reverse", "parameter_list[0].value")[0] == (-0.5, 0.5)
+
+
+def test_a_goal_that_is_not_sent_is_never_answered(make: Making, turning: list[int]) -> None:
+    program = """
+    from rclpy.action import ActionClient
+    from test_msgs.action import Fibonacci
+
+    RUNS = []
+
+    def run():
+        RUNS.append(1)
+        node = begin()
+        client = ActionClient(node, Fibonacci, "turn")
+        until(client.server_is_ready, node)
+        sent = client.send_goal_async(Fibonacci.Goal(order=30))
+        rclpy.spin_until_future_complete(node, sent, timeout_sec=5.0 if len(RUNS) == 1 else 0.5)
+        found = type(sent), sent.done()
+        client.destroy()
+        node.destroy_node()
+        return found
+    """
+    named = make(program, ACTION)
+    idle = Idle((LOST,)).data()
+    result, activation = named.mutated("skip", idle=idle, index=1)
+    assert result == (rclpy.task.Future, False)
+    assert (activation.evidence.acted, activation.evidence.failure, turning) == (1, None, [30])
+
+
+def test_a_call_that_returns_a_future_of_ros_is_kept_as_one_that_is_never_done() -> None:
+    data = keep(rclpy.task.Future(), {})
+    found = restore(data, {})
+    assert (type(found), found.done(), data) == (rclpy.task.Future, False, {"pending": "rclpy.task.Future"})
 
 
 def test_timers_and_rates_are_sites(make: Making) -> None:

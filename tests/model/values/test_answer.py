@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import array
+import asyncio
+import concurrent.futures
 import enum
 import json
 import math
@@ -13,6 +15,7 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any, ClassVar
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -23,6 +26,12 @@ Stamped = namedtuple("Stamped", "time pose")  # as users write them
 
 class Colour(enum.Enum):
     RED = "r"
+
+
+class Light(enum.Flag):
+    RED = 1
+    GREEN = 2
+    BLUE = 4
 
 
 @dataclass(frozen=True)
@@ -94,7 +103,8 @@ VALUES = [
     None, True, 3, 0.1, "grün", b"\x00\xff", bytearray(b"ab"), (), (1, (2.5, "a")), [[1], []], {1, 2},
     frozenset({"a"}), deque([1, 2]), {"a": [1], 2: None, (1, 2): "b"}, OrderedDict(b=1, a=2),
     Stamped(0.5, Pose(1.0)), Colour.RED, [Pose(1.0, 2.0)], Small(3.0), Made(), Point(4.0),
-    SimpleNamespace(x=[1]), array.array("d", [0.5, -1.0]), array.array("B"),
+    mujoco.mjtGeom.mjGEOM_BOX, Light.RED | Light.BLUE, SimpleNamespace(x=[1]),
+    array.array("d", [0.5, -1.0]), array.array("B"),
 ]  # fmt: skip
 
 
@@ -109,6 +119,32 @@ def test_a_value_comes_back_equal_and_of_the_same_type(value: Any) -> None:
     assert found == value
     assert type(found) is type(value)
     assert list(found) == list(value) if isinstance(value, OrderedDict) else True
+
+
+def test_a_future_comes_back_as_one_that_is_never_done() -> None:
+    done: concurrent.futures.Future[int] = concurrent.futures.Future()
+    done.set_result(1)
+    found, number = copied((done, 3))
+    assert type(found) is concurrent.futures.Future
+    assert (found.done(), number) == (False, 3)
+    with pytest.raises(TimeoutError):
+        found.result(timeout=0.01)
+
+
+def test_a_future_of_an_event_loop_comes_back_in_the_running_one() -> None:
+    async def made() -> Any:
+        return asyncio.get_running_loop().create_future()
+
+    async def again(data: Any) -> None:
+        found = restore(data, {})
+        assert isinstance(found, asyncio.Future)
+        assert found.get_loop() is asyncio.get_running_loop()
+        assert not found.done()
+
+    data = keep(asyncio.run(made()), {})
+    asyncio.run(again(data))
+    with pytest.raises(LookupError, match="needs an event loop, and none is running"):
+        restore(data, {})
 
 
 def test_each_time_it_is_another_object() -> None:

@@ -62,7 +62,8 @@ def frame_of(results: Results) -> pandas.DataFrame:
 
 def missing(library: str, wanted: str) -> UsageError:
     """What to say where a library of an extra is not installed."""
-    return UsageError(f"{wanted} needs {library}, which is not installed: pip install 'mutabot[notebook]'")
+    install = "pip install 'path/to/mutabot[notebook]'"
+    return UsageError(f"{wanted} needs {library}, which is not installed: {install}")
 
 
 def _cell(column: Column, result: MutantResult, outcome: Outcome) -> Cell:

@@ -34,6 +34,11 @@ class RecordedAnswers:
     varying: dict[str, None] = field(default_factory=dict)
     has_raised: bool = False
 
+    @property
+    def is_nothing(self) -> bool:
+        """Whether all calls that returned, returned nothing (None)."""
+        return not self.varying and all(note is None for note in self.first.values())
+
     def add(self, round: int, test: str, note: Any) -> None:
         """The next call of the place in this test has returned, or raised."""
         if isinstance(note, dict) and "raised" in note:

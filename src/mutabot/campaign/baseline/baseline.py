@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.border.job import Budget
+from mutabot.border.job import Budget, RefusedAt
 from mutabot.border.lines import Remark
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.observation import Observation, as_steady
@@ -52,6 +52,8 @@ class Baseline:
         flaky_reaching: (round, place) to the tests that reach it but are set aside in this round.
         dependent: selections of tests that pass only together with others; filled in by the controls.
         strides: after every how many commands probes are read along the way, by (round, test).
+        refused: (round, test) to the calls that the robot refuses there: see ``Job.refused``.
+        written_through: places that return the robot's own memory, to which the program writes.
         restless: (round, test) whose trace or probes differ between repetitions; never compared.
         doubted: tests that have failed once where equal runs pass.
         unequal: (round, test) that were not the same to the last bit in all runs of the original.
@@ -64,6 +66,7 @@ class Baseline:
         sharing: per round, what its tests share.
         early: places that are reached before any test begins, while the program or a test file is imported:
             a mutant there needs a process of its own.
+        unread: whether nobody uses what the calls of a place return.
         widened: mutants, by id and round, that left something behind in a test which leaves nothing behind
             in the original: judged by the whole suite.
     """
@@ -72,10 +75,13 @@ class Baseline:
     ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
     hits: dict[Place, list[Hit]] = field(default_factory=dict)
     answers: dict[Place, RecordedAnswers] = field(default_factory=dict)
+    unread: dict[Place, bool] = field(default_factory=dict)
     reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
     observations: dict[tuple[int, str], Observation] = field(default_factory=dict)
     unstable: dict[tuple[int, str], str] = field(default_factory=dict)
     strides: Mapping[tuple[int, str], int] = field(default_factory=dict)
+    refused: dict[tuple[int, str], tuple[RefusedAt, ...]] = field(default_factory=dict)
+    written_through: set[Place] = field(default_factory=set)
     restless: set[tuple[int, str]] = field(default_factory=set)
     unequal: set[tuple[int, str]] = field(default_factory=set)
     doubted: set[str] = field(default_factory=set)
@@ -222,6 +228,10 @@ class Baseline:
             self.restless.add((round, test))
         else:
             self.observations[round, test] = steady
+
+    def refused_in(self, round: int, tests: Iterable[str]) -> dict[str, tuple[RefusedAt, ...]]:
+        """The calls of these tests that the robot refuses in the original."""
+        return {test: self.refused[round, test] for test in tests if (round, test) in self.refused}
 
     def by_cost(self, round: int) -> list[str]:
         """All tests of a round, quickest first: the order of every selection."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from mutabot.border.job import RefusedAt
 from mutabot.border.lines import SiteSeen
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.observation import Event, Observation
@@ -39,3 +40,21 @@ def observation(end: TestEnd, places: Mapping[int, Place]) -> Observation:
     return Observation(
         events, end.probes, end.truncated, end.unread, end.outcome, prepared, called, end.moments
     )
+
+
+def refused_of(result: Result) -> dict[str, tuple[RefusedAt, ...]]:
+    """The calls that the robot refused in a run, by test."""
+    sites = {seen.index: seen for seen in result.sites}
+    found: dict[str, tuple[RefusedAt, ...]] = {}
+    for end in result.ends:
+        numbers: dict[int, set[int]] = {}
+        for index, number in end.refused_calls:
+            numbers.setdefault(index, set()).add(number)
+        if numbers:
+            found[end.test] = tuple(
+                RefusedAt(
+                    sites[index].span, sites[index].operation, sites[index].pattern, tuple(sorted(those))
+                )
+                for index, those in numbers.items()
+            )
+    return found

@@ -21,7 +21,7 @@ from mutabot.vocabulary import problem_error
 from .answers import RecordedAnswers
 from .baseline import Baseline, Hit, cost
 from .failing import refuse_failing, rounds_to_repeat, why_set_aside
-from .observed import observations_of, places_of
+from .observed import observations_of, places_of, refused_of
 from .places import Place
 from .program_text import ProgramTexts, read_texts
 from .readability import note_readability, refuse_unreadable
@@ -178,6 +178,12 @@ def _refuse(result: Result, arguments: Sequence[str]) -> None:
     """Stop at once if this run of the suite cannot be a baseline."""
     if result.problems:
         raise _worst_problem(result)
+    if result.untrusted is not None:
+        raise BaselineError(
+            f"the tests cannot be run on the original: {result.untrusted}; do they write to descriptors that "
+            "they have not opened, or delete .mutabot?",
+            tests=_running(result),
+        )
     if result.end is None:
         text = f"the tests cannot be run on the original: {death(result, said=False)}{at(result)}"
         raise BaselineError(f"{text}{said_in(result.log)}", tests=_running(result))
@@ -248,6 +254,7 @@ def _add_round(
     baseline.startup = max([baseline.startup, *spent])
     baseline.sharing.append(Sharing.of([(end.test, end.footprint) for end in repetitions[0].ends]))
     _add_hits(baseline, sources, round, repetitions[0], good)
+    baseline.refused |= {(round, test): calls for test, calls in refused_of(repetitions[0]).items()}
     return failed
 
 
@@ -260,6 +267,11 @@ def _no_tests(baseline: Baseline) -> str:
 
 def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, good: list[str]) -> None:
     places = places_of(result, sources)
+    live = {places[index] for end in result.ends for index in end.live}
+    baseline.written_through |= {place for place in live if sources.is_written_through(place.site.span)}
+    for seen in result.sites:
+        place = places[seen.index]
+        baseline.unread[place] = sources.is_unused(seen) and baseline.unread.get(place, True)
     reaching: dict[Place, list[str]] = {}
     for end in result.ends:
         if end.test not in good:

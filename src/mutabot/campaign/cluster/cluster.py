@@ -31,6 +31,8 @@ from .environment import decided, module_folders
 from .link import Link, is_private
 from .local import LocalCluster, address_in
 from .roster import Roster
+from .shipping import Shipment
+from .telling import explained, summary, warnings
 from .unit import Ground
 
 #: seconds to wait for those that are there to say who they are, and for a scheduler that is gone
@@ -62,6 +64,7 @@ class Cluster:
         self._request, self._settings = request, settings
         self._versions = versions()
         self._ground: Ground | None = None
+        self._shipment: Shipment | None = None
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._local: LocalCluster | None = None
         self._is_given_up = False
@@ -76,10 +79,10 @@ class Cluster:
             self.link = Link(self._settings, self._address())
             if not is_private(self.link.address):
                 tell(
-                    f"the connection to {self.link.address} is not encrypted: whoever can reach or read it can "
-                    "run programs on its workers; tls:// closes it (docs/cluster.md, TLS)"
+                    f"the connection to {self.link.address} is not encrypted: whoever can reach its port "
+                    "can run programs on the workers; tls:// closes it (docs/cluster.md, TLS)"
                 )
-            self.roster = Roster(self.link, self._versions, settings.mixed, tell)
+            self.roster = Roster(self.link, self._versions, settings.mixed, self._tell_of_worker)
             self._meet()
         except BaseException:
             self._let_go()
@@ -158,8 +161,14 @@ class Cluster:
                     return False
                 with interruptible():
                     time.sleep(1.0)
-        self.roster = Roster(self.link, self._versions, self._settings.mixed, self.tell, bundle, told)
+        self.roster = Roster(
+            self.link, self._versions, self._settings.mixed, self._tell_of_worker, bundle, told
+        )
         return True
+
+    def _tell_of_worker(self, text: str) -> None:
+        """Tell what a worker said; of files that it lacks it is known why."""
+        self.tell(explained(self._shipment, text) if self._shipment is not None else text)
 
     @property
     def _ready_ground(self) -> Ground:
@@ -197,7 +206,11 @@ class Cluster:
         if self.roster.bundle is not None:
             return
         root = self._request.root
-        bundle = self.roster.bundle = Bundle.make(root)
+        shipment = self._shipment = Shipment.of_configuration(self._request.configuration)
+        bundle = self.roster.bundle = Bundle.make(shipment)
+        self.tell(f"workers are sent {summary(bundle)}")
+        for text in warnings(shipment, bundle):
+            self.tell(text)
         paths = tuple(module_folders(root))
         self._ground = Ground(
             bundle.digest, str(root), bundle.inner, self._request.arguments, decided(), paths

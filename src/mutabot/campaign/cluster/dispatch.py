@@ -11,6 +11,7 @@ import time
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from secrets import token_hex
 from typing import Protocol
 
 from mutabot.border.lines import BranchDied, Line
@@ -20,7 +21,8 @@ from mutabot.campaign.workers.pause import Pause
 from mutabot.campaign.workers.task import Result, Task
 
 from . import far
-from .link import Link, News
+from .checked import Misfit
+from .link import Link, News, shown
 from .roster import Roster
 from .unit import Answer, Ground, Unit
 
@@ -44,7 +46,8 @@ class _Trial:
         task: the task.
         faults: how it was lost, one entry each.
         avoided: the workers with which it was.
-        answer: the last answer, if there was one.
+        answer, lines: the last answer, if there was one, and what its process reported.
+        unit: what the worker that runs it was given.
         until: when (``time.monotonic``) it must have ended, whatever it does.
     """
 
@@ -52,6 +55,8 @@ class _Trial:
     faults: list[str] = field(default_factory=list)
     avoided: set[str] = field(default_factory=set)
     answer: Answer | None = None
+    lines: list[Line] = field(default_factory=list)
+    unit: Unit | None = None
     until: float = 0.0
 
 
@@ -136,9 +141,10 @@ class Dispatch:
         while idle and (trial := self._due()) is not None:
             worker = next((one for one in idle if one not in trial.avoided), idle[0])
             idle.remove(worker)
-            data = Unit(self._ground, trial.task).data()
+            trial.unit = Unit(self._ground, trial.task, token_hex(16))
             trial.until = time.monotonic() + longest(trial.task)
-            self._running[self._cluster.link.ask(worker, far.run_unit, data)] = worker, trial
+            number = self._cluster.link.ask(worker, far.run_unit, trial.unit.data())
+            self._running[number] = worker, trial
 
     def _due(self) -> _Trial | None:
         """The next to run: what was lost once at once, what was lost more often when all else has begun.
@@ -172,23 +178,35 @@ class Dispatch:
 
     def _take(self, news: News) -> None:
         worker, trial = self._running.pop(news.asked, ("", None))
-        if trial is None:
+        if trial is None or trial.unit is None:
             return
         if news.data is None:
+            if news.is_foreign:
+                self._cluster.roster.refuse(worker, news.why)
             self._lost(trial, worker, f"its worker gave no answer: {news.why}")
             return
-        answer = Answer.of(news.data)
+        try:
+            answer, lines = Answer.of(news.data, trial.unit)
+        except Misfit as error:
+            self._misfit(trial, worker, shown(str(error)))
+            return
         if answer.fault is not None:
-            trial.answer = None if answer.is_unfit else answer
+            trial.answer, trial.lines = (None, []) if answer.is_unfit else (answer, lines)
             if answer.is_unfit:
                 self._cluster.roster.refuse(worker, answer.fault)
-            self._lost(trial, worker, answer.fault)
+            self._lost(trial, worker, shown(answer.fault))
             return
-        self._settle(trial, answer)
+        self._settle(trial, answer, lines)
 
-    def _settle(self, trial: _Trial, answer: Answer) -> None:
+    def _misfit(self, trial: _Trial, worker: str, why: str) -> None:
+        """Take no answer from a worker that gives wrong ones, and make nothing of this one."""
+        self._cluster.roster.refuse(worker, f"its answer does not fit: {why}")
+        lost = f"the answer of its worker does not fit: {why} ({worker})"
+        self._settled.append(Result(trial.task, lost=lost))
+
+    def _settle(self, trial: _Trial, answer: Answer, lines: list[Line]) -> None:
         self._cluster.done += 1
-        task, lines = trial.task, answer.reported
+        task = trial.task
         overdue = {line.mutant for line in lines if isinstance(line, BranchDied) and line.overdue}
         if answer.overdue is not None and not task.is_trunk:
             self._at_home.append(task)
@@ -209,7 +227,7 @@ class Dispatch:
             self._again = deque(sorted(self._again, key=lambda one: len(one.faults)))
             return
         if trial.answer is not None:  # what ended it each time may be the mutant after all: the judge knows
-            self._settle(trial, trial.answer)
+            self._settle(trial, trial.answer, trial.lines)
             return
         lost = f"{TRIES} workers could not run it: {'; '.join(dict.fromkeys(trial.faults))}"
         self._settled.append(Result(trial.task, lost=lost))

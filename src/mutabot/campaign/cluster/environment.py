@@ -9,13 +9,22 @@ from pathlib import Path
 
 from mutabot.campaign.workers.processes import usual_environment
 
-#: variables that say how Python, pytest and numbers behave; those that name places stay with their machine
-_DECIDED = ("PYTHON", "PYTEST_", "LC_", "LANG", "TZ", "MUJOCO_GL", "PYOPENGL_PLATFORM")
-_THREADS = "_NUM_THREADS"
-_PLACES = {
-    "PYTHONPATH", "PYTHONHOME", "PYTHONUSERBASE", "PYTHONPYCACHEPREFIX", "PYTHONEXECUTABLE", "PYTHONSTARTUP",
-    "PYTEST_CURRENT_TEST", "PYTEST_VERSION", "PYTEST_XDIST_WORKER", "PYTEST_XDIST_WORKER_COUNT",
-    "PYTEST_XDIST_TESTRUNUID",
+#: variables that say how Python, pytest and numbers behave, each by its whole name: a prefix would also take
+#: what somebody else keeps under such a name, as a key. Those that name places stay with their machine.
+_DECIDED = {
+    "LANG", "LANGUAGE", "LC_ALL", "LC_ADDRESS", "LC_COLLATE", "LC_CTYPE", "LC_IDENTIFICATION",
+    "LC_MEASUREMENT", "LC_MESSAGES", "LC_MONETARY", "LC_NAME", "LC_NUMERIC", "LC_PAPER", "LC_TELEPHONE",
+    "LC_TIME", "TZ",
+    "PYTHONASYNCIODEBUG", "PYTHONBREAKPOINT", "PYTHONCOERCECLOCALE", "PYTHONDEBUG", "PYTHONDEVMODE",
+    "PYTHONDONTWRITEBYTECODE", "PYTHONFAULTHANDLER", "PYTHONHASHSEED", "PYTHONINTMAXSTRDIGITS",
+    "PYTHONIOENCODING", "PYTHONMALLOC", "PYTHONNODEBUGRANGES", "PYTHONNOUSERSITE", "PYTHONOPTIMIZE",
+    "PYTHONSAFEPATH", "PYTHONTRACEMALLOC", "PYTHONUNBUFFERED", "PYTHONUTF8", "PYTHONWARNDEFAULTENCODING",
+    "PYTHONWARNINGS", "PYTHON_COLORS", "PYTHON_CPU_COUNT", "PYTHON_FROZEN_MODULES", "PYTHON_GIL",
+    "PYTHON_JIT", "PYTHON_CONTEXT_AWARE_WARNINGS", "PYTHON_THREAD_INHERIT_CONTEXT",
+    "PYTEST_ADDOPTS", "PYTEST_DISABLE_PLUGIN_AUTOLOAD", "PYTEST_PLUGINS",
+    "BLIS_NUM_THREADS", "GOTO_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "NUMEXPR_NUM_THREADS",
+    "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "RAYON_NUM_THREADS",
+    "MUJOCO_GL", "PYOPENGL_PLATFORM",
 }  # fmt: skip
 #: variables that nobody set and that Dask's nannies set
 _NOT_TO_BE = ("PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "PYTEST_ADDOPTS", "PYTEST_PLUGINS", "TZ")
@@ -24,11 +33,7 @@ _NOT_TO_BE = ("PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "PYTEST_ADDO
 def decided() -> dict[str, str | None]:
     """The variables that this machine decides for all; None for those that are not to be set."""
     here = usual_environment()
-    ours = {
-        name: value
-        for name, value in here.items()
-        if name not in _PLACES and (name.startswith(_DECIDED) or name.endswith(_THREADS))
-    }
+    ours = {name: value for name, value in here.items() if name in _DECIDED}
     return {**dict.fromkeys(_NOT_TO_BE), **ours}
 
 

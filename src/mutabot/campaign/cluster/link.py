@@ -29,8 +29,10 @@ try:
 except ImportError as error:  # said in words a user can act on
     raise ClusterError(
         "--cluster needs the library distributed, which is not installed here: "
-        f"pip install 'mutabot[cluster]' ({error})"
+        f"pip install 'path/to/mutabot[cluster]' ({error})"
     ) from error
+
+from . import guard
 
 #: seconds that a scheduler may take to answer
 PATIENCE = 10.0
@@ -39,8 +41,21 @@ _PERIOD, _SILENCE = 0.5, 45.0
 #: threads that fetch answers
 _FETCHERS = 4
 #: how a function of ours is called: one that went as itself would end a worker that cannot import it
-_CALL = "__import__('importlib').import_module('{}').{}(*given)"
-_KINDS = ["dask", "msgpack", "error"]
+_CALL = "exec(code, names := {'given': given}) or names['answer']"
+_RAISED = b"!"
+#: by which the scheduler tells that there is nobody to run something
+_LOSSES = {"KilledWorker", "NoValidWorkerError"}
+#: characters of what a worker says that are shown
+_WORDS = 1000
+#: answers with what was raised as data: nothing that a worker sends is unpickled here
+_CODE = """
+try:
+    from importlib import import_module
+    answer = import_module({!r}).{}(*given)
+except BaseException as error:
+    said = (str(error).strip().splitlines() or [""])[0][:1000]
+    answer = b"!" + (type(error).__name__ + ": " + said).encode("utf-8", "replace")
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,11 +66,13 @@ class News:
         asked: the number of what was asked.
         data: the answer; None if there is none.
         why: why not, in words.
+        is_foreign: whether it is nothing that our functions answer.
     """
 
     asked: int
     data: bytes | None
     why: str = ""
+    is_foreign: bool = False
 
 
 class Link:
@@ -74,6 +91,7 @@ class Link:
     _numbers = count(1)
 
     def __init__(self, settings: ClusterSettings, address: str) -> None:
+        guard.install()
         self.address = address
         self.news: queue.SimpleQueue[News] = queue.SimpleQueue()
         _be_quiet()
@@ -104,10 +122,11 @@ class Link:
     def ask(self, worker: str, function: Callable[..., bytes], *arguments: Any) -> int:
         """Let a worker run a function; returns the number by which its answer comes."""
         number = next(self._numbers)
+        code = _CODE.format(function.__module__, function.__name__)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # large messages are meant
             future = self._client.submit(
-                eval, _CALL.format(function.__module__, function.__name__), {"given": arguments},
+                eval, _CALL, {"given": arguments, "code": code},
                 key=f"mutabot-{self._client.id}-{number}", pure=False, workers=[worker],
                 allow_other_workers=False,
             )  # fmt: skip
@@ -138,10 +157,9 @@ class Link:
 
     def _fetched(self, number: int, future: Any) -> None:
         try:
-            found = future.result(timeout=_SILENCE)
-            news = News(number, bytes(found))
+            news = _news(number, future.result(timeout=_SILENCE))
         except Exception as error:  # whatever a worker raises is only told
-            news = News(number, None, f"{type(error).__name__}: {error}".splitlines()[0])
+            news = News(number, None, shown(guard.words(error)), _is_foreign(error))
         if self._asked.pop(number, None) is not None:
             self.news.put(news)
 
@@ -151,18 +169,34 @@ class Link:
                 self._call_once()
 
     def _call_once(self) -> None:
-        self._there = dict(self._client.nthreads())
+        found = self._client.nthreads()
+        self._there = {str(address): count for address, count in found.items() if type(count) is int}
         self._heard = time.monotonic()
+
+
+def _news(number: int, found: Any) -> News:
+    if type(found) is not bytes:
+        return News(number, None, f"it answered with {guard.words(found)}", is_foreign=True)
+    if found.startswith(_RAISED):
+        return News(number, None, shown(found[1:_WORDS].decode("utf-8", "replace")))
+    return News(number, found)
+
+
+def _is_foreign(error: Exception) -> bool:
+    """Whether a worker raised that: what our functions raise comes as data, and losses are nobody's fault."""
+    return isinstance(error, guard.Unreadable) and error.kind not in _LOSSES
+
+
+def shown(text: str) -> str:
+    """What a worker says, as one line that does nothing to a terminal."""
+    return "".join(one if one.isprintable() else "�" for one in text[:_WORDS])
 
 
 def _client(settings: ClusterSettings, address: str) -> Any:
     try:
         security = _security(settings, address)
         open_client: Any = distributed.Client
-        return open_client(
-            address, security=security, timeout=PATIENCE, set_as_default=False, deserializers=_KINDS,
-            name="mutabot",
-        )  # fmt: skip
+        return open_client(address, security=security, timeout=PATIENCE, set_as_default=False, name="mutabot")
     except (OSError, ValueError, TypeError, RuntimeError) as error:
         raise ClusterError(_why_not(settings, address, error)) from error
 

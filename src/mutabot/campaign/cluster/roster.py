@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 
 from . import far
 from .bundle import Bundle
+from .checked import Misfit
 from .environment import differences
-from .link import Link, News
+from .link import Link, News, shown
 from .unit import Introduction
 
 #: how often a worker may fail to say who it is, or to take the project
@@ -109,8 +110,13 @@ class Roster:
         worker = self._workers[address]
         worker.asked.discard(news.asked)
         if news.data is not None and news.data != far.TAKEN:
-            self._introduced(address, worker, Introduction.of(news.data))
+            try:
+                self._introduced(address, worker, Introduction.of(news.data))
+            except Misfit as error:
+                self.refuse(address, f"its answer does not fit: {error}")
             return True
+        if news.is_foreign:
+            self.refuse(address, news.why)
         worker.fault = worker.fault or (news.why if news.data is None else None)
         if not worker.asked:
             self._has_answered(address, worker)
@@ -132,7 +138,7 @@ class Roster:
         worker = self._workers.get(address)
         if worker is not None and worker.refused is None:
             worker.refused, worker.is_fit = why, False
-            self._tell_once(f"worker {address} is not used: {why}")
+            self._tell_once(shown(f"worker {address} is not used: {why}"))
 
     def dismiss(self) -> None:
         """The campaign is over: workers need to keep nothing of it."""
@@ -157,7 +163,7 @@ class Roster:
             if not self.mixed:
                 self.refuse(address, f"{text} (--mixed uses it all the same)")
                 return
-            self._tell_once(f"worker {one.host} runs with something else: {text}")
+            self._tell_once(shown(f"worker {one.host} runs with something else: {text}"))
         worker.is_known = True
         if one.has:
             worker.is_fit = True

@@ -18,6 +18,7 @@ from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.campaign.workers.workers import Workers
 from mutabot.errors import JournalError
 
+from .checked import Misfit
 from .environment import apply
 from .unit import Answer, Ground, Unit
 
@@ -67,7 +68,16 @@ class Session:
                 answer = Answer(fault=str(error), is_unfit=True)
                 here = there  # the folders that it names are this machine's
             self._used = time.monotonic()
-        return answer.data(here, there)
+        return self._fitting(replace(answer, ticket=unit.ticket).data(here, there), unit)
+
+    def _fitting(self, data: bytes, unit: Unit) -> bytes:
+        """The answer if the controller will take it: what processes report is in the hands of mutants."""
+        try:
+            Answer.of(data, unit)
+        except Misfit as error:
+            lost = f"what its process reported cannot be used: {error}"
+            return Answer(lost=lost, ticket=unit.ticket).data("/", "/")
+        return data
 
     def close(self) -> None:
         """End what it keeps."""

@@ -9,8 +9,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.border.codec import from_data, to_data
-from mutabot.border.lines import Line, line_from_data, line_to_data
+from mutabot.border.lines import LINES, Line, line_to_data
 from mutabot.campaign.workers.task import Result, Task
+
+from .checked import Misfit, checked, read
+from .fitting import check_fit
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +39,14 @@ class Ground:
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """One task, on its ground. The key of the task stays with the controller."""
+    """One task, on its ground. The key of the task stays with the controller.
+
+    ``ticket`` is what the answer must bear: who was not given the unit does not know it.
+    """
 
     ground: Ground
     task: Task
+    ticket: str = ""
 
     def data(self) -> bytes:
         """It as bytes."""
@@ -60,6 +67,8 @@ class Answer:
         acted, exit_code, overdue, where, wall, log: as in ``Result``.
         fault: why it says nothing about the mutant, if it does not: the fault of the worker or its machine.
         is_unfit: whether that worker is of no use to the campaign any more.
+        lost: as in ``Result``.
+        ticket: of the unit.
     """
 
     lines: tuple[Any, ...] = ()
@@ -71,6 +80,8 @@ class Answer:
     log: str = ""
     fault: str | None = None
     is_unfit: bool = False
+    lost: str | None = None
+    ticket: str = ""
 
     @classmethod
     def of_result(cls, lines: Iterable[Line], result: Result, fault: str | None = None) -> Answer:
@@ -85,14 +96,14 @@ class Answer:
         return _bytes(self).replace(_in_json(here), _in_json(there))
 
     @classmethod
-    def of(cls, data: bytes) -> Answer:
-        """The answer in such bytes."""
-        return from_data(cls, json.loads(data))
-
-    @property
-    def reported(self) -> list[Line]:
-        """The report lines."""
-        return [line_from_data(line) for line in self.lines]
+    def of(cls, data: bytes, unit: Unit) -> tuple[Answer, list[Line]]:
+        """The answer in such bytes, and its report lines. Raises Misfit if it is none to this unit."""
+        answer = checked(cls, read(data))
+        if answer.ticket != unit.ticket:
+            raise Misfit("it is the answer to something else")
+        lines = [_line(index, line) for index, line in enumerate(answer.lines)]
+        check_fit(lines, unit.task.job)
+        return answer, lines
 
     def result(self, task: Task, lines: Iterable[Line]) -> Result:
         """The result of a task of which this is the answer."""
@@ -101,7 +112,7 @@ class Answer:
             found.take(line)
         found.acted = list(self.acted)
         found.exit_code, found.overdue, found.where = self.exit_code, self.overdue, self.where
-        found.wall, found.log = self.wall, self.log
+        found.wall, found.log, found.lost = self.wall, self.log, self.lost
         return found
 
 
@@ -127,8 +138,19 @@ class Introduction:
 
     @classmethod
     def of(cls, data: bytes) -> Introduction:
-        """The introduction in such bytes."""
-        return from_data(cls, json.loads(data))
+        """The introduction in such bytes. Raises Misfit."""
+        return checked(cls, read(data))
+
+
+def _line(index: int, data: Any) -> Line:
+    kind = LINES.get(str(data.get("type"))) if isinstance(data, dict) else None
+    if kind is None:
+        raise Misfit(f".lines[{index}] is no report line")
+    try:
+        line: Line = checked(kind, {name: value for name, value in data.items() if name != "type"})
+    except Misfit as error:
+        raise Misfit(f".lines[{index}]{error}") from None
+    return line
 
 
 def _bytes(value: Any) -> bytes:

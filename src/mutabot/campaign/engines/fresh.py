@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.observed import observation, places_of
@@ -12,9 +12,10 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.moments import moments_in
 from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model.outcome import in_words
 
 from .engine import Trial
-from .judge import Death, Run, judged
+from .judge import Death, Run, judged, not_judged
 
 #: the engine that is the reference
 REPLAY = "replay"
@@ -22,23 +23,83 @@ REPLAY = "replay"
 WALL_FACTOR = 10.0
 
 
+@dataclass(slots=True)
+class Hindered:
+    """Runs that a limit of wall clock ended on a busy machine: nobody can say what that means."""
+
+    trials: list[Trial] = field(default_factory=list)
+    ends: dict[tuple[str, int], tuple[Outcome, str]] = field(default_factory=dict)
+
+    def add(self, mutant: Mutant, outcome: Outcome, why: str) -> None:
+        """One that ended so, and what the machine did meanwhile."""
+        self.trials.append((mutant, outcome.round))
+        self.ends[mutant.id, outcome.round] = outcome, why
+
+
 def replay(campaign: Campaign, trials: Iterable[Trial], engine: str = REPLAY) -> Iterator[Outcome]:
-    """Outcomes of mutants in rounds, as they come; any ``engine`` but replay begins its processes warm."""
+    """Outcomes of mutants in rounds, as they come; any ``engine`` but replay begins its processes warm.
+
+    What a limit of wall clock ended on a busy machine is run once more alone, see ``replay_alone``.
+    """
+    hindered = Hindered()
+    yield from _replayed(campaign, trials, engine, hindered)
+    yield from replay_alone(campaign, hindered, engine)
+
+
+def replay_alone(campaign: Campaign, hindered: Hindered, engine: str = REPLAY) -> Iterator[Outcome]:
+    """What was hindered, run once more with nothing of ours beside it: that counts, however it ends."""
+    if not hindered.trials:
+        return
+    changed = 0
+    for outcome in _replayed(campaign, hindered.trials, engine, None):
+        first, why = hindered.ends[outcome.mutant, outcome.round]
+        changed += outcome.verdict is not first.verdict
+        yield replace(outcome, beside=f"{in_words(first)}; {why}")
+    count = len(hindered.trials)
+    campaign.progress.note(
+        f"{count} {'run' if count == 1 else 'runs'} that ended by the wall clock while the machine was busy "
+        f"{'was' if count == 1 else 'were'} run once more alone; {changed} of {count} ended otherwise"
+    )
+
+
+def _replayed(
+    campaign: Campaign, trials: Iterable[Trial], engine: str, hindered: Hindered | None
+) -> Iterator[Outcome]:
+    """The same; ``hindered`` takes those that are to be run alone. None: all are run alone."""
     baseline = campaign.baseline
     uncovered: list[Outcome] = []
     widened: list[Trial] = []
     tasks = _tasks(campaign, trials, uncovered)
-    for result in campaign.executor.run(replace(one, begins_warm=engine != REPLAY) for one in tasks):
+    tasks = (replace(one, begins_warm=engine != REPLAY, alone=one.alone or hindered is None) for one in tasks)
+    for result in campaign.executor.run(tasks):
         yield from _drain(uncovered)
-        run = replace(run_of(result, campaign.sources), engine=engine)
-        outcome = judged(campaign, run)
-        if outcome.verdict is Verdict.SURVIVED and baseline.must_widen(run.mutant, run.round, run.ends):
-            widened.append((run.mutant, run.round))
+        mutant, round = trial_of(result)
+        outcome, why = _outcome(campaign, result, engine)
+        if hindered is not None and why is not None:
+            hindered.add(mutant, outcome, why)
+        elif outcome.verdict is Verdict.SURVIVED and baseline.must_widen(mutant, round, result.ends):
+            widened.append((mutant, round))
         else:
             yield outcome
     yield from _drain(uncovered)
     if widened:
-        yield from replay(campaign, widened, engine)
+        yield from _replayed(campaign, widened, engine, hindered)
+
+
+def trial_of(result: Result) -> Trial:
+    """Which mutant was run, and in which round."""
+    job = result.task.job
+    assert job.mutant is not None
+    return job.mutant, job.round
+
+
+def _outcome(campaign: Campaign, result: Result, engine: str) -> tuple[Outcome, str | None]:
+    """The outcome, and why a limit of wall clock that ended the run says little."""
+    try:
+        run = replace(run_of(result, campaign.sources), engine=engine)
+    except Exception as error:
+        return not_judged(*trial_of(result), error, engine), None
+    return judged(campaign, run), run.hindered
 
 
 def longest_first(campaign: Campaign, trials: list[Trial]) -> list[Trial]:
@@ -83,6 +144,7 @@ def task(
         stop_at_kill=stop and not request.every_test,
         budgets=budgets,
         moments=moments_in(baseline.strides, round),
+        refused=baseline.refused_in(round, tests),
         instrumentation=baseline.program.instrumentation([mutant], active=True),
     )
     least = request.configuration.timeout_seconds
@@ -110,13 +172,12 @@ def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
 
 def run_of(result: Result, sources: Sources) -> Run:
     """What a worker saw of its mutant."""
-    job = result.task.job
-    assert job.mutant is not None
+    mutant, round = trial_of(result)
     places = places_of(result, sources)
     return Run(
-        mutant=job.mutant,
-        round=job.round,
-        tests=job.tests or (),
+        mutant=mutant,
+        round=round,
+        tests=result.task.job.tests or (),
         ends=result.ends,
         observations={end.test: observation(end, places) for end in result.ends if end.outcome != "failed"},
         death=_death(result),
@@ -126,7 +187,9 @@ def run_of(result: Result, sources: Sources) -> Run:
 
 
 def _problem(result: Result) -> str | None:
-    """Why the mutant was not in the program, if it was not."""
+    """Why nothing is known of the mutant: it was not in the program, or what was told cannot be relied on."""
+    if result.untrusted is not None:
+        return result.untrusted
     return next((f"{file}: {why}" for file, why in result.not_instrumented.items()), None)
 
 
@@ -151,4 +214,6 @@ def _death(result: Result) -> Death | None:
         acted=not {result.running, ""}.isdisjoint(result.acted),
         in_mutated_call=result.in_mutated_call,
         where=result.where,
+        hindered=result.hindered,
+        is_starved=result.is_starved,
     )

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from mutabot.border.signals import OWN_FAULT
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.observation import Observation, compare, farthest
+from mutabot.errors import MutabotError
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
 from mutabot.model.outcome import added
 from mutabot.model.seen.figure import Figure
@@ -34,6 +37,8 @@ class Death:
         acted: whether its mutant had changed anything by then.
         in_mutated_call: whether it was in the midst of a mutated call.
         where: where it was when its time was up, if that is known.
+        hindered: why that says little of it, as the machine was busy, in words; None if it was not.
+        is_starved: whether it was ended although it had not had its time.
     """
 
     text: str
@@ -43,6 +48,8 @@ class Death:
     acted: bool = False
     in_mutated_call: bool = False
     where: str | None = None
+    hindered: str | None = None
+    is_starved: bool = False
 
 
 @dataclass(slots=True)
@@ -58,7 +65,7 @@ class Run:
         wall: seconds spent on it.
         shared: simulated seconds that it did not have to spend, since the original had.
         engine: ``replay`` or ``branch``.
-        problem: why the mutant was not there at all, or None.
+        problem: why nothing is known of the mutant, or None: it was not there, or reports cannot be trusted.
     """
 
     mutant: Mutant
@@ -72,9 +79,40 @@ class Run:
     engine: str = "replay"
     problem: str | None = None
 
+    @property
+    def hindered(self) -> str | None:
+        """Why a limit of wall clock that ended it says little of its mutant, in words; None if none did."""
+        deaths = [self.death.hindered] if self.death is not None else []
+        return next((why for why in (*deaths, *(end.hindered for end in self.ends)) if why is not None), None)
+
 
 def judged(campaign: Campaign, run: Run) -> Outcome:
-    """The outcome of a run, whose recordings are kept as far as they differ from the original's."""
+    """The outcome of a run, whose recordings are kept as far as they differ from the original's.
+
+    What goes wrong while it is judged is an error of this mutant, and not the end of the campaign.
+    """
+    try:
+        return _judged(campaign, run)
+    except Exception as error:
+        return not_judged(run.mutant, run.round, error, run.engine)
+
+
+def not_judged(mutant: Mutant, round: int, error: Exception, engine: str) -> Outcome:
+    """The outcome of a mutant that could not be judged; an error that is not about it is raised again."""
+    refuse_others(error)
+    where = traceback.extract_tb(error.__traceback__)[-1]
+    text = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
+    message = f"mutabot could not judge what it saw of it: {text}"
+    return Outcome(mutant.id, round, Verdict.ERROR, message=message, engine=engine)
+
+
+def refuse_others(error: Exception) -> None:
+    """Raise an error again that says nothing of a mutant, but of the user's set-up or of the disk."""
+    if isinstance(error, MutabotError | OSError):
+        raise error
+
+
+def _judged(campaign: Campaign, run: Run) -> Outcome:
     outcome = judge(campaign, run)
     if campaign.evidence is None or outcome.verdict not in _RECORDED:
         return outcome
@@ -192,6 +230,8 @@ def _kills(run: Run, message: str | None) -> tuple[Kill, ...]:
 
 
 def _ruling_on_death(death: Death, acted: bool) -> Ruling:
+    if death.is_starved:
+        return Verdict.UNSTABLE, None, f"{death.text}, of which it had too little: {death.hindered}"
     if death.overdue and (acted or death.acted):
         return Verdict.TIMEOUT, None, death.text
     if death.in_mutated_call and death.signal in OWN_FAULT:

@@ -19,8 +19,10 @@ from mutabot.border.lines import (
     Line,
     MutatedCall,
     SiteSeen,
+    TestStart,
     Unbranched,
     Undiverged,
+    Untrusted,
 )
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.observed import observation, place_of
@@ -33,7 +35,7 @@ from mutabot.model import Instrumentation, Mutant, Outcome, Verdict
 
 from .engine import Remainder, Trial
 from .fresh import wall_limit, without_tests
-from .judge import Death, Run, judged
+from .judge import Death, Run, judged, not_judged, refuse_others
 
 #: seconds without any word from a trunk, beyond what its tests and branches may take
 _PATIENCE = 60.0
@@ -56,12 +58,14 @@ class Trunks:
     Attributes:
         suspects: (round, test) that ended otherwise in a trunk than in the baseline.
         orders: per round, the tests of the trunk in its order.
+        hindered: why a limit of wall clock that ended them says little, by mutant and round.
     """
 
     def __init__(self, campaign: Campaign, left: Remainder, engine: str) -> None:
         self._campaign, self._left, self._engine = campaign, left, engine
         self.suspects: list[tuple[int, str]] = []
         self.orders: dict[int, tuple[str, ...]] = {}
+        self.hindered: dict[tuple[str, int], str] = {}
         self._trunks: dict[int, _Trunk] = {}
 
     def run(
@@ -100,7 +104,9 @@ class Trunks:
             self._left.early.append((mutant, round))
             return
         if round not in self._trunks:
-            self._trunks[round] = _Trunk(self._campaign, round, self._left, self.suspects, self._engine)
+            self._trunks[round] = _Trunk(
+                self._campaign, round, self._left, self.suspects, self._engine, self.hindered
+            )
         forbidding = baseline.why_not_branch(round, tests)
         if forbidding is not None:
             self._left.leave(mutant, round, *forbidding)
@@ -157,9 +163,10 @@ class _Trunk:
         left: Remainder,
         suspects: list[tuple[int, str]],
         engine: str,
+        hindered: dict[tuple[str, int], str],
     ) -> None:
         self._campaign, self._round, self._left, self._suspects = campaign, round, left, suspects
-        self._engine = engine
+        self._engine, self._hindered = engine, hindered
         self._baseline, self._sources = campaign.baseline, campaign.sources
         self._open: dict[str, _Branches] = {}
         self._needed: set[str] = set()
@@ -168,6 +175,8 @@ class _Trunk:
         self._waiting: dict[str, set[str]] = {}
         self._undiverged: dict[str, Mapping[str, int]] = {}
         self._trunk_places: dict[int, Place] = {}
+        self._begun: set[str] = set()
+        self._doubted: list[Mutant] = []
 
     def add(self, mutant: Mutant, tests: tuple[str, ...]) -> None:
         """A mutant to branch in these tests."""
@@ -218,7 +227,7 @@ class _Trunk:
         return found
 
     def _empty(self) -> _Trunk:
-        return _Trunk(self._campaign, self._round, self._left, self._suspects, self._engine)
+        return _Trunk(self._campaign, self._round, self._left, self._suspects, self._engine, self._hindered)
 
     def _wall(self, test: str) -> float:
         return self._baseline.ends[self._round, test].wall
@@ -250,6 +259,7 @@ class _Trunk:
             record=True,
             budgets=budgets,
             moments=moments_in(baseline.strides, round),
+            refused=baseline.refused_in(round, in_order),
             branching=branching,
             instrumentation=text,
         )
@@ -257,7 +267,27 @@ class _Trunk:
         return Task(key, job, {}, patience, patience, is_trunk=True, may_share=True)
 
     def take(self, line: Line) -> Iterator[Outcome]:
-        """Sort in a report line; yields the outcomes that it settles."""
+        """Sort in a report line; yields the outcomes that it settles.
+
+        What goes wrong with it is an error of its mutant, or leaves its test to replay.
+        """
+        try:
+            yield from self._take(line)
+        except Exception as error:
+            yield from self._give_up(line, error)
+
+    def _give_up(self, line: Line, error: Exception) -> Iterator[Outcome]:
+        refuse_others(error)
+        branches = self._open.get(line.mutant) if isinstance(line, BranchEnd | BranchDied) else None
+        if branches is not None:
+            del self._open[branches.mutant.id]
+            yield not_judged(branches.mutant, self._round, error, self._engine)
+            return
+        self._left.notes.append(f"a report of the trunk cannot be used: {type(error).__name__}: {error}")
+        if isinstance(line, TestEnd):
+            self._failed.add(line.test)
+
+    def _take(self, line: Line) -> Iterator[Outcome]:
         match line:
             case BranchEnd() if line.mutant in self._open:
                 yield from self._branch_ended(line)
@@ -271,8 +301,26 @@ class _Trunk:
                 self._undiverged[line.test] = line.hits
             case SiteSeen():
                 self._trunk_places[line.index] = place_of(line, self._sources)
+            case TestStart():
+                self._begun.add(line.test)
             case TestEnd():
                 yield from self._test_ended(line)
+            case Untrusted():
+                self._doubt(line)
+
+    def _doubt(self, line: Untrusted) -> None:
+        """Nobody knows which process of the trunk wrote this: one of the mutants whose branches may run.
+
+        They are left to an engine in which each has a process of its own. A branch reports last of all, so
+        outcomes that are settled are not concerned.
+        """
+        doubted = [name for name, one in self._open.items() if not self._begun.isdisjoint(one.tests)]
+        if not self._doubted:
+            self._left.notes.append(
+                f"round {self._round + 1}: {line.reason}; mutants that may have to do with it run in "
+                "processes of their own"
+            )
+        self._doubted += [self._open.pop(name).mutant for name in doubted]
 
     def finish(self, result: Result) -> Iterator[Outcome]:
         """The trunk is gone: settle what can be settled, and leave the rest to replay."""
@@ -280,7 +328,8 @@ class _Trunk:
             self._left.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}{at(result)}")
         for mutant in list(self._open):
             yield from self._settle(mutant)
-        self._left.trials.extend((branches.mutant, self._round) for branches in self._open.values())
+        left = [*self._doubted, *(branches.mutant for branches in self._open.values())]
+        self._left.trials.extend((mutant, self._round) for mutant in left)
 
     def _branch_ended(self, line: BranchEnd) -> Iterator[Outcome]:
         branches = self._open[line.mutant]
@@ -302,6 +351,8 @@ class _Trunk:
             acted=line.test in branches.acted,
             in_mutated_call=line.test in branches.calling,
             where=line.where,
+            hindered=line.hindered,
+            is_starved=line.is_starved,
         )
         yield from self._settle(line.mutant)
 
@@ -367,5 +418,7 @@ class _Trunk:
         survived = outcome.verdict is Verdict.SURVIVED
         if survived and self._baseline.must_widen(run.mutant, run.round, run.ends):
             return  # to replay
+        if run.hindered is not None:
+            self._hindered[mutant, self._round] = run.hindered
         del self._open[mutant]
         yield outcome

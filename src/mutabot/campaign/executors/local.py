@@ -14,4 +14,8 @@ def executor(request: Request, tell: Callable[[str], None]) -> Workers:
     def unshared(reason: str) -> None:
         tell(f"each run starts anew, imports and collection included: {reason}")
 
-    return Workers(request.root, request.arguments, request.jobs, unshared, request.pause)
+    def left(processes: list[str]) -> None:
+        more = f" and {len(processes) - 1} more" if len(processes) > 1 else ""
+        tell(f"tests leave processes running, which are ended with them: {processes[0]}{more}")
+
+    return Workers(request.root, request.arguments, request.jobs, unshared, request.pause, left)

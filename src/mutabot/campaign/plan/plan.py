@@ -36,7 +36,12 @@ from mutabot.operators.passage import Passage, rehearse
 from .demanded import ladders_last, with_demanded
 from .moments import at_moments
 from .planned import Plan
+from .signs import NO_SIGN, has_negative
 
+_LOST_WRITE = (
+    "the program writes to what the call returns, which is the robot's own memory: "
+    "a mutant hands out a copy, and what is written to that is lost"
+)
 #: recorded calls per place that are tried out; calls of one place are much alike
 TRIED = 200
 
@@ -83,14 +88,20 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             reason = reason or _why_no_time(rule, vocabulary, operation)
             if rule.needs_where(subject) and not _is_told(subject, vocabulary):
                 reason = f"{subject.current or 'no reading'} does not tell where it is"
+            if reason is None and rule.needs_sign(subject) and not has_negative(baseline, place, subject):
+                reason = NO_SIGN
+            if reason is None and baseline.unread.get(place, False) and rule.only_reads(subject):
+                reason = "nobody reads what the call returns: it is a statement by itself"
             mutant = replace(
                 mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
             )
+            if place in baseline.written_through and _only_reads(subject):
+                reason = _LOST_WRITE
             if rule.needs_error and not baseline.answers[place].has_raised:
                 reason = "no call raises in the baseline"
             if rule.asks_idle and reason is None:
                 try:
-                    answers = _answers(baseline, place) if rule.needs_error else baseline.answers[place]
+                    answers = _answers(baseline, place, of_any=rule.needs_error)
                     mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
                 except NoAnswerError as error:
                     reason = str(error)
@@ -101,15 +112,22 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
     return Plan(mutants, left_out)
 
 
-def _answers(baseline: Baseline, place: Place) -> RecordedAnswers:
-    """What calls of a place returned; where all of them raised, what the same command returned elsewhere."""
-    others = (
+def _answers(baseline: Baseline, place: Place, *, of_any: bool) -> RecordedAnswers:
+    """What calls of a place returned; where all of them raised, what the same command returned elsewhere.
+
+    That is taken for what it answers here if it returned nothing wherever it returned; or, with ``of_any``,
+    whatever it was.
+    """
+    own = baseline.answers[place]
+    if own.first:
+        return own
+    others = [
         answers
         for other, answers in baseline.answers.items()
         if (other.operation, other.pattern) == (place.operation, place.pattern) and answers.first
-    )
-    own = baseline.answers[place]
-    return own if own.first else next(others, own)
+    ]
+    is_told = others and (of_any or all(one.is_nothing for one in others))
+    return others[0] if is_told else own
 
 
 def _subjects(
@@ -202,6 +220,11 @@ def _why_no_time(rule: Operator, vocabulary: Vocabulary, operation: Operation) -
     if rule.asks_wait and vocabulary.wait is None and operation.named is None:
         return "the vocabulary does not say what lets the program's time pass (wait = …)"
     return None
+
+
+def _only_reads(subject: Subject) -> bool:
+    """Whether it is about a quantity that the call reads."""
+    return subject.quantity in subject.read and subject.quantity not in subject.written
 
 
 def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:

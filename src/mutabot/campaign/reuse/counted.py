@@ -112,8 +112,8 @@ def _texts(root: Path, names: Iterable[str]) -> Iterator[bytes]:
 
 def _is_named(note: PurePosixPath, text: bytes) -> bool:
     """Whether a text holds the name of a file, or what comes before the suffix, in quotes."""
-    stem = note.stem.encode()
-    return note.name.encode() in text or any(quote + stem + quote in text for quote in (b"'", b'"'))
+    stem = os.fsencode(note.stem)
+    return os.fsencode(note.name) in text or any(quote + stem + quote in text for quote in (b"'", b'"'))
 
 
 def _relative(path: Path, root: Path) -> str:

@@ -46,6 +46,8 @@ class Presumed:
             if not kept.key.endswith(f" {tree}") or not self._is_alike(kept.key, mutant, round, old, tree):
                 continue
             row = self._journal.row(was, round)
+            if row is None:
+                continue
             data = self._lines_from(tree, old).moved(json.dumps({**json.loads(row.data), "mutant": ""}))
             if data is not None:
                 data = json.dumps({**json.loads(data), "mutant": mutant.id}, ensure_ascii=False)

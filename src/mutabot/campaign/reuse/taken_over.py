@@ -33,8 +33,10 @@ class TakenOver:
         self._seen: dict[int, list[str]] = {}
 
     def take(self, source: JournalReader, pair: Pair, key: str, now: tuple[str, ...]) -> bool:
-        """Take one over; returns False if it names a line that nobody can find."""
+        """Take one over; returns False if it names a line that nobody can find, or is none at all."""
         row = source.row(*pair)
+        if row is None:
+            return False
         tree = key.rsplit(maxsplit=1)[-1]
         if tree != self._dependencies.tree:
             lines = self._lines_from(source, tree)
@@ -59,19 +61,19 @@ class TakenOver:
                 continue
             if not self._dependencies.holds_renamed(outcome.key, mutant, round, renaming, source.parts):
                 continue
-            data = self._renamed(source, tree, (was, round), mutant.id, renaming)
-            if data is not None:
-                row = source.row(was, round)
+            row = source.row(was, round)
+            data = self._renamed(source, tree, row, mutant.id, renaming) if row is not None else None
+            if row is not None and data is not None:
                 key = self._dependencies.keys(mutant, round)[0]
                 self.rows.append(replace(row, mutant=mutant.id, data=data, key=key))
                 return True
         return False
 
     def _renamed(
-        self, source: JournalReader, tree: str, pair: Pair, mutant: str, renaming: Renaming
+        self, source: JournalReader, tree: str, row: Row, mutant: str, renaming: Renaming
     ) -> str | None:
         """The data of an outcome with what it names as that is called now; None if it tells of more."""
-        data = {**json.loads(source.row(*pair).data), "mutant": ""}
+        data = {**json.loads(row.data), "mutant": ""}
         lines = self._lines_from(source, tree)
         moved = lines.moved(json.dumps(data, ensure_ascii=False)) if lines is not None else None
         if moved is None or renaming.tells_of(moved):

@@ -19,6 +19,7 @@ from mutabot.journal.merging import take_recordings
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.recordings import Recordings, recordings_path
 from mutabot.journal.records import (
+    ALTERED,
     CONFIRMATION,
     FLAKY,
     REPEATS,
@@ -29,6 +30,7 @@ from mutabot.journal.records import (
     Repeats,
     Verification,
 )
+from mutabot.journal.tracked import refuse_tracked
 
 from .differences import Part, refuse_strangers
 
@@ -79,6 +81,7 @@ def found_in(path: Path) -> Path:
 
 
 def _opened(stack: ExitStack, path: Path, target: Path) -> Part:
+    refuse_tracked(path)
     if is_written(path):
         raise MergeError(f"{path} is being written by a `mutabot run`: merge it when that has ended")
     opened = path
@@ -91,8 +94,12 @@ def _copied(folder: Path, path: Path) -> Path:
     """A shard that lies where the whole is to lie."""
     for file in (path, recordings_path(path)):
         if file.is_file():
-            with closing(sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True)) as connection:
-                connection.execute("VACUUM INTO ?", (str(folder / file.name),))
+            uri = f"{file.absolute().as_uri()}?mode=ro"
+            with (
+                closing(sqlite3.connect(uri, uri=True)) as connection,
+                closing(sqlite3.connect(folder / file.name)) as target,
+            ):
+                connection.backup(target)
     return folder / path.name
 
 
@@ -118,6 +125,12 @@ def _missing(parts: Sequence[Part]) -> Iterator[str]:
             "the merged journal runs them alone"
         )
     for part in parts:
+        if part.journal.set_aside:
+            yield (
+                f"{part.words} holds what mutabot has not written, or what is damaged "
+                f"({part.journal.set_aside[0]}): run it again with "
+                f"`mutabot run --shard {part.shard.number}/{of}`, and merge again"
+            )
         ended = part.journal.finished or "killed"
         if ended != "complete":
             lacking = _lacking(part, rounds)
@@ -187,6 +200,7 @@ def _repeats(said: Sequence[Any]) -> Any:
 
 
 _ADDED = {
+    ALTERED: lambda said: [line for one in said for line in one],
     FLAKY: _flaky,
     VERIFICATION: _verification,
     CONFIRMATION: _confirmation,

@@ -18,6 +18,7 @@ from mutabot.journal.files import find_journal
 from mutabot.journal.journal import Journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import SINCE, Since
+from mutabot.journal.tracked import refuse_tracked
 from mutabot.model import Mutant
 
 from .git import Revision
@@ -27,7 +28,8 @@ from .then import dependencies_then
 def open_others(request: Request, progress: Progress) -> list[JournalReader]:
     """The journal that was named beside the project's own, if it can be read.
 
-    Raises UsageError if there is none and nothing else says what to run.
+    Raises UsageError if there is none and nothing else says what to run, and JournalError for one that git
+    tracks.
     """
     if request.other_journal is None:
         return []
@@ -35,6 +37,7 @@ def open_others(request: Request, progress: Progress) -> list[JournalReader]:
     own = request.journal_path
     if path.is_file() and own.is_file() and path.samefile(own):
         return []
+    refuse_tracked(path)  # before all that might only be noted
     try:
         return [JournalReader.open(path)]
     except JournalError as error:

@@ -34,6 +34,16 @@ class Copy:
         self.startup = server.startup
 
     @property
+    def tests(self) -> int:
+        """The number of the process that runs the tests."""
+        return self.pid
+
+    @property
+    def left(self) -> None:
+        """Nobody but the server's keeper looks after what it leaves."""
+        return
+
+    @property
     def exit_code(self) -> int | None:
         """Its exit code, negative for a signal; None while it runs."""
         return self._server.exit_code_of(self.pid)
@@ -78,10 +88,10 @@ class ForkServer:
         self._copied: int | None = None
         self._codes: dict[int, int | None] = {}
         self.pipe, writing = os.pipe()
-        self._lines = LineReader(self.pipe)
         self._jobs, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             self._home = Home.make(folder, replace(self._template, serving=theirs.fileno()))
+            self._lines = LineReader(self.pipe, self._home.key)
             try:
                 passed = (theirs.fileno(), *descriptors)
                 self._process = Spawned(root, arguments, self._home, writing, passed)
@@ -154,14 +164,14 @@ class ForkServer:
         code = self.exit_code_of(pid)
         return -signal.SIGKILL if code is None else code
 
-    def close(self) -> None:
-        """End it and all copies."""
+    def close(self) -> tuple[list[str], str | None]:
+        """End it and all copies; returns what these had left running, and what cannot be removed."""
         self._jobs.close()
         self._listen_until(lambda: False, _PATIENCE if self.serving is not None else 0.0)
         self._process.end()
         self._process.release()
         os.close(self.pipe)
-        self._home.remove()
+        return self._process.left or [], self._home.remove()
 
     def _listen_until(self, done: Callable[[], bool], seconds: float, period: float = float("inf")) -> None:
         """Listen until something is so, asked once a ``period``, the server has ended, or time is up."""

@@ -4,41 +4,55 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import json
 import os
-import shutil
+import secrets
 import signal
+import stat
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from shutil import disk_usage
-from types import TracebackType
-from typing import Any
 
+from mutabot.border.frame import MOST_BYTES, unframed, unreadable
 from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE, Job, job_file, write_job
-from mutabot.border.lines import Line, line_from_data
+from mutabot.border.keeper import FILE as KEEPER
+from mutabot.border.keeper import LEFT
+from mutabot.border.lines import Line, Untrusted
 from mutabot.border.processes import FOLDER
 from mutabot.border.starter import Starter
 
+from .removal import remove_folder
+
 _LOG_BYTES = 4000
+#: seconds that a keeper may take to end all it looks after
+_PATIENCE = 15.0
 #: bytes that must be free on the disk for a process to print what it prints
 _ROOM = 1 << 14
+#: bytes that are read of one pipe before others are looked at; more than what a pipe holds
+_AT_ONCE = 1 << 21
 
 
 @dataclass(frozen=True, slots=True)
 class Home:
-    """A process's own folder: its job, what it prints, pytest's cache."""
+    """A process's own folder: its job, what it prints, pytest's cache.
+
+    Attributes:
+        folder: the folder.
+        key: of the seals on what the process reports.
+    """
 
     folder: Path
+    key: str = field(default_factory=lambda: secrets.token_hex(16), repr=False)
 
     @classmethod
     def make(cls, parent: Path, job: Job) -> Home:
-        """A new folder in ``parent``, with the job in it."""
+        """A new folder in ``parent``, with the job in it; if that is gone, it is made again."""
+        parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         home = cls(Path(tempfile.mkdtemp(dir=parent)))
-        write_job(home.folder, job)
+        write_job(home.folder, replace(job, key=home.key))
         return home
 
     @property
@@ -58,38 +72,42 @@ class Home:
 
     def log_text(self) -> str:
         """The last of what the process printed."""
-        if not self.log_file.exists():
+        try:
+            descriptor = os.open(self.log_file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        except OSError:
             return ""
-        return self.log_file.read_bytes()[-_LOG_BYTES:].decode("utf-8", "replace")
+        with os.fdopen(descriptor, "rb") as file:
+            status = os.fstat(descriptor)
+            if not stat.S_ISREG(status.st_mode):
+                return ""
+            file.seek(max(0, status.st_size - _LOG_BYTES))
+            return file.read(_LOG_BYTES).decode("utf-8", "replace")
 
-    def remove(self) -> None:
-        """Remove it with all that is in it."""
-        shutil.rmtree(self.folder, onerror=_let_in)
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is still there: nobody but the controller may remove it."""
+        return self.job_file.is_file() if os.access(self.folder, os.X_OK) else False
 
-
-def _let_in(
-    function: Any, path: str, error: tuple[type[BaseException], BaseException, TracebackType]
-) -> None:
-    """A folder that its owner may not enter, as the layers of private files have them: enter and go on."""
-    if not isinstance(error[1], PermissionError):
-        raise error[1]
-    Path(path).parent.chmod(0o700)
-    if Path(path).is_dir():
-        Path(path).chmod(0o700)
-    shutil.rmtree(path, onerror=None) if Path(path).is_dir() else Path(path).unlink()
+    def remove(self) -> str | None:
+        """Remove it with all that is in it; why it is still there, in words, or None."""
+        return remove_folder(self.folder)
 
 
 def refuse_full_disk(folder: Path) -> None:
     """Raises OSError if a process that worked in ``folder`` may have died because there is no room left."""
-    if disk_usage(folder).free < _ROOM:
+    try:
+        is_full = disk_usage(folder).free < _ROOM
+    except FileNotFoundError:  # somebody has deleted it
+        return
+    if is_full:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder))
 
 
 class Spawned:
-    """A fresh process, the leader of a process group of its own; ``starter``: what may begin it warm.
+    """A fresh process, with a keeper above it that ends all it starts; ``starter``: what may begin it warm.
 
     Attributes:
-        pid: its number.
+        pid: the keeper's number.
         pidfd: becomes readable when it ends.
         startup: seconds spent on it before it began; none.
     """
@@ -105,10 +123,13 @@ class Spawned:
         descriptors: tuple[int, ...] = (),
         starter: Starter | None = None,
     ) -> None:
-        warm = starter.at_work() if starter is not None else contextlib.nullcontext()
+        self._left = home.folder / LEFT
+        keeper = [sys.executable, "-I", "-S", KEEPER, str(os.getpid())]
+        warm = starter.at_work(keeper) if starter is not None else contextlib.nullcontext()
+        kept = keeper if starter is None else []
         with home.log_file.open("wb") as log, warm:
             self._process = subprocess.Popen(
-                command(arguments, home.folder),
+                [*kept, *command(arguments, home.folder)],
                 cwd=root,
                 env=environment(home.job_file, writing),
                 stdin=subprocess.DEVNULL,
@@ -125,14 +146,33 @@ class Spawned:
         """Its exit code, negative for a signal; None while it runs."""
         return self._process.poll()
 
+    @property
+    def tests(self) -> int:
+        """The number of the process that runs the tests; the keeper's if there is none."""
+        with contextlib.suppress(OSError, ValueError, IndexError):
+            return int(Path(f"/proc/{self.pid}/task/{self.pid}/children").read_text("ascii").split()[0])
+        return self.pid
+
+    @property
+    def left(self) -> list[str] | None:
+        """What it had left running when it ended, and was ended; None if the keeper did not see to that."""
+        try:
+            return self._left.read_text("utf-8", "replace").splitlines()
+        except OSError:
+            return None
+
     def kill(self) -> None:
-        """End it and all it has started."""
-        kill_group(self.pid)
+        """End it and all it has started, without waiting for that."""
+        self._process.terminate()
 
     def end(self) -> int:
         """End it, and whatever it left behind, if it has not ended yet; returns its exit code."""
         self.kill()
-        return self._process.wait()
+        try:
+            return self._process.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:  # the keeper was stopped
+            self._process.kill()
+            return self._process.wait()
 
     def release(self) -> None:
         """Let go of what is held of it."""
@@ -146,34 +186,60 @@ def kill_group(pid: int) -> None:
 
 
 class LineReader:
-    """Report lines from the reading end of a pipe, which it sets not to block."""
+    """Report lines from the reading end of a pipe, which it sets not to block.
 
-    def __init__(self, descriptor: int) -> None:
-        self._descriptor = descriptor
-        self._buffer = b""
+    What a process writes there that is no line of ours is told as ``Untrusted``, wherever it was written.
+
+    Args:
+        descriptor: the reading end.
+        key: of the seals on the lines.
+
+    Attributes:
+        is_over: whether nobody is left who could write.
+    """
+
+    def __init__(self, descriptor: int, key: str) -> None:
+        self.is_over = False
+        self._descriptor, self._key = descriptor, key
+        self._parts: list[bytes] = []
+        self._size = 0
         os.set_blocking(descriptor, False)
 
     def read(self) -> list[Line]:
-        """All lines that are there by now."""
+        """The lines that are there by now; of an endless number the first, so that others are heard too."""
         lines: list[Line] = []
-        while True:
+        taken = 0
+        while taken < _AT_ONCE:
             try:
                 data = os.read(self._descriptor, 1 << 16)
             except BlockingIOError:
-                return lines
+                break
+            self.is_over = not data
             if not data:
-                return lines
-            *texts, self._buffer = (self._buffer + data).split(b"\n")
-            lines.extend(line for text in texts if (line := _line(text)) is not None)
+                break
+            taken += len(data)
+            lines += self._lines(data)
+        return lines
 
+    def _lines(self, data: bytes) -> list[Line]:
+        *whole, rest = data.split(b"\n")
+        found: list[Line] = []
+        for part in whole:
+            self._add(part)
+            size, text = self._size, b"".join(self._parts)
+            self._parts, self._size = [], 0
+            if not text:
+                continue
+            line = unframed(text, self._key) if size <= MOST_BYTES else unreadable(text, size)
+            if not (found and isinstance(line, Untrusted) and isinstance(found[-1], Untrusted)):
+                found.append(line)  # of a flood, the first tells enough
+        self._add(rest)
+        return found
 
-def _line(text: bytes) -> Line | None:
-    if not text:
-        return None
-    try:
-        return line_from_data(json.loads(text))
-    except (ValueError, KeyError, TypeError):
-        return None  # cut off: its writer was killed while it wrote
+    def _add(self, data: bytes) -> None:
+        self._size += len(data)
+        if data and self._size <= MOST_BYTES:
+            self._parts.append(data)
 
 
 def command(arguments: Iterable[str], home: Path) -> list[str]:

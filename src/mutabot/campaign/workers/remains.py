@@ -14,6 +14,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+from mutabot.border.keeper import name_of
 from mutabot.border.processes import VARIABLE
 
 #: looks, each after the last one's finds were killed, until nothing is found
@@ -29,14 +30,14 @@ _PROC = Path("/proc")
 OWNER = "controller"
 
 
-def end_left_over(folder: Path) -> int:
-    """End every process that was started below the worker of this folder; returns how many there were."""
+def end_left_over(folder: Path) -> list[str]:
+    """End every process that was started below the worker of this folder; returns which there were."""
     entry = _mark(folder)
-    ended = 0
+    ended: list[str] = []
     for _ in range(_LOOKS):
         environments = {pid: _environment(pid) for pid in _processes()}
         found = [pid for pid, environment in environments.items() if entry in environment]
-        ended += sum(_end(pid, entry) for pid in found)
+        ended += [name for pid in found for name in [name_of(pid)] if _end(pid, entry)]
         if not found:
             # for a moment, a program that is being started has no environment yet
             if not any(
@@ -47,10 +48,15 @@ def end_left_over(folder: Path) -> int:
     return ended
 
 
-def started_below(folder: Path) -> list[int]:
-    """The processes that were started below the worker of this folder."""
-    entry = _mark(folder)
-    return [pid for pid in _processes() if entry in _environment(pid)]
+def by_mark() -> dict[Path, list[int]]:
+    """The processes that were started below workers, by the folder of the worker."""
+    found: dict[Path, list[int]] = {}
+    start = f"{VARIABLE}=".encode()
+    for pid in _processes():
+        for entry in _environment(pid):
+            if entry.startswith(start):
+                found.setdefault(Path(os.fsdecode(entry[len(start) :])), []).append(pid)
+    return found
 
 
 def claim(folder: Path) -> None:
@@ -79,7 +85,7 @@ def end_abandoned(home: Path) -> int:
 
 def end_below(folder: Path) -> int:
     """End all that was started below workers whose folders are in this one; returns how many there were."""
-    marks = f"{VARIABLE}={folder}/".encode()
+    marks = os.fsencode(f"{VARIABLE}={folder}/")
     ended = 0
     for process in _processes():
         entries = [entry for entry in _environment(process) if entry.startswith(marks)]

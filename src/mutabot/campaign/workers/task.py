@@ -20,6 +20,7 @@ from mutabot.border.lines import (
     TestStart,
     TextsSeen,
     TokensHeld,
+    Untrusted,
     Watched,
 )
 from mutabot.border.test_end import TestEnd
@@ -77,10 +78,13 @@ class Result:
         end: its orderly end; None if there was none.
         exit_code: its exit code, negative for a signal.
         overdue: which wall-clock limit it exceeded, in words, or None.
+        hindered: why that says little of it, as the machine was busy, in words; None if it was not.
+        is_starved: whether it was ended although it had not had its time, as it would have taken too long.
         where: where it was then: its innermost calls; None if that is not known.
         wall: seconds from its start to its end.
         log: the last lines it printed.
         lost: why no process could be had that runs it to its end, or None.
+        untrusted: why what it reported cannot be relied on, or None.
     """
 
     task: Task
@@ -100,10 +104,13 @@ class Result:
     end: SessionEnd | None = None
     exit_code: int = 0
     overdue: str | None = None
+    hindered: str | None = None
+    is_starved: bool = False
     where: str | None = None
     wall: float = 0.0
     log: str = ""
     lost: str | None = None
+    untrusted: str | None = None
 
     def take(self, line: Line) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
         """Sort in one report line."""
@@ -138,11 +145,16 @@ class Result:
                 self.problems.append(line)
             case SessionEnd():
                 self.end = line
+            case Untrusted() if self.untrusted is None:
+                during = f" (during {self.running})" if self.running else ""
+                self.untrusted = f"{line.reason}{during}"
 
-    def find_overdue(self, now: float) -> None:
-        """Say so if a limit of the suite's own ended the process, by ``now`` (``time.monotonic``)."""
+    def find_overdue(self, now: float) -> bool:
+        """Whether a limit of the suite's own ended it by ``now`` (``time.monotonic``); it is noted."""
         if self.end is None and self.overdue is None and self.running is not None and self.exit_code == 1:
             self.overdue = next((one.text for one in self.watched if now >= one.until), None)
+            return self.overdue is not None
+        return False
 
 
 def death(result: Result, *, said: bool = True) -> str:

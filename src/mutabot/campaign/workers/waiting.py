@@ -2,28 +2,33 @@
 
 A place that such a worker holds is lent to the next task. What a mutant of a message does to a program is
 often just that: it waits. One place at a time stays one place: whoever asks for no neighbours has none.
+
+Nothing is lent where nobody can tell waiting from being kept waiting: a process that gets little of a busy
+machine is not idle. So what counts is what the tasks of a worker ask for, not what they get; and as long as
+processors are short on the machine, whoever uses them, nothing is lent at all.
 """
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Iterable
-from contextlib import suppress
 from pathlib import Path
 from typing import Protocol
 
-from .remains import started_below
+from mutabot.border.demand import Accounts, accounts_of, below, children, is_crowded, shortage
+
+from .remains import by_mark
 
 #: seconds between two looks
 PERIOD = 1.0
 #: looks in a row that must find a worker waiting
 _LOOKS = 3
-#: the share of a processor under which it waits: nodes that poll, and announce themselves, take some
+#: share of a processor under which a worker only waits: nodes that poll, and announce themselves, take some
 _SHARE = 0.25
+#: the share of the time in which some task may have had no processor while processors are not short
+_SHORT = 0.2
 #: workers at most, for each place
 _MOST = 4
-_TICK = 1 / os.sysconf("SC_CLK_TCK")
 
 
 class Observed(Protocol):
@@ -45,9 +50,10 @@ class Waiting:
 
     def __init__(self, places: int) -> None:
         self._places = places
-        self._used: dict[int, dict[int, float]] = {}
+        self._accounts: dict[int, Accounts] = {}
         self._still: dict[int, int] = {}
         self._looked = 0.0
+        self._shortage: float | None = None
 
     def has_place(self, workers: Iterable[Observed]) -> bool:
         """Whether one more may begin beside these, of which some may only wait."""
@@ -65,27 +71,34 @@ class Waiting:
         if since < PERIOD:
             return
         self._looked = now
-        used = {one.pid: _processor_time({one.pid, *started_below(one.processes)}) for one in workers}
+        known, marked = children(), by_mark()
+        accounts = {
+            one.pid: accounts_of(below([one.pid, *marked.get(one.processes, ())], known)) for one in workers
+        }
+        is_short = self._is_short(since)
         self._still = {
             pid: self._still.get(pid, 0) + 1
-            for pid, seconds in used.items()
-            if pid in self._used and _added(self._used[pid], seconds) < _SHARE * since
+            for pid, found in accounts.items()
+            if not is_short and asks_for_little(self._accounts.get(pid), found, _SHARE * since)
         }
-        self._used = used
+        self._accounts = accounts
+
+    def _is_short(self, since: float) -> bool:
+        """Whether processors were short since the last look."""
+        before, self._shortage = self._shortage, shortage()
+        if self._shortage is None:
+            return is_crowded()
+        return before is None or self._shortage - before > _SHORT * since
 
 
-def _added(before: dict[int, float], now: dict[int, float]) -> float:
-    """Processor seconds between two looks; without end where processes have begun or ended."""
-    if before.keys() != now.keys():
-        return float("inf")
-    return sum(now.values()) - sum(before.values())
+def asks_for_little(before: Accounts, now: Accounts, seconds: float) -> bool:
+    """Whether the tasks of a worker have asked for fewer seconds of a processor between two looks.
 
-
-def _processor_time(processes: Iterable[int]) -> dict[int, float]:
-    """Processor seconds by process, of those that are there."""
-    found = {}
-    for pid in processes:
-        with suppress(OSError):
-            fields = Path(f"/proc/{pid}/stat").read_text("ascii", "replace").rpartition(")")[2].split()
-            found[pid] = (int(fields[11]) + int(fields[12])) * _TICK
-    return found
+    Not if any asks right now, if tasks have begun or ended, or if the kernel does not tell.
+    """
+    if not before or not now or before.keys() != now.keys():
+        return False
+    if any(one.is_asking for one in (*before.values(), *now.values())):
+        return False
+    asked = sum(one.ran + one.queued for one in now.values())
+    return asked - sum(one.ran + one.queued for one in before.values()) < seconds

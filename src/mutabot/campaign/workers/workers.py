@@ -16,10 +16,11 @@ from pathlib import Path
 from types import TracebackType
 
 from mutabot.border import stack
-from mutabot.border.lines import Line, TestStart
+from mutabot.border.lines import Line, TestStart, Untrusted
 from mutabot.border.processes import acted_in
 from mutabot.border.starter import is_supported
 from mutabot.border.test_end import TestEnd
+from mutabot.border.time_used import MOST, TimeUsed
 from mutabot.errors import JournalError
 
 from .forkserver import LOOKS, Copy, ForkServer
@@ -27,10 +28,14 @@ from .interruption import interruptible
 from .pause import Pause
 from .processes import Home, LineReader, Spawned, refuse_full_disk, usual_environment
 from .remains import claim, end_abandoned, end_left_over
+from .removal import remove_folder
 from .task import Result, Task
 from .token_pool import TokenPool
 from .waiting import PERIOD, Waiting
 from .warm import WarmServer
+
+#: said of a process whose own folder somebody deleted while it ran: what it kept there is lost
+_HOME_LOST = Untrusted("the folder in which the tests' process worked was deleted or closed while it ran")
 
 
 class Workers:
@@ -43,17 +48,17 @@ class Workers:
         on_unshared: told why tasks that might begin as copies of a fork server, or warm, do not, once that is
             known.
         pause: while it is on, no task begins, and no trunk branches; None if nobody can pause.
+        on_left: told once what tests had left running, and was ended.
 
     Use as a context manager: leaving it ends whatever still runs and removes temporary files.
 
     Attributes:
         pool: the tokens of trunks and branches.
         look: called several times a second while it waits; what it raises ends the run. None: nobody looks.
-        spread, remarks: see ``Executor``.
+        spread: see ``Executor``.
     """
 
     spread = 1
-    remarks: tuple[str, ...] = ()
 
     def __init__(
         self,
@@ -62,6 +67,7 @@ class Workers:
         jobs: int,
         on_unshared: Callable[[str], None] = lambda reason: None,
         pause: Pause | None = None,
+        on_left: Callable[[list[str]], None] = lambda left: None,
     ) -> None:
         self._root = root
         self._arguments = tuple(arguments)
@@ -72,9 +78,11 @@ class Workers:
         self._servers: list[ForkServer] = []
         self._on_unshared = on_unshared
         self._pause = pause
+        self._on_left, self._has_told_left = on_left, False
         self._may_share = True
         self._warm: WarmServer | None = None
         self._may_begin_warm = True
+        self._remains: list[str] = []
         self.pool = TokenPool(self._jobs)
         self.look: Callable[[], None] | None = None
         home = root / ".mutabot"
@@ -84,8 +92,8 @@ class Workers:
             if not ignore.exists():
                 ignore.write_text("*\n", encoding="utf-8")
             end_abandoned(home)
-            self._folder = tempfile.TemporaryDirectory(prefix="work-", dir=home)
-            claim(Path(self._folder.name))
+            self._folder = Path(tempfile.mkdtemp(prefix="work-", dir=home))
+            claim(self._folder)
         except OSError as error:
             raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
 
@@ -97,7 +105,9 @@ class Workers:
     ) -> None:
         for worker in self._workers:
             worker.kill()
+        for worker in self._workers:
             worker.close(self._selector)
+            self._tell_left(worker.left)
         self._workers.clear()
         for server in list(self._servers):
             self._end_server(server)
@@ -105,7 +115,7 @@ class Workers:
             self._warm.close()
         self._selector.close()
         self.pool.close()
-        self._folder.cleanup()
+        self._note_remains(remove_folder(self._folder))
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which they end. Tasks are taken from the iterable as places free up."""
@@ -128,6 +138,21 @@ class Workers:
     def apart(self) -> Workers:
         """One more worker process, which shares nothing with these."""
         return Workers(self._root, self._arguments, jobs=1, pause=self._pause)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """See ``Executor``."""
+        if not self._remains:
+            return ()
+        more = f" and {len(self._remains) - 1} more" if len(self._remains) > 1 else ""
+        return (
+            f"What a test made cannot be removed: {self._remains[0]}{more}. Outcomes are not touched by it; "
+            f"remove {self._folder} by hand.",
+        )
+
+    def _note_remains(self, remains: str | None) -> None:
+        if remains is not None:
+            self._remains.append(remains)
 
     @property
     def _is_paused(self) -> bool:
@@ -158,7 +183,7 @@ class Workers:
             gate = None if self._pause is None else self._pause.reading
             branching = replace(task.job.branching, tokens=self.pool.descriptors, gate=gate)
             task = replace(task, job=replace(task.job, branching=branching))
-        home = Home.make(Path(self._folder.name), task.job)
+        home = Home.make(self._folder, task.job)
         reading, writing = os.pipe()
         try:
             worker = _Worker(task, home, reading, self._process(task, home, writing))
@@ -193,7 +218,7 @@ class Workers:
                 self._on_unshared(reason)
             else:
                 own = [str(self._root / path) for path in (*task.job.program, *task.job.oracle)]
-                folder = Path(self._folder.name) / "warm"
+                folder = self._folder / "warm"
                 self._warm = WarmServer(folder, self._root, usual_environment(), own)
         return self._warm if self._may_begin_warm else None
 
@@ -204,8 +229,7 @@ class Workers:
             return found
         for idle in [server for server in self._servers if server.is_idle]:
             self._end_server(idle)  # what it was for is over
-        folder = Path(self._folder.name)
-        server = ForkServer(task.job, self._root, self._arguments, folder, self._inherited)
+        server = ForkServer(task.job, self._root, self._arguments, self._folder, self._inherited)
         self._servers.append(server)
         self._selector.register(server.pipe, selectors.EVENT_READ, server)
         reason = server.wait_until_ready(task.startup, self.look)
@@ -219,7 +243,15 @@ class Workers:
     def _end_server(self, server: ForkServer) -> None:
         self._selector.unregister(server.pipe)
         self._servers.remove(server)
-        server.close()
+        left, remains = server.close()
+        self._tell_left(left)
+        self._note_remains(remains)
+
+    def _tell_left(self, left: list[str] | None) -> None:
+        """Say once that tests leave something running."""
+        if left and not self._has_told_left:
+            self._has_told_left = True
+            self._on_left(left)
 
     def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Line]]:
         """Until something happens, or might: ``next_task`` has no place yet."""
@@ -240,9 +272,10 @@ class Workers:
             elif isinstance(key.data, _Worker) and key.fd == key.data.pipe:
                 for line in key.data.read():
                     yield key.data.task, line
+                key.data.stop_listening_if_over(self._selector)
         now = time.monotonic()
         for worker in list(self._workers):
-            if now >= worker.deadline(self._pause) and not worker.has_ended:
+            if now >= worker.deadline(self._pause) and not worker.has_ended and worker.is_out_of_time():
                 worker.expire()
             if worker.has_ended:
                 yield from self._finish(worker)
@@ -267,11 +300,13 @@ class Workers:
 
     def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Line]]:
         self._workers.remove(worker)
-        lines, result = worker.finish(self._selector)
+        lines, result, remains = worker.finish(self._selector)
+        self._tell_left(worker.left)
+        self._note_remains(remains)
         for line in lines:
             yield worker.task, line
         if result.end is None:
-            refuse_full_disk(Path(self._folder.name))
+            refuse_full_disk(self._folder)
         if worker.task.is_trunk:
             self.pool.give_back(result.held)  # what a trunk that died had not given back itself
         yield result
@@ -284,10 +319,12 @@ class _Worker:
         self.task = task
         self.result = Result(task, held=1 if task.is_trunk else 0)
         self.pipe = pipe
-        self._lines = LineReader(pipe)
+        self._lines = LineReader(pipe, home.key)
+        self._is_heard = False
         self._home, self._process = home, process
+        self.left: list[str] | None = None
         self._started = time.monotonic()
-        self.until = self._started + task.startup
+        self._allow(task.startup)
 
     @property
     def pid(self) -> int:
@@ -306,6 +343,7 @@ class _Worker:
 
     def watch(self, selector: selectors.BaseSelector) -> None:
         selector.register(self.pipe, selectors.EVENT_READ, self)
+        self._is_heard = True
         if self._process.pidfd is not None:
             selector.register(self._process.pidfd, selectors.EVENT_READ, self)
 
@@ -316,13 +354,31 @@ class _Worker:
             self._take(line)
         return lines
 
+    def stop_listening_if_over(self, selector: selectors.BaseSelector) -> None:
+        """A pipe that nobody can write to any more would be ready for ever."""
+        if self._is_heard and self._lines.is_over:
+            selector.unregister(self.pipe)
+            self._is_heard = False
+
     def _take(self, line: Line) -> None:
         self.result.take(line)
         if isinstance(line, TestEnd):
-            self.until = time.monotonic() + self.task.startup
+            self._allow(self.task.startup)
         elif isinstance(line, TestStart) or self.task.is_trunk:
             running = self.result.running or ""
-            self.until = time.monotonic() + self.task.deadlines.get(running, self.task.deadline)
+            self._allow(self.task.deadlines.get(running, self.task.deadline))
+
+    def _allow(self, seconds: float) -> None:
+        """From now on it may take so long."""
+        self._limit, self._used = seconds, TimeUsed.from_now([self.pid])
+        self.until = self._used.began + seconds
+
+    def is_out_of_time(self) -> bool:
+        """Whether it has used its time, now that the wall clock has run out; if not, it gets what is left."""
+        left = self._used.left(self._limit, [self.pid])
+        if left > 0:
+            self.until = time.monotonic() + max(left, LOOKS)
+        return left <= 0
 
     def deadline(self, pause: Pause | None) -> float:
         """When (``time.monotonic``) its time is up. A trunk in a pause has nothing to tell."""
@@ -331,43 +387,55 @@ class _Worker:
         return max(self.until, pause.lasted_until() + self.task.deadline)
 
     def expire(self) -> None:
-        """The wall clock ran out: end the process group."""
+        """Its time is up: end the process group."""
+        self.result.hindered = self._used.hindrance([self.pid])
+        self.result.is_starved = time.monotonic() >= self._used.began + MOST * self._limit
         if self.result.running is not None:
             limit = self.task.deadlines.get(self.result.running, self.task.deadline)
             self.result.overdue = f"no end after {limit:.0f} s of wall clock"
         else:
             self.result.overdue = f"no test begun or finished within {self.task.startup:.0f} s"
         self.result.where = stack.ask(
-            self._process.pid, str(self._home.folder / stack.FILE), self.task.job.root
+            self._process.tests, str(self._home.folder / stack.FILE), self.task.job.root
         )
         self._process.end()
 
     def kill(self) -> None:
         self._process.kill()
 
-    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Line], Result]:
-        """Collect the rest of a process that has ended: its last lines, and what became of it."""
+    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Line], Result, str | None]:
+        """Collect the rest of a process that has ended.
+
+        Returns its last lines, what became of it, and what of it cannot be removed.
+        """
         self.result.exit_code = self._end()
         lines = self.read()
-        self.result.find_overdue(time.monotonic())
+        if not self._home.is_whole:
+            lines.append(_HOME_LOST)
+            self._take(_HOME_LOST)
+        if self.result.find_overdue(time.monotonic()):
+            self.result.hindered = self._used.hindrance()
         if self.result.end is None:
             self.result.acted += acted_in(self._home.folder)
         self.result.wall = time.monotonic() - self._started + self._process.startup
         self.result.log = self._home.log_text()
-        self.close(selector)
-        return lines, self.result
+        return lines, self.result, self.close(selector)
 
-    def close(self, selector: selectors.BaseSelector) -> None:
-        selector.unregister(self.pipe)
+    def close(self, selector: selectors.BaseSelector) -> str | None:
+        """Let go of all; what of it cannot be removed, in words, or None."""
+        if self._is_heard:
+            selector.unregister(self.pipe)
         if self._process.pidfd is not None:
             selector.unregister(self._process.pidfd)
         os.close(self.pipe)
         self._end()
         self._process.release()
-        self._home.remove()
+        return self._home.remove()
 
     def _end(self) -> int:
         """End it and all that was started below it; returns its exit code."""
         code = self._process.end()
-        end_left_over(self._home.processes)
+        if self.left is None:
+            left = self._process.left
+            self.left = end_left_over(self._home.processes) if left is None else left
         return code

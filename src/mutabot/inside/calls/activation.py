@@ -23,8 +23,10 @@ from mutabot.operators.operator import subject_of
 from mutabot.operators.passage import Carried, Passage, passed
 
 from . import mishaps
+from .answers import LOST, snapshot
 from .door import Door, here
 from .keeping import held, kept_call, kept_reply
+from .live import HandedCopies, is_live
 from .refusing import answered, heard, is_told_on, refused_of
 
 
@@ -42,6 +44,7 @@ class Activation:
         rule: its operator.
         watched: how the robot says that it refuses the last mutated call of the running test.
         time: simulated seconds since the test's first tick; None without a clock.
+        usual: numbers of the calls of its site in the running test that the robot refuses in the original.
     """
 
     mutant: Mutant
@@ -53,6 +56,7 @@ class Activation:
     rule: Operator = field(init=False)
     watched: tuple[Refused, ...] = ()
     time: Callable[[], float | None] = lambda: None
+    usual: frozenset[int] = frozenset()
     _told_by: tuple[Refused, ...] = ()
     _commands: int = 0
     _told: int = 0
@@ -62,6 +66,7 @@ class Activation:
     _moment: Moment | None = None
     _test: tuple[int, str] = (0, "")
     _early: Evidence = field(default_factory=Evidence)
+    _handed: HandedCopies = field(default_factory=HandedCopies)
     _due: list[Deferred] = field(default_factory=list)
     _next: list[Deferred] = field(default_factory=list)
 
@@ -69,11 +74,23 @@ class Activation:
         """What it did before the first test counts in every test."""
         self._early = self.evidence
 
-    def start(self, seed: int, round: int = 0, test: str = "", moment: Moment | None = None) -> None:
+    def start(
+        self,
+        seed: int,
+        round: int = 0,
+        test: str = "",
+        moment: Moment | None = None,
+        usual: frozenset[int] = frozenset(),
+    ) -> None:
         """A new test begins; the mutant's randomness follows from ``seed`` alone.
 
-        ``moment``: at which calls of the test it acts; None for all.
+        Args:
+            seed: of the mutant in this test.
+            round, test: which.
+            moment: at which calls of the test it acts; None for all.
+            usual: numbers of the calls of its site that the robot refuses in the original too.
         """
+        self.usual = usual
         self.evidence = replace(self._early, away=dict(self._early.away))
         self.rule = operator(self.mutant.operator)
         self._middleware = self.rule.middleware(self._subject(), Random(seed))
@@ -81,6 +98,7 @@ class Activation:
         self._test = (round, test)
         self._moment = moment
         self.watched = ()
+        self._handed = HandedCopies()
         self._due, self._next = [], []
 
     def is_here(self, site: tuple[Span, Role], target: str) -> bool:
@@ -104,10 +122,13 @@ class Activation:
         Returns what the program receives, and the robot's last answer.
         """
         assert self._middleware is not None
+        self.look_back()
         self.evidence.hits += 1
         passage = Passage(kept_call(call) if self._copies else call)
         is_due = self._moment is None or self._moment.holds(number, self.time())
-        performer = _Performer(self, door, passage, is_async, does_nothing=is_due and self.rule.does_nothing)
+        performer = _Performer(
+            self, door, passage, is_async, does_nothing=is_due and self.rule.does_nothing, number=number
+        )
         self._commands, self._told, self._is_passed = 0, 0, False
         middleware = self._middleware if is_due else _not_yet
         passage.call = replace(passage.call, is_refusal=partial(is_refusal, names=self.refusals))
@@ -117,9 +138,9 @@ class Activation:
             reply = await passed(passage, _one_is_due if self._due else middleware, performer.proceed)
             reply = passage.received = mishaps.heard_of(passage.call, reply)
             self.note(passage)
-            self._next += [Deferred(door, held(one), passage, is_async) for one in passage.deferred]
+            self._next += [Deferred(door, held(one), passage, is_async, number) for one in passage.deferred]
             last = passage.answered[-1] if passage.answered else None
-            handed = mishaps.hand_over(passage.call, reply, partial(door.result, passage.call, original=last))
+            handed = mishaps.hand_over(passage.call, reply, partial(self._result, performer, last))
         except BaseException as error:
             if passage.received is None:
                 self.note(passage)
@@ -141,13 +162,33 @@ class Activation:
         self._next = []
         for one in due:
             passage = Passage(one.passage.call, is_late=True)
-            performer = _Performer(self, one.door, passage, one.is_async, does_nothing=False)
+            performer = _Performer(
+                self, one.door, passage, one.is_async, does_nothing=False, number=one.number
+            )
             passage.performed.append(one.call)
             try:
                 await performer.proceed(one.call)
             finally:
                 if not one.passage.acted_at_once:
                     self._acts(passage)
+
+    def look_back(self, *, at_all: bool = False) -> None:
+        """Look whether the program has written to what it got in the place of the robot's own memory."""
+        if self._handed.look(at_all=at_all) and self.evidence.failure is None:
+            self.evidence.failure = (
+                f"the program writes to what {self.operation.name} returns, which is the robot's own memory; "
+                "with the mutant it wrote to a copy, so the robot did not get it"
+            )
+
+    def _result(self, performer: _Performer, last: Reply | None, reply: Reply) -> Any:
+        """What the program gets of a reply: the robot's own answer where nothing in it is changed."""
+        call = performer.passage.call
+        if performer.is_answered and reply.payload is performer.kept:
+            reply = replace(reply, payload=performer.answer)
+        result = performer.door.result(call, reply, original=last)
+        if performer.is_live and result is not performer.answer:
+            self._handed.note(performer.answer, result, (call.pattern or call.operation).result)
+        return result
 
     @property
     def _copies(self) -> bool:
@@ -208,7 +249,8 @@ class Activation:
             last = door.last_answer(call)
             if last is not None:
                 return last
-        return Reply({}, restore(idle.first(*self._test), here(call)))
+        first = idle.first(*self._test)
+        return Reply().never() if first == LOST else Reply({}, restore(first, here(call)))
 
     def note(self, passage: Passage) -> None:
         """What became of a call that is over, or of whose mutant this process dies."""
@@ -230,12 +272,12 @@ class Activation:
             return (dict(passage.call.values), [dict(call.values) for call in passage.performed])
         if passage.changed_command:
             after = passage.performed[0].values.get(name) if passage.performed else None
-            return (passage.call.values.get(name), after)
+            return (snapshot(passage.call.values.get(name)), snapshot(after))
         reply = passage.received
         received = reply.values.get(name) if reply is not None else None
         if reply is not None and reply.error:
             received = f"raises {reply.error}"
-        return (passage.answered[-1].values.get(name), received)
+        return (snapshot(passage.answered[-1].values.get(name)), snapshot(received))
 
 
 async def _not_yet(call: Call, proceed: Proceed) -> Reply:
@@ -257,24 +299,40 @@ class Deferred:
         call: the call.
         passage: that of the call in which it was deferred.
         is_async: whether what it returns is to be awaited.
+        number: of the call in whose place it is made, among those of its site.
     """
 
     door: Door
     call: Call
     passage: Passage
     is_async: bool
+    number: int
 
 
 @dataclass(slots=True)
 class _Performer:
-    """Performs calls for a passage, and notes how the robot took the mutated ones."""
+    """Performs calls for a passage, and notes how the robot took the mutated ones.
+
+    A call that the robot refuses in the original too, by its ``number``, is left to the tests.
+
+    Attributes:
+        raised: what the robot raised.
+        answer: what it returned last, and whether it has.
+        kept: the same, or the copy that the operator saw.
+        is_live: whether that is the robot's own memory.
+    """
 
     activation: Activation
     door: Door
     passage: Passage
     is_async: bool
     does_nothing: bool
+    number: int
     raised: BaseException | None = None
+    answer: Any = None
+    is_answered: bool = False
+    kept: Any = None
+    is_live: bool = False
 
     async def proceed(self, call: Call) -> Reply:
         if self.does_nothing:
@@ -286,7 +344,7 @@ class _Performer:
         self.activation.count(call)
         if mutated:
             self.activation.on_call(True)
-            self.activation.watched = refused_of(call)
+            self.activation.watched = () if self._is_usual else refused_of(call)
         try:
             await mishaps.before(call, self._last_words)
             result = mishaps.timed(call, partial(self.door.perform, call, self.passage.call))()
@@ -304,8 +362,16 @@ class _Performer:
                 self.activation.on_call(False)
         if mutated and self.activation.watched:
             self.activation.refused_as(answered(call, result))
+        meant = call.pattern or call.operation
+        self.is_live = bool(meant.result) and is_live(result, meant.result)
         reply = self.door.reply(call, result)
-        return kept_reply(reply) if self.activation._copies else reply
+        reply = kept_reply(reply) if self.activation._copies else reply
+        self.answer, self.is_answered, self.kept = result, True, reply.payload
+        return reply
+
+    @property
+    def _is_usual(self) -> bool:
+        return self.number in self.activation.usual
 
     def _last_words(self) -> None:
         """This process is about to die of the mutant: tell what it did."""
@@ -318,6 +384,8 @@ class _Performer:
             return
         evidence = self.activation.evidence
         if is_refusal(error, self.activation.refusals):
+            if self._is_usual:
+                return
             evidence.refusals = with_refusal(evidence.refusals, error)
         elif isinstance(error, TypeError) and _raised_at_the_call(error):
             evidence.invalid = True

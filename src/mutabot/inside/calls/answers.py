@@ -14,12 +14,20 @@ from mutabot.model.values.answer import NotKeptError, is_of_numpy, is_plain, kee
 _CHANGEABLE = frozenset({list, dict, set, bytearray})
 
 
+#: stands for an answer that cannot be kept and that the program waits for: it never comes
+LOST = {"pending": ""}
+
+
 @dataclass(frozen=True, slots=True)
 class Returned:
-    """What a call returned, and what it knew: the instance as ``self``, and the arguments."""
+    """What a call returned, and what it knew: the instance as ``self``, and the arguments.
+
+    ``can_be_lost`` is whether the middleware knows what a program meets whose answer never comes.
+    """
 
     value: Any
     here: Mapping[str, Any]
+    can_be_lost: bool = False
 
 
 @dataclass(slots=True)
@@ -69,7 +77,7 @@ class Answers:
         try:
             return {"kept": keep(returned.value, returned.here, self.handles)}
         except NotKeptError as error:
-            return {"opaque": str(error)}
+            return {"kept": LOST} if returned.can_be_lost else {"opaque": str(error)}
         except Exception as error:  # objects of the user's may do anything when they are looked at
             return {"opaque": f"{type(returned.value).__qualname__}, which raises {error!r}"}
 

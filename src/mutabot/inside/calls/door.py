@@ -20,7 +20,8 @@ from mutabot.inside.targets.names import resolve
 from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply
 from mutabot.model.named import Form
 from mutabot.model.values.answer import NotKeptError, keep, restore
-from mutabot.model.values.quantity import Value, is_reading_of, same
+from mutabot.model.values.quantity import Value, is_reading_of
+from mutabot.model.values.sameness import changes, is_same
 
 from .answers import snapshot
 from .arguments import Arguments, signature_for
@@ -132,9 +133,8 @@ class Door:
             return invocation.wrapped(*invocation.args, **invocation.kwargs)
         is_text = call.pattern is not None and call.pattern.notation is not None
         wrapped = self._opposite(call) if call.reversed and not is_text else invocation.wrapped
-        changed = {
-            name: value for name, value in call.values.items() if not same(value, original.values.get(name))
-        }
+        meant = call.pattern if call.pattern is not None else self.operation
+        changed = changes(meant.arguments, original.values, call.values)
         if invocation.arguments is None or (not changed and not call.reversed):
             return wrapped(*invocation.args, **invocation.kwargs)
         args, kwargs = self._writer.changed(call, changed, invocation.arguments, invocation.message)
@@ -178,7 +178,7 @@ class Door:
         for quantity in call.pattern.result if call.pattern is not None else self.operation.result:
             if quantity.name in reply.values:
                 value = reply.values[quantity.name]
-                if not same(value, before.get(quantity.name)):
+                if not is_same(quantity, value, before.get(quantity.name)):
                     result = quantity.put(result, _typed_like(value, before.get(quantity.name)))
         return result
 

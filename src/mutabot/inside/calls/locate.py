@@ -26,7 +26,9 @@ class Locator:
         places += [(self._absolute(path), Role.ORACLE) for path in oracle]
         self._places = sorted(places, key=lambda place: -len(place[0]))
         self._roles: dict[str, Role | None] = {}
-        self._spans: dict[tuple[CodeType, int], Span] = {}
+        # By the identity of code: the code of equal functions in two files is equal, though they are two
+        # places. It is kept beside its span, so that no other code can get its address.
+        self._spans: dict[tuple[int, int], tuple[Span, CodeType]] = {}
         # every other frame is Python's: asking its front end for each would cost each call
         self._interpreted = [one for one in front_ends() if one is not PYTHON]
         self._real: dict[str, str] = {}
@@ -90,11 +92,13 @@ class Locator:
         return None
 
     def _span(self, frame: FrameType) -> Span:
-        key = (frame.f_code, frame.f_lasti)
-        span = self._spans.get(key)
-        if span is None:
-            span = self._spans[key] = self._span_at(frame.f_code.co_filename, PYTHON.position_of(frame))
-        return span
+        code = frame.f_code
+        key = (id(code), frame.f_lasti)
+        known = self._spans.get(key)
+        if known is None:
+            span = self._span_at(code.co_filename, PYTHON.position_of(frame))
+            known = self._spans[key] = (span, code)
+        return known[0]
 
     def _span_at(self, filename: str, position: Position) -> Span:
         return Span(self.relative(filename), *position.extent, position.function)

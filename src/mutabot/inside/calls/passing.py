@@ -32,6 +32,8 @@ from mutabot.operators.passage import Carried, run
 from .activation import Activation
 from .answers import Returned
 from .door import Door, here
+from .live import is_live
+from .refusing import Made, RefusedCalls
 from .trace import Recorder
 
 #: whether an operation is already under way here: only the outermost is a site
@@ -78,7 +80,7 @@ class Passing:
         recorder: traces the calls.
         instances: notes which objects are used.
         along: reads probes along the way.
-        on_error: told of each unmutated call that raised, with what it raised.
+        on_error: told of each unmutated call that raised, after what it raised.
         locate_definition: finds the site of a function that is called back; None likewise.
 
     Attributes:
@@ -88,6 +90,8 @@ class Passing:
         trunk: set while this process runs the original and forks a branch per mutant.
         oracle_nodes: names of nodes whose calls are the oracle's, wherever they stand.
         activations: the mutants of calls that are at work: none for the original.
+        on_live: told in the baseline of each call that returned the robot's own memory; None in other runs.
+        refused: the calls of the running test that the robot refuses in the original.
         calls: how often each site has been called in the running test, by operation and pattern.
     """
 
@@ -97,7 +101,7 @@ class Passing:
         recorder: Recorder,
         instances: Instances,
         along: Along,
-        on_error: Callable[[BaseException, Call], None],
+        on_error: Callable[[BaseException, Made], None],
         on_end: Callable[[Call, Mapping[str, Value]], None] | None = None,
         locate_definition: Callable[[CodeType], tuple[Span, Role] | None] = lambda code: None,
     ) -> None:
@@ -114,6 +118,8 @@ class Passing:
         self.activations: list[Activation] = []
         self.oracle_nodes: tuple[str, ...] = ()
         self._operator = ""
+        self.on_live: Callable[[Made], None] | None = None
+        self.refused = RefusedCalls()
         self.calls: Counter[tuple[Span, str, str | None]] = Counter()
 
     def activate(self, activation: Activation) -> None:
@@ -145,10 +151,11 @@ class Passing:
             site = self._site(sys._getframe(1), where)
             if site is None:
                 return wrapped(*args, **kwargs)
+            is_direct = self._recorder.answers is not None and self._is_direct(sys._getframe(1), where)
             wrapped = _bound(wrapped, instance)
             is_async = inspect.iscoroutinefunction(wrapped)
             means = where.means if where is not None else None
-            on_its_way = self._pass(door, site, is_async, wrapped, instance, args, kwargs, means)
+            on_its_way = self._pass(door, site, is_direct, is_async, wrapped, instance, args, kwargs, means)
             if is_async:
                 return on_its_way
             return run(on_its_way, operator=self._operator)
@@ -163,15 +170,26 @@ class Passing:
             return site[0], Role.ORACLE
         return site
 
+    def _is_direct(self, frame: FrameType | None, where: Where | None) -> bool:
+        """Whether the program itself makes the call, rather than a library that it calls."""
+        if where is not None and where.code is not None:
+            return False
+        while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "mutabot":
+            frame = frame.f_back
+        return frame is not None and self._locate_definition(frame.f_code) is not None
+
     def _is_oracle(self, node: str) -> bool:
         return any(fnmatchcase(node, name) for name in self.oracle_nodes)
 
-    async def _pass(self, door: Door, site: tuple[Span, Role], is_async: bool, *made: Any) -> Any:
+    async def _pass(
+        self, door: Door, site: tuple[Span, Role], is_direct: bool, is_async: bool, *made: Any
+    ) -> Any:
         """The phases of one call.
 
         Args:
             door: its operation's.
             site: where it stands.
+            is_direct: whether the call that stands there is that of the operation itself.
             is_async: whether what the operation returns is to be awaited.
             made: the call as Python made it, and what can befall it: what the handler was given.
         """
@@ -197,7 +215,7 @@ class Passing:
                 if mutant is None:
                     for activation in self.activations:
                         activation.passed_by(call)
-                    reply = await self._perform(door, call, is_async)
+                    reply = await self._perform(door, Made(site, call, number), is_async)
                     result = reply.payload
                 else:
                     result, reply = await mutant.perform(door, call, is_async, number)
@@ -208,7 +226,7 @@ class Passing:
                 return result
             finally:
                 # 5. Whatever came of it is noted.
-                self._note(site, call, reply, began)
+                self._note(site, call, reply, began, is_direct)
         finally:
             try:  # noqa: SIM105  # quicker than a context manager, at every call
                 _under_way.reset(token)
@@ -243,28 +261,49 @@ class Passing:
                 return activation
         return None
 
-    async def _perform(self, door: Door, call: Call, is_async: bool) -> Reply:
+    async def _perform(self, door: Door, made: Made, is_async: bool) -> Reply:
         """Let the robot do what the program says."""
         __tracebackhide__ = True
+        call = made.call
+        self.refused.begins(made)
         try:
             result = door.perform(call, call)
             if is_async:
                 result = await result
         except BaseException as error:
-            self._on_error(error, call)
+            self._on_error(error, made)
             if isinstance(error, StopIteration):
                 raise Carried(error) from None
             raise
+        if self.on_live is not None:
+            meant = call.pattern or door.operation
+            if meant.result and is_live(result, meant.result):
+                self.on_live(made)
+        self.refused.returned(made, result)
         return door.reply(call, result)
 
-    def _note(self, site: tuple[Span, Role], call: Call, reply: Reply | None, began: float | None) -> None:
+    def _note(
+        self, site: tuple[Span, Role], call: Call, reply: Reply | None, began: float | None, is_direct: bool
+    ) -> None:
         """Trace a call that is over; ``reply`` is the robot's last one, None if the call raised."""
         span, role = site
         pattern = call.pattern.text if call.pattern is not None else None
         read = reply.values if reply is not None else {}
         is_wanted = self._recorder.answers is not None and reply is not None
-        returned = Returned(reply.payload, here(call)) if reply is not None and is_wanted else None
-        self._recorder.hit(span, role, call.operation.target, pattern, call.values, read, returned, began)
+        returned = None
+        if reply is not None and is_wanted:
+            returned = Returned(reply.payload, here(call), _can_be_lost(call))
+        self._recorder.hit(
+            span,
+            role,
+            call.operation.target,
+            pattern,
+            call.values,
+            read,
+            returned,
+            began,
+            is_direct=is_direct,
+        )
         if call.is_command:
             self._along.after(len(self._recorder.trace))
         if self.on_end is not None:
@@ -278,6 +317,13 @@ def _bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:
     function = getattr(wrapped, "__wrapped__")  # noqa: B009  # its stubs do not name it
     bind = getattr(type(function), "__get__", None)
     return wrapped if bind is None else cast("Callable[..., Any]", bind(function, instance, type(instance)))
+
+
+def _can_be_lost(call: Call) -> bool:
+    """Whether it sends the goal of an action to a server that may never answer."""
+    named, means = call.operation.named, call.payload.means
+    is_goal = named is not None and named.form is Form.GOAL
+    return is_goal and means is not None and means.lost is not None
 
 
 def _marks_time(door: Door) -> bool:

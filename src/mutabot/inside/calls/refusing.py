@@ -1,16 +1,87 @@
-"""Refusals as data: how an answer, or a message that follows a command, says that the robot refuses it."""
+"""Refusals: which calls the robot refuses in the original too, and how data say that it refuses one."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from enum import Enum
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from functools import cache
 from typing import Any
 
+from mutabot.border.job import RefusedAt
 from mutabot.errors import PathError
-from mutabot.model import Call, Path
+from mutabot.model import Call, Path, Role, Span
 from mutabot.model.named import Form, Refused
+from mutabot.model.values.members import is_member, member_of
+
+#: a call of a test: its site, operation and pattern, and its number among those of the site
+_Key = tuple[Span, str, str | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A call of the running test.
+
+    Attributes:
+        site: where it stands.
+        call: the call.
+        number: of the call among those of its site in this test, from 1.
+    """
+
+    site: tuple[Span, Role]
+    call: Call
+    number: int
+
+
+@dataclass(slots=True)
+class RefusedCalls:
+    """The calls of the running test that the robot refuses in the original.
+
+    The baseline notes them. In all other runs they are known from it: a mutated call that is refused there
+    as well shows nothing but what the original shows.
+
+    Attributes:
+        on_refused: told of each one in the baseline; None in all other runs.
+    """
+
+    on_refused: Callable[[Made], None] | None = None
+    _known: dict[_Key, frozenset[int]] = field(default_factory=dict)
+    _watched: dict[str, tuple[Made, tuple[Refused, ...]]] = field(default_factory=dict)
+
+    def start(self, known: Iterable[RefusedAt]) -> None:
+        """A test begins, of which these are known."""
+        self._known = {(one.span, one.operation, one.pattern): frozenset(one.numbers) for one in known}
+        self._watched.clear()
+
+    def at(self, span: Span, operation: str, pattern: str | None) -> frozenset[int]:
+        """The numbers of those of a site."""
+        return self._known.get((span, operation, pattern), frozenset())
+
+    def has(self, made: Made) -> bool:
+        """Whether this call of the original's is known to be one."""
+        pattern = made.call.pattern.text if made.call.pattern is not None else None
+        return made.number in self.at(made.site[0], made.call.operation.target, pattern)
+
+    def begins(self, made: Made) -> None:
+        """A call of the original's is made: as with mutated ones, what is refused from now on is this."""
+        if self.on_refused is None:
+            return
+        self._watched.pop(made.call.operation.target, None)
+        refused = refused_of(made.call)
+        if any(one.topic is not None for one in refused):  # nothing of the program's is kept without need
+            self._watched[made.call.operation.target] = (made, refused)
+
+    def returned(self, made: Made, result: Any) -> None:
+        """A call of the original's has returned: its answer may say that the robot refuses it."""
+        if self.on_refused is not None and answered(made.call, result) is not None:
+            self.on_refused(made)
+
+    def heard(self, name: str, message: Any) -> None:
+        """A message came by."""
+        for target, (made, refused) in list(self._watched.items()):
+            if self.on_refused is not None and heard(refused, name, message) is not None:
+                del self._watched[target]
+                self.on_refused(made)
 
 
 def refused_of(call: Call) -> tuple[Refused, ...]:
@@ -60,10 +131,18 @@ def _found(refused: Refused, start: Any) -> str | None:
         value = path.get(start)
     except PathError:  # another kind of answer, or of message
         return None
-    value = _plain(value)
-    if not any(_same(value, wanted) for wanted in refused.values):
+    if not any(_means(wanted, value) for wanted in refused.values):
         return None
+    value = value.value if is_member(value) else _plain(value)
     return " ".join(part for part in (str(path).lstrip("."), str(value)) if part)
+
+
+def _means(wanted: Any, value: Any) -> bool:
+    """Whether a value of the vocabulary stands for one of the robot's."""
+    if not is_member(value):
+        return _same(_plain(value), wanted)
+    member = member_of(type(value), wanted)
+    return member is not None and bool(member == value)
 
 
 def _same(value: Any, wanted: Any) -> bool:
@@ -75,8 +154,6 @@ def _same(value: Any, wanted: Any) -> bool:
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, Enum):
-        return value.value
     return value.tolist() if hasattr(value, "dtype") and hasattr(value, "tolist") else value
 
 

@@ -66,12 +66,14 @@ class Recorder:
         read: Mapping[str, Any],
         returned: Returned | None,
         began: float | None = None,
+        *,
+        is_direct: bool = False,
     ) -> None:
         """One call at a site has been made; ``returned`` is None if it raised, ``began`` is in s."""
         if len(self.trace) >= TRACE_LIMIT:
             self.truncated = True
             return
-        index = self.index_of(SiteSeen(-1, span, operation, pattern, role is Role.ORACLE))
+        index = self.index_of(SiteSeen(-1, span, operation, pattern, role is Role.ORACLE, is_direct))
         answer = self.answers.note(index, returned) if self.answers is not None else None
         self.trace.append((index, _frozen(written), _frozen(read), answer))
         self.when.append((began, self.clock()))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from enum import Enum
 from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.model import Call, Operation, Pattern, Quantity
+from mutabot.model.values.members import is_member, name_of
 from mutabot.model.values.notation import Notation
 from mutabot.model.values.path import Path
 from mutabot.model.values.quantity import Value
@@ -203,8 +203,8 @@ def _names(arguments: Arguments, instance: Any, argument: str) -> tuple[str, ...
         value = None
     if value is None:
         return ("none",)
-    if isinstance(value, Enum):
-        return (str(value.value), value.name)
+    if is_member(value):
+        return (str(value.value), name_of(value))
     try:
         if isinstance(value, bytes):
             return (str(value), value.decode("utf-8", "surrogateescape"))

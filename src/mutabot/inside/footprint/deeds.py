@@ -113,7 +113,7 @@ class Deeds:
             self._is_on = True
 
     def _note(self, deed: Deed | None) -> None:
-        if deed is None or self._is_nobodys(deed.path):
+        if deed is None or self._is_nobodys(deed):
             return
         if self.on_deed is not None:
             self.on_deed(deed)
@@ -121,9 +121,15 @@ class Deeds:
             is_own = not deed.path or any(is_below(deed.path, own) for own in self._own)
             self.done[deed] = self.done.get(deed, False) or not is_own
 
-    def _is_nobodys(self, path: str) -> bool:
-        """Whether it is no file, our own, or one of the folders that pytest makes for each test."""
-        if path.startswith(_NOWHERE) or any(is_below(path, folder) for folder in self.ignored):
+    def _is_nobodys(self, deed: Deed) -> bool:
+        """Whether it is no file, our own, or one of the folders that pytest makes for each test.
+
+        Nobody but a test deletes or renames our own.
+        """
+        path, is_removal = deed.path, deed.verb in {"deletes", "renames"}
+        if path.startswith(_NOWHERE):
+            return True
+        if not is_removal and any(is_below(path, folder) for folder in self.ignored):
             return True
         return path.startswith(self._pytests) and path.removeprefix(self._pytests).count("/") <= 2
 

@@ -77,7 +77,7 @@ class CopyServer:
                     if not message:
                         break
                     if self._fork(jobs):
-                        return self._commission(message.decode(), descriptors[0])
+                        return self._commission(os.fsdecode(message), descriptors[0])
                     os.close(descriptors[0])
         for pidfd, pid in list(self._copies.items()):
             self._bury(pidfd, pid)

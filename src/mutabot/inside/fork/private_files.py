@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import ctypes
 import os
+import re
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
-_MS_BIND, _MS_REC, _MS_PRIVATE = 4096, 16384, 1 << 18
+_MS_BIND, _MS_REC, _MS_PRIVATE, _MNT_DETACH = 4096, 16384, 1 << 18, 2
 #: the layers of a process lie in its own folder
 _LAYERS = "files"
 
@@ -34,25 +35,37 @@ def make_private(root: str, home: str, shared: str) -> str | None:
 
     Args:
         root: absolute path of the project.
-        home: the process's own folder, below ``shared``.
-        shared: the folder that stays common to all processes.
+        home: the process's own folder, beside those of other processes, which it cannot touch.
+        shared: the folder that stays common to all processes, but for those folders.
 
-    Returns why that is not possible, in words; None if it is done. Nothing has changed then, bar the
-    namespace.
+    Returns why that is not possible, in words, and nothing has changed then, bar the namespace; None if it is
+    done.
     """
     folders = [folder for folder in private_folders(root) if not is_below(folder, shared)]
+    beside = os.path.dirname(home)
+    covered: list[str] = []
     try:
         _enter_namespace()
         _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
-        with _opened([*folders, shared, home]) as (*lowers, common, own):
+        with _opened([*folders, shared, beside, home]) as (*lowers, common, others, own):
             below = _mounts_below(folders, shared)
             with _opened(below) as kept:
+                again = [*zip(below, kept, strict=True), (shared, common)]
                 for number, (folder, lower) in enumerate(zip(folders, lowers, strict=True)):
                     _lay_over(folder, lower, own, number)
-                for folder, descriptor in [*zip(below, kept, strict=True), (shared, common)]:
-                    if any(is_below(folder, covered) for covered in folders):
-                        _mount(_path(descriptor), folder, None, _MS_BIND | _MS_REC)
+                    covered.append(folder)
+                    # what is mounted in it comes back before the next folder, which may lie in such a one
+                    for inner, descriptor in again:
+                        if inner != folder and is_below(inner, folder):
+                            _mount(_path(descriptor), inner, None, _MS_BIND | _MS_REC)
+                            covered.append(inner)
+            if beside != shared:
+                _lay_over(beside, others, own, len(folders))
+                covered.append(beside)
+                _mount(_path(own), home, None, _MS_BIND | _MS_REC)
+                covered.append(home)
     except OSError as error:
+        _uncover(covered)
         return f"{error.strerror or error}"
     with suppress(OSError):  # the same folder, but seen through its new layers
         os.chdir(os.getcwd())
@@ -91,16 +104,29 @@ def _lay_over(folder: str, lower: int, own: int, number: int) -> None:
 
 
 def _mounts_below(folders: list[str], shared: str) -> list[str]:
-    """File systems that are mounted below these folders: an overlay would hide them."""
-    with open("/proc/self/mountinfo", encoding="utf-8", errors="surrogateescape") as file:
-        points = [line.split(" ")[4].encode().decode("unicode_escape") for line in file]
+    """File systems that are mounted below these folders, the outer ones first: an overlay would hide them."""
+    with open("/proc/self/mountinfo", "rb") as file:
+        points = [mount_point(line) for line in file]
     found = dict.fromkeys(
         point
-        for point in points
+        for point in sorted(points)
         if not is_below(point, shared)
         and any(point != folder and is_below(point, folder) for folder in folders)
     )
     return list(found)
+
+
+def mount_point(line: bytes) -> str:
+    """Where a file system is mounted, by a line of ``/proc/self/mountinfo``: in bytes, some of them octal."""
+    field = line.split(b" ")[4]
+    return os.fsdecode(re.sub(rb"\\([0-7]{3})", lambda match: bytes([int(match[1], 8)]), field))
+
+
+def _uncover(folders: list[str]) -> None:
+    """Take back what was laid over these folders, the last first."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    for folder in reversed(folders):
+        libc.umount2(os.fsencode(folder), _MNT_DETACH)
 
 
 @contextmanager

@@ -10,13 +10,14 @@ from __future__ import annotations
 import os
 import select
 import signal
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from time import monotonic, perf_counter  # tests may replace those of the module
 from typing import Protocol
 
 from mutabot.border.job import Branching
 from mutabot.border.lines import BranchDied, TokensHeld, Unbranched, Undiverged
+from mutabot.border.time_used import MOST, TimeUsed
 from mutabot.inside.pipe import Pipe
 from mutabot.inside.watchdogs import alarm_held
 from mutabot.model import Call, Mutant, Span
@@ -38,6 +39,9 @@ ALIVE = 114
 #: exit code of a branch that stopped before it did what others would have noticed
 STOPPED = 116
 
+#: seconds by which a branch's time is extended at least
+_LEAST = 0.2
+
 #: where a mutant is branched: a site with its operation and pattern, or a place of the program text
 Key = tuple[Span, str, str | None] | int
 
@@ -52,7 +56,9 @@ class Child:
         pid, pidfd: its process.
         until: moment (``time.monotonic``) at which its time is up.
         limit: the seconds it was given.
+        used: how much of them it has used.
         overdue, where: whether its time was up, and where it was then.
+        hindered, is_starved: as in ``BranchDied``.
     """
 
     mutants: tuple[str, ...]
@@ -61,8 +67,23 @@ class Child:
     pidfd: int
     until: float
     limit: float
+    used: TimeUsed
     overdue: bool = False
     where: str | None = None
+    hindered: str | None = None
+    is_starved: bool = False
+
+    def is_out_of_time(self, now: float) -> bool:
+        """Whether it is to be ended. If the clock has run out, but not its time, it gets what is left."""
+        if now < self.until or self.overdue:
+            return False
+        left = self.used.left(self.limit, [self.pid])
+        if left > 0:
+            self.until = now + max(left, _LEAST)
+            return False
+        self.hindered = self.used.hindrance([self.pid])
+        self.is_starved = now >= self.used.began + MOST * self.limit
+        return True
 
 
 class Branch(Protocol):
@@ -229,12 +250,12 @@ class Trunk:
             for indexes in alike:
                 parting = bunch.take_out(place, indexes)
                 if self._may_fork([mutant.id for mutant in parting]):
-                    began = time.perf_counter()
+                    began = perf_counter()
                     pid = self._fork_one(parting)
                     if pid == 0:
                         return
                     os.waitpid(pid, 0)
-                    bunch.waited += time.perf_counter() - began
+                    bunch.waited += perf_counter() - began
 
     def finish(self) -> None:
         """All tests are over: wait for the branches that still run, holding no token meanwhile."""
@@ -267,7 +288,8 @@ class Trunk:
             limit = self.branching.walls.get(self._test, self.branching.wall) * len(bunch)
             pidfd = os.pidfd_open(pid)
             ids = tuple(mutant.id for mutant in bunch)
-            self._children[pidfd] = Child(ids, self._test, pid, pidfd, time.monotonic() + limit, limit)
+            used = TimeUsed.from_now()
+            self._children[pidfd] = Child(ids, self._test, pid, pidfd, used.began + limit, limit, used)
             self._take_token()
 
     def _fork_one(self, bunch: list[Mutant]) -> int:
@@ -293,6 +315,10 @@ class Trunk:
         for child in self._children.values():
             os.close(child.pidfd)
         self._children.clear()
+        if self._bunch is None:  # else those that it was forked from have closed them
+            self._tokens.close()
+            if self.branching.gate is not None:
+                os.close(self.branching.gate)
         isolate_files(self.log)
         foot.restore()
         choices = {mutant.id: self.branching.choices.get(mutant.id, ()) for mutant in mutants}
@@ -327,7 +353,7 @@ class Trunk:
         if other is not None:
             poll.register(other, select.POLLIN)
         until = min((child.until for child in self._children.values()), default=None)
-        timeout = None if until is None else max(0.0, until - time.monotonic()) * 1e3 + 1.0
+        timeout = None if until is None else max(0.0, until - monotonic()) * 1e3 + 1.0
         return [descriptor for descriptor, _ in poll.poll(timeout)]
 
     def _reap(self, ready: list[int]) -> bool:
@@ -335,9 +361,9 @@ class Trunk:
 
         One branch at a time: each brings one token.
         """
-        now = time.monotonic()
+        now = monotonic()
         for child in self._children.values():
-            if now >= child.until and not child.overdue:
+            if child.is_out_of_time(now):
                 child.overdue = True
                 child.where = self.where_is(child.pid)
                 os.kill(child.pid, signal.SIGKILL)
@@ -356,4 +382,5 @@ class Trunk:
             self._decided.update(one for one in child.mutants if self._board.code(one) != ALIVE)
         if code not in (ALIVE, DECIDED, STOPPED) and len(child.mutants) == 1:  # of several, who knows
             overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None
-            self.pipe.send(BranchDied(child.mutants[0], child.test, code, overdue, child.where))
+            end = (overdue, child.where, child.hindered, child.is_starved)
+            self.pipe.send(BranchDied(child.mutants[0], child.test, code, *end))

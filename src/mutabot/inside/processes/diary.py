@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 import time
 
-from mutabot.border.processes import SUFFIX, Began, Entry, entry_to_data
+from mutabot.border.codec import shallow
+from mutabot.border.processes import SUFFIX, Began, Entry
+from mutabot.border.storable import to_json
 from mutabot.inside.pipe import plain
 
 
@@ -21,17 +22,28 @@ class Diary:
 
     def __init__(self, folder: str, test: int) -> None:
         now = time.monotonic()
-        self._file = os.open(
-            os.path.join(folder, f"{os.getpid()}-{int(now * 1e6)}{SUFFIX}"),
-            os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC,
-            0o600,
-        )
+        self._path = os.path.join(folder, f"{os.getpid()}-{int(now * 1e6)}{SUFFIX}")
+        self._file, self._identity = self._opened()
         command = tuple(getattr(sys, "orig_argv", sys.argv))
         self.write(Began(os.getpid(), os.getppid(), os.getpgrp(), command, now, test))
 
     def write(self, entry: Entry) -> None:
         """Write one entry."""
-        text = json.dumps(entry_to_data(entry), default=plain, separators=(",", ":"))
-        data = memoryview(f"{text}\n".encode())
+        data = memoryview(to_json({"type": type(entry).__name__, **shallow(entry)}, plain) + b"\n")
+        if not self._is_open():  # daemons close all that they find open
+            self._file, self._identity = self._opened()
         while data:
             data = data[os.write(self._file, data) :]
+
+    def _opened(self) -> tuple[int, tuple[int, int]]:
+        file = os.open(self._path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o600)
+        status = os.fstat(file)
+        return file, (status.st_dev, status.st_ino)
+
+    def _is_open(self) -> bool:
+        """Whether the descriptor still leads to the file, and not to another's by now."""
+        try:
+            status = os.fstat(self._file)
+        except OSError:
+            return False
+        return (status.st_dev, status.st_ino) == self._identity

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass, field
 
 from mutabot.border.job import Job
-from mutabot.border.processes import FOLDER, SUFFIX, Entry, entry_of
+from mutabot.border.processes import FOLDER, SUFFIX, Began, Entry, entry_of
 
 from .carried import carry
 from .exits import Exits
@@ -21,30 +21,69 @@ _MIDDLEWARES = ("rclpy", "rospy", "actionlib", "tf2_ros")
 
 @dataclass(slots=True)
 class Diaries:
-    """The files of all members, as far as they have been read."""
+    """The files of all members, as far as they have been read.
+
+    The tests know the folder, and so does whatever they start: files may be gone or damaged.
+
+    Attributes:
+        doubt: why what they tell cannot be relied on, or None.
+    """
 
     folder: str
+    doubt: str | None = None
     _read: dict[str, int] = field(default_factory=dict)
 
     def new(self) -> list[tuple[str, list[Entry]]]:
         """Entries that are new, by file."""
+        try:
+            names = [name for name in sorted(os.listdir(self.folder)) if name.endswith(SUFFIX)]
+        except OSError:
+            names = []
+            self._doubt("their folder was deleted")
+        if not self._read.keys() <= set(names):
+            self._doubt("a file was deleted")
         found = []
-        for name in sorted(os.listdir(self.folder)):
-            if name.endswith(SUFFIX):
+        for name in names:
+            try:
                 entries = self._new_in(name)
-                if entries:
-                    found.append((name, entries))
+            except OSError as error:
+                self._doubt(f"{name} cannot be read ({error.strerror})")
+                continue
+            if entries:
+                found.append((name, entries))
         return found
+
+    def _doubt(self, why: str) -> None:
+        self.doubt = self.doubt or f"what processes below the tests reported was damaged: {why}"
 
     def _new_in(self, name: str) -> list[Entry]:
         start = self._read.get(name, 0)
         with open(os.path.join(self.folder, name), "rb") as file:
+            if os.fstat(file.fileno()).st_size < start:
+                self._doubt(f"{name} is shorter than it was")
             file.seek(start)
             data = file.read()
+        # What comes after the last line break is being written, or its writer was killed meanwhile.
         whole = data[: data.rfind(b"\n") + 1]
         self._read[name] = start + len(whole)
-        entries = (entry_of(line) for line in whole.splitlines())
-        return [entry for entry in entries if entry is not None]
+        found = [entry for line in whole.splitlines() if (entry := self._entry(line, name)) is not None]
+        if start == 0 and found and not _is_by_owner(found[0], name):
+            self._doubt(f"{name} was not begun by its process")
+        return found
+
+    def _entry(self, line: bytes, name: str) -> Entry | None:
+        try:
+            entry = entry_of(line)
+        except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
+            entry = None
+        if entry is None:
+            self._doubt(f"{name} holds a line that no process writes")
+        return entry
+
+
+def _is_by_owner(first: Entry, name: str) -> bool:
+    """Whether a file begins as that of the process that it is named after."""
+    return isinstance(first, Began) and str(first.pid) == name.partition("-")[0]
 
 
 class Host:

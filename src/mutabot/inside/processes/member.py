@@ -34,9 +34,11 @@ from mutabot.border.processes import (
     Ended,
     Exceeded,
     Found,
+    Live,
     Node,
     Places,
     Raised,
+    RefusedCall,
     Signalled,
     Used,
 )
@@ -135,6 +137,7 @@ class Member:
         session = self.session
         watch_forks(self._folder, session)
         session.recorder.on_hit = self._hit
+        session.on_refused, session.on_live = self._refused, self._is_live
         session.passing.on_end = self._after
         session.passing.turn = self.turn
         for targets in session.interception.kinds:
@@ -146,6 +149,7 @@ class Member:
     def turn(self) -> None:
         """Look whether another test has begun."""
         if self._now.number != self._test:
+            self.session.look_back(at_all=True)
             self.poll()
             self._use()
             self._test = self._now.number
@@ -200,6 +204,12 @@ class Member:
     def _hit(self, site: int, written: Any, read: Any, answer: Any) -> None:
         self.diary.write(Called(self._test, time.monotonic(), site, written, read, answer))
 
+    def _refused(self, site: int, number: int) -> None:
+        self.diary.write(RefusedCall(self._test, site, number))
+
+    def _is_live(self, site: int) -> None:
+        self.diary.write(Live(self._test, site))
+
     def _after(self, call: Call, read: Mapping[str, Value]) -> None:
         self.poll()
 
@@ -245,6 +255,7 @@ class Member:
         if self._is_over or _member is not self:
             return
         self._is_over = True
+        self.session.look_back(at_all=True)
         self.poll()
         self._use()
         if self.session.text is not None:

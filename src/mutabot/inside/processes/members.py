@@ -23,9 +23,11 @@ from mutabot.border.processes import (
     Entry,
     Exceeded,
     Found,
+    Live,
     Node,
     Places,
     Raised,
+    RefusedCall,
     Signalled,
     Used,
 )
@@ -51,7 +53,7 @@ class Account:
         ended: whether it ended in an orderly way.
         raised: what ended it otherwise.
         is_in_call: whether a mutated call has begun in it and not ended.
-        called, did, used, exceeded: what it told during the running test.
+        called, refused, live, did, used, exceeded: what it told during the running test.
     """
 
     began: Began
@@ -61,6 +63,8 @@ class Account:
     raised: Raised | None = None
     is_in_call: bool = False
     called: list[Called] = field(default_factory=list)
+    refused: list[RefusedCall] = field(default_factory=list)
+    live: list[Live] = field(default_factory=list)
     did: list[Did] = field(default_factory=list)
     used: Used | None = None
     exceeded: str | None = None
@@ -85,6 +89,8 @@ class Account:
     def forget(self) -> None:
         """The test is over."""
         self.called.clear()
+        self.refused.clear()
+        self.live.clear()
         self.did.clear()
         self.used, self.exceeded = None, None
         if self.raised is not None and self.raised.in_thread:
@@ -117,7 +123,12 @@ class Members:
         self._present = [one for one in self._members.values() if one.is_alive]
 
     def merged(self, end: TestEnd) -> TestEnd:
-        """The end of the running test with what members did in it."""
+        """The end of the running test with what members did in it; an error if that cannot be known."""
+        end = self._with_members(end)
+        doubt = self._host.diaries.doubt
+        return end if doubt is None else replace(end, failure=end.failure or doubt)
+
+    def _with_members(self, end: TestEnd) -> TestEnd:
         self._take_all()
         here = sorted(self._here(), key=lambda one: (one.name, one.began.time))
         if not here:
@@ -172,6 +183,10 @@ class Members:
                 member.sites[entry.index] = self._session.recorder.index_of(entry)
             case Called():
                 member.called.append(entry)
+            case RefusedCall():
+                member.refused.append(entry)
+            case Live():
+                member.live.append(entry)
             case Did():
                 member.did.append(entry)
             case MutatedCall():
@@ -203,8 +218,11 @@ class Members:
         used = [one.used for one in here if one.used is not None]
         times = [end.simulated, *(one.simulated for one in used)]
         simulated = [time for time in times if time is not None]
+        refused = ((one.sites[call.site], call.number) for one in here for call in one.refused)
         return replace(
             end,
+            refused_calls=(*end.refused_calls, *refused),
+            live=tuple(sorted({*end.live, *(one.sites[call.site] for one in here for call in one.live)})),
             trace=tuple(trace[:TRACE_LIMIT]) if self._session.job.record else (),
             truncated=end.truncated or len(trace) > TRACE_LIMIT,
             operations=end.operations + max(len(called), sum(one.operations for one in used)),

@@ -24,7 +24,7 @@ def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str
         *(f"name {name}" for name in sorted(set(names))),
         *(f"file {file}" for file in files),
     ]
-    with open(os.path.join(folder, WAKE), "w", encoding="utf-8") as file:
+    with open(os.path.join(folder, WAKE), "w", encoding="utf-8", errors="surrogateescape") as file:
         file.write("".join(f"{line}\n" for line in lines))
 
 

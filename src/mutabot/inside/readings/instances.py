@@ -1,13 +1,16 @@
-"""Which objects of a class the program uses: what a probe on a method or attribute is read from.
+"""Which objects of a class the present test uses: what a probe on a method or attribute is read from.
 
-Those that are ``self`` of an intercepted call in the running test, in the order of their first call; where
-there is none, the object that was made last and still exists. Objects are noted when they are made, by their
-class's ``__init__``, and when they are used, by the interception.
+Those that are ``self`` of an intercepted call in the running test, in the order of their first call. Where
+there is none, one object: the last that was made in this test, else one that its fixtures hold, else the last
+that was made before any test or while a module was imported. An object that another test made is never taken.
+Objects are noted when they are made, by their class's ``__init__``, and when they are used, by the
+interception.
 """
 
 from __future__ import annotations
 
 import contextlib
+import sys
 import weakref
 from collections.abc import Callable, Iterable
 from functools import partial
@@ -30,7 +33,9 @@ class Instances:
         self._names: set[str] = set()
         self._known: dict[type, tuple[str, ...]] = {}
         self._used: dict[str, dict[int, Callable[[], Any]]] = {}
-        self._made: dict[str, dict[int, weakref.ref[Any]]] = {}
+        # by whether they belong to one test, rather than to all
+        self._made: dict[bool, dict[str, dict[int, weakref.ref[Any]]]] = {False: {}, True: {}}
+        self._fixtures: Callable[[], Iterable[Any]] | None = None
 
     def watch(self, names: Iterable[str]) -> None:
         """Note the objects of each of these that turns out to be a class, from now on."""
@@ -52,7 +57,7 @@ class Instances:
                     _note_made(found, self._note_made)
                     for value in list(vars(module).values()):  # made while the module was imported
                         if isinstance(value, found):
-                            self._note_made(value)
+                            self._note(value, is_of_test=False)
 
         wrapt.register_post_import_hook(imported, module_name)
 
@@ -61,8 +66,19 @@ class Instances:
         """Whether there is no class to watch."""
         return not self._names
 
-    def start(self) -> None:
-        """A new test begins: nothing has been used in it."""
+    def start(self, fixtures: Callable[[], Iterable[Any]] | None = None) -> None:
+        """A new test begins: nothing has been used in it.
+
+        ``fixtures`` tells what objects its fixtures hold. None in a process below the tests, which goes on
+        with what it has made.
+        """
+        self._used.clear()
+        self._fixtures = fixtures
+        if fixtures is not None:
+            self._made[True].clear()
+
+    def let_go(self) -> None:
+        """The running test is over: what it used is kept no longer."""
         self._used.clear()
 
     def used(self, instance: Any) -> None:
@@ -74,15 +90,15 @@ class Instances:
 
     def of(self, name: str) -> list[Any]:
         """The objects of this class that a probe is read from, as they are now."""
-        used = [
-            found for found in (hold() for hold in self._used.get(name, {}).values()) if found is not None
-        ]
-        if used:
-            return used
-        made = [
-            found for found in (hold() for hold in self._made.get(name, {}).values()) if found is not None
-        ]
-        return made[-1:]
+        return _alive(self._used.get(name, {})) or self._made_last(name, True) or self._held_by_fixtures(name)
+
+    def _made_last(self, name: str, is_of_test: bool) -> list[Any]:
+        return _alive(self._made[is_of_test].get(name, {}))[-1:]
+
+    def _held_by_fixtures(self, name: str) -> list[Any]:
+        given = self._fixtures() if self._fixtures is not None else ()
+        held = [one for one in given if name in self._names_of(type(one))]
+        return held[-1:] or self._made_last(name, False)
 
     def _names_of(self, kind: type) -> tuple[str, ...]:
         names = self._known.get(kind)
@@ -92,12 +108,33 @@ class Instances:
         return names
 
     def _note_made(self, instance: Any) -> None:
+        self._note(instance, is_of_test=self._fixtures is not None and not _is_importing())
+
+    def _note(self, instance: Any, *, is_of_test: bool) -> None:
         for name in self._names_of(type(instance)):
-            made = self._made.setdefault(name, {})
+            made = self._made[is_of_test].setdefault(name, {})
             key = id(instance)
             with contextlib.suppress(TypeError):  # of a class without weak references
                 made.pop(key, None)
                 made[key] = weakref.ref(instance, partial(_forget, made, key))
+
+
+def _alive(holds: dict[int, Any]) -> list[Any]:
+    return [found for found in (hold() for hold in holds.values()) if found is not None]
+
+
+def _is_importing() -> bool:
+    """Whether a module is being imported: what it makes then is there for all tests that follow."""
+    frame = sys._getframe(1)
+    while frame.f_back is not None:
+        if frame.f_code.co_name == "<module>" and _is_of_import(frame.f_back.f_globals.get("__name__")):
+            return True
+        frame = frame.f_back
+    return False
+
+
+def _is_of_import(module: str | None) -> bool:
+    return module in ("importlib._bootstrap", "importlib._bootstrap_external", "_pytest.assertion.rewrite")
 
 
 def _forget(made: dict[int, weakref.ref[Any]], key: int, gone: weakref.ref[Any]) -> None:

@@ -159,7 +159,9 @@ def _parts(value: Any, name: str) -> Iterator[tuple[str, Any]]:
         value = {field.name: getattr(value, field.name) for field in fields(value)}
     elif hasattr(value, "_asdict"):
         value = value._asdict()
-    if isinstance(value, Mapping):
+    if isinstance(value, Mapping | list | tuple) and not value:
+        yield name, {} if isinstance(value, Mapping) else []
+    elif isinstance(value, Mapping):
         for key, item in value.items():
             yield from _parts(item, f"{name}.{key}")
     elif isinstance(value, list | tuple):

@@ -24,6 +24,7 @@ from mutabot.inside.fork.lifeline import die_with_parent, nobody_listens
 from mutabot.inside.fork.trunk import FAILED as BRANCH_FAILED
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import limit_memory
+from mutabot.inside.node_ids import node_id
 from mutabot.inside.pipe import Held, Pipe
 from mutabot.inside.processes.host import Host
 from mutabot.inside.processes.member import watch_forks
@@ -92,7 +93,7 @@ class Conductor:
             from mutabot.inside.fork.copies import CopyServer  # noqa: PLC0415  # of no use to other jobs
 
             preload()
-            pipe = Pipe(descriptor)
+            pipe = Pipe(descriptor, job.key)
             conductor = cls(job, pipe, CopyServer(job.serving, pipe, os.path.join(home, LOG)))
         else:
             conductor = cls(job, pipe_of(job, home, descriptor))
@@ -153,14 +154,16 @@ class Conductor:
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Keep the job's tests, in the job's order."""
-        self._collected = tuple(item.nodeid for item in items)
+        self._collected = tuple(node_id(item) for item in items)
         self.footprints.has_others = len(items) > 1
         self._select(items)
 
     def _select(self, items: list[pytest.Item]) -> None:
         if self.job.tests is None:
             return
-        by_id = {item.nodeid: item for item in items}
+        by_id = {node_id(item): item for item in items}
+        alike = {node_id(item) for item in items if by_id[node_id(item)].nodeid != item.nodeid}
+        self._errors += [f"several tests are called {name} once that is written in UTF-8" for name in alike]
         missing = [test for test in self.job.tests if test not in by_id]
         if missing:
             self._errors.append(f"tests that were there before are gone: {', '.join(missing)}")
@@ -176,7 +179,7 @@ class Conductor:
         if report.failed and call is not None and call.excinfo is not None:
             error = call.excinfo.value
             is_wrapped = isinstance(error, collector.CollectError) and error.__cause__ is not None
-            self.import_failed(error.__cause__ if is_wrapped else error, collector.nodeid)
+            self.import_failed(error.__cause__ if is_wrapped else error, node_id(collector))
         return report
 
     def import_failed(self, error: BaseException | None, node: str) -> None:
@@ -205,7 +208,7 @@ class Conductor:
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """Note what could not be collected."""
         if report.failed:
-            self._errors.append(f"{report.nodeid}: {str(report.longrepr)[-1500:]}")
+            self._errors.append(f"{node_id(report)}: {str(report.longrepr)[-1500:]}")
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:
@@ -281,8 +284,9 @@ class Conductor:
 def pipe_of(job: Job, home: str, descriptor: int) -> Pipe:
     """The pipe of a job; a trunk shares it with its branches."""
     if job.branching is None:
-        return Pipe(descriptor)
-    return Pipe(descriptor, os.open(os.path.join(home, "lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC))
+        return Pipe(descriptor, job.key)
+    lock = os.open(os.path.join(home, "lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+    return Pipe(descriptor, job.key, lock)
 
 
 def drop_idle_plugins(config: pytest.Config) -> None:

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from mutabot.inside import seeds
+from mutabot.inside.node_ids import node_id
 from mutabot.model.seed import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, SEED_VARIABLE
 
 
@@ -53,7 +54,7 @@ class PlainRound:
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
         """One test, its fixtures included."""
-        seeds.seed_all(self.seed_of(item.nodeid))
+        seeds.seed_all(self.seed_of(node_id(item)))
         return (yield)
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-import time
+import os
 from collections.abc import Generator
+from functools import partial
+from time import perf_counter, process_time  # tests may replace those of the module
 from typing import Any
 
 import pytest
@@ -11,11 +13,13 @@ import pytest
 from mutabot.border.footprint import Footprint
 from mutabot.border.lines import TestStart
 from mutabot.border.test_end import TestEnd
+from mutabot.border.time_used import TimeUsed
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.looks import Looks
 from mutabot.inside.evidence import Evidence
 from mutabot.inside.footprint.footprints import Footprints
+from mutabot.inside.node_ids import node_id
 from mutabot.inside.processes.members import Members
 from mutabot.inside.readings.probes import Reading
 from mutabot.inside.session import Session
@@ -23,6 +27,7 @@ from mutabot.inside.watchdogs import drop_idle_watchdog, watched, watched_by_fau
 
 from .branch import BranchOfTest
 from .classify import Ending, classify, unexpected_pass
+from .fixtures import objects_of_fixtures
 from .outcomes import FAILED, PASSED, is_expected_failure, outcome_so_far
 
 
@@ -52,35 +57,37 @@ class Running:
         self._outcome = PASSED
         self._reading = Reading()
         self._started = (0.0, 0.0)
+        self._used = TimeUsed.from_now()
 
     def start_clocks(self) -> None:
         """What the test takes is counted from now on."""
-        self._started = (time.perf_counter(), time.process_time())
+        self._started = (perf_counter(), process_time())
+        self._used = TimeUsed.from_now([os.getpid()])
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
         """One test, its fixtures included."""
         self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
         self.looks.clear()
-        self.session.pipe.send(TestStart(item.nodeid))
+        self.session.pipe.send(TestStart(node_id(item)))
         limit = watched_by_faulthandler(item)
         if limit is not None:
             self.session.pipe.send(limit)
         job = self.session.job
-        seeds.seed_all(seeds.derive(job.seed, job.round, item.nodeid))
+        seeds.seed_all(seeds.derive(job.seed, job.round, node_id(item)))
         self.branch.item = item
         self.footprints.start_test()
         self.start_clocks()
         if self.members is not None:
-            self.members.start_test(item.nodeid)
-        self.session.start_test(item.nodeid)
+            self.members.start_test(node_id(item))
+        self.session.start_test(node_id(item), partial(objects_of_fixtures, item))
         try:
             result = yield
         except BaseException:
             self.branch.leave_if_it_is_one(None)
             raise
-        self.branch.leave_if_it_is_one(lambda: self._test_end(item.nodeid))
-        end = self._test_end(item.nodeid)
+        self.branch.leave_if_it_is_one(lambda: self._test_end(node_id(item)))
+        end = self._test_end(node_id(item))
         if self.members is not None:
             end = self.members.merged(end)
         self.session.end_test()
@@ -99,7 +106,7 @@ class Running:
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: Any) -> None:
         """Pytest-timeout is about to watch a test: its thread leaves the process without a word."""
         if settings.method == "thread":
-            self.session.pipe.send(watched(item.nodeid, settings.timeout, "pytest-timeout"))
+            self.session.pipe.send(watched(node_id(item), settings.timeout, "pytest-timeout"))
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_call(self) -> None:
@@ -147,9 +154,14 @@ class Running:
             self.session.evidence,
         )
 
+    def _hindered(self, ending: Ending | None) -> str | None:
+        """What the machine had to do with a time-out of the suite's own."""
+        is_overdue = ending is not None and ending.timeout is not None
+        return self._used.hindrance([os.getpid()]) if is_overdue else None
+
     def _test_end(self, test: str) -> TestEnd:
         session, evidence, ending = self.session, self.session.evidence, self._ending
-        wall, cpu = time.perf_counter() - self._started[0], time.process_time() - self._started[1]
+        wall, cpu = perf_counter() - self._started[0], process_time() - self._started[1]
         meter, returns = session.meter, session.returns
         assert meter is not None
         cause = ending or self._expected  # what a test said that it would do ends it as well
@@ -171,6 +183,8 @@ class Running:
             failure=evidence.failure or (cause.failure if cause else None),
             invalid=evidence.invalid or is_no_program(evidence, cause),
             refused=refusal,
+            refused_calls=tuple(session.refused_calls),
+            live=tuple(sorted(session.live)),
             caught=is_caught and self._outcome == FAILED and not ended_by_refusal,
             hits=evidence.hits,
             acted=evidence.acted,
@@ -195,6 +209,7 @@ class Running:
             checks=self.looks.checks if self.session.job.record else (),
             more_checks=self.looks.more,
             recording=session.recording.text(session.recorder.told()),
+            hindered=self._hindered(ending),
         )
 
     def _footprint(self) -> Footprint | None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from importlib import import_module
 from types import FunctionType, ModuleType
 from typing import Any
@@ -77,6 +78,8 @@ class Callables(Targets):
                 self._tell(target, Finding("call", str(error), error.name, error.known))
             except NotCallableError as error:
                 self._tell(target, Finding("call", str(error)))
+            except Exception as error:  # descriptors and metaclasses of the user's may do anything
+                self._tell(target, Finding("call", f"{target} cannot be intercepted: {error!r}"))
 
         wrapt.register_post_import_hook(imported, module_name)
 
@@ -163,7 +166,8 @@ class Callables(Targets):
         """Take all wrappers away, last one first. Hooks of modules not yet imported become idle."""
         self._removed = True
         while self._undo:
-            self._undo.pop()()
+            with suppress(AttributeError, TypeError):  # a test has taken it away itself, or made it read-only
+                self._undo.pop()()
         for original, wrapper in self._wrappers:
             for _ in _rebind(wrapper, original):  # names that were taken while the wrapper was in place
                 pass

@@ -44,8 +44,12 @@ def _attribute(owner: Any, name: str, module: ModuleType) -> Any:
         return getattr(owner, name)  # a module may make its attributes on demand
     except AttributeError:
         known = tuple(key for key in dir(owner) if not key.startswith("_"))
-        of = f"module {module.__name__}" if owner is module else f"{module.__name__}:{owner.__qualname__}"
+        of = f"module {module.__name__}" if owner is module else f"{module.__name__}:{_called(owner)}"
         raise NotFoundError(f"{of} has no {name!r}", name, known) from None
+
+
+def _called(owner: Any) -> str:
+    return str(getattr(owner, "__qualname__", type(owner).__qualname__))  # a mock of a class has no name
 
 
 def is_named(error: BaseException, names: Iterable[str]) -> bool:
@@ -57,12 +61,15 @@ def is_named(error: BaseException, names: Iterable[str]) -> bool:
 
 
 def named_class(name: str) -> Any:
-    """What ``module:qualified.name`` is now; None if its module is not loaded or has no such name."""
+    """What ``module:qualified.name`` is now; None if its module is not loaded or has no such name.
+
+    A test may have put anything in its place, also nothing: ``sys.modules["robot"] = None``.
+    """
     module, _, qualname = name.partition(":")
     if module not in sys.modules:
         return None
     try:
         owner, attribute, _ = resolve(sys.modules[module], qualname)
         return getattr(owner, attribute)
-    except (NotFoundError, AttributeError):
+    except Exception:
         return None

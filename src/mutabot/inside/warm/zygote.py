@@ -15,9 +15,11 @@ import socket
 import subprocess
 import sys
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
+from mutabot.border.job import JOB_VARIABLE
+from mutabot.border.keeper import guard
 from mutabot.border.start import MOST_DESCRIPTORS, Start
 from mutabot.border.starter import Starter
 from mutabot.inside.fork.lifeline import die_with_parent
@@ -56,12 +58,14 @@ class Zygote:
     Attributes:
         channel: the socket over which it is asked.
         library: what it has imported.
-        is_first: whether it may still learn.
+        is_first: whether it may still learn, and begins workers.
+        controller: the process that it works for.
     """
 
     channel: socket.socket
     library: Library
     is_first: bool = False
+    controller: int = field(default_factory=os.getppid)
 
     def serve(self) -> None:
         """Fork what is asked for, until nobody can ask any more; returns in what was forked."""
@@ -86,6 +90,9 @@ class Zygote:
                 os._exit(0)
             os.close(reading)
             os.write(writing, b"%*d" % (_DIGITS, os.getpid()))
+            folder = _folder_of_worker(message) if self.is_first else None
+            if folder is not None:
+                guard(folder, self.controller)
             self._become(message, descriptors, writing)
             return True
         os.close(writing)
@@ -116,7 +123,7 @@ class Zygote:
             self.library.open_to(start)
         except Exception as error:  # whatever it is, there is the plain way
             with suppress(OSError):
-                os.write(report, (str(error) or type(error).__name__)[:_WORDS].encode())
+                os.write(report, (str(error) or type(error).__name__)[:_WORDS].encode("utf-8", "replace"))
             os._exit(1)
 
     def _beget(self) -> bool:
@@ -135,6 +142,14 @@ class Zygote:
         ours.close()
         Starter(socket.socket(fileno=high)).install()
         return True
+
+
+def _folder_of_worker(message: bytes) -> str | None:
+    """The folder of the worker that is to begin; None if it is none."""
+    entry = f"{JOB_VARIABLE}=".encode()
+    found = (one for one in Start(*marshal.loads(message)).environment if one.startswith(entry))
+    file = next(found, None)
+    return os.path.dirname(os.fsdecode(file[len(entry) :])) if file is not None else None
 
 
 def _say_ready(report: int) -> None:

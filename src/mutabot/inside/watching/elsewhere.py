@@ -37,7 +37,7 @@ def watch_elsewhere(path: str, order: Mapping[str, Any]) -> str:
     """
     folder = os.path.join(os.path.dirname(path), FOLDER)
     os.mkdir(folder)
-    with open(os.path.join(folder, _ORDER), "w", encoding="utf-8") as file:
+    with open(os.path.join(folder, _ORDER), "w", encoding="utf-8", errors="surrogateescape") as file:
         json.dump(order, file)
     names = {name.rpartition("/")[2].removesuffix(".py") for name in order["program"].values()}
     folders = {part for name in order["program"].values() for part in name.split("/")[:-1]}
@@ -48,7 +48,7 @@ def watch_elsewhere(path: str, order: Mapping[str, Any]) -> str:
 
 def join(folder: str) -> None:
     """Watch this process, which turned out to be of interest."""
-    with open(os.path.join(folder, _ORDER), encoding="utf-8") as file:
+    with open(os.path.join(folder, _ORDER), encoding="utf-8", errors="surrogateescape") as file:
         order = json.load(file)
     written = [time.monotonic()]
     writing = threading.Lock()
@@ -69,7 +69,7 @@ def join(folder: str) -> None:
 
     def write() -> None:
         name = os.path.join(folder, f"{os.getpid()}{_SEEN}")
-        with open(f"{name}.new", "w", encoding="utf-8") as file:
+        with open(f"{name}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
             json.dump(watch.data(), file, default=str)
         os.replace(f"{name}.new", name)
 
@@ -91,6 +91,6 @@ def seen_elsewhere(folder: str) -> list[dict[str, list[Any]]]:
     found: list[dict[str, list[Any]]] = []
     for name in sorted(os.listdir(folder)):
         if name.endswith(_SEEN):
-            with open(os.path.join(folder, name), encoding="utf-8") as file:
+            with open(os.path.join(folder, name), encoding="utf-8", errors="surrogateescape") as file:
                 found.append(json.load(file))
     return found

@@ -61,7 +61,7 @@ class _Plugin:
         every = [self._watch.data(), *seen_elsewhere(self._folder)]
         seen = {key: [one for data in every for one in data[key]] for key in every[0]}
         found = {**seen, "outcomes": counts, "problems": self._problems[:20]}
-        with open(f"{self._output}.new", "w", encoding="utf-8") as file:
+        with open(f"{self._output}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
             json.dump(found, file, default=str)
         os.replace(f"{self._output}.new", self._output)
         self._written = time.monotonic()
@@ -80,7 +80,7 @@ def pytest_load_initial_conftests(early_config: Any) -> None:
     path = os.environ.pop(WATCH_VARIABLE, None)
     if path is None:
         return
-    with open(path, encoding="utf-8") as file:
+    with open(path, encoding="utf-8", errors="surrogateescape") as file:
         order = json.load(file)
     watch = Watch(order["program"], order["tests"])
     watch.install()

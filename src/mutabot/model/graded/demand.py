@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from mutabot.limits import shortened
 from mutabot.model.mutant import Mutant
 from mutabot.model.selector import fits, is_like
 from mutabot.model.values.quantity import Kind
@@ -16,7 +17,7 @@ from mutabot.model.values.units import UNITS, convert_difference, dimension_of
 OFFSET = "offset"
 #: digits that a magnitude keeps when its unit is converted: 5 mm are 0.005 m, and not 0.005000000000000001
 _DIGITS = 12
-_AMOUNT = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*)?")
+_AMOUNT = re.compile(r"([-+]?(?:\d{1,18}\.?\d{0,18}|\.\d{1,18})(?:[eE][-+]?\d{1,3})?)\s*([^\d\s.].*)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +115,7 @@ def parse_amount(text: str) -> tuple[float, str | None]:
     """
     found = _AMOUNT.fullmatch(text.strip())
     if found is None:
-        raise ValueError(f"{text!r} is no magnitude; write a number and a unit, like '5 mm'")
+        raise ValueError(f"{shortened(text)!r} is no magnitude; write a number and a unit, like '5 mm'")
     value, unit = float(found[1]), "percent" if found[2] == "%" else found[2]
     if not (value > 0 and math.isfinite(value)):
         raise ValueError(f"{text!r}: a magnitude is more than 0; both directions are meant")

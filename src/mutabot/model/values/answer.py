@@ -3,7 +3,7 @@
 Only what is sure to be the same after a copy is kept: plain values, containers of them, arrays, enumerations,
 and objects whose whole state is made of these. An object that the call knew already (the instance, an
 argument) is kept as a reference to it. A part of the robot API is never copied: its copy would be a robot
-that nobody commands.
+that nobody commands. A future is kept as one that is never done.
 """
 
 from __future__ import annotations
@@ -15,11 +15,13 @@ from array import array
 from collections import OrderedDict, deque
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import is_dataclass
-from enum import Enum
 from types import SimpleNamespace
 from typing import Any
 
 from mutabot.model.class_name import class_name
+
+from .members import is_member, member_of, name_of
+from .pending import future_class, never_done
 
 #: characters that an answer may take as data; it goes to every process that runs its mutant
 LIMIT = 50_000
@@ -132,8 +134,11 @@ class _Keeper:
         if kind is array and value.typecode != "u":
             self._spend(len(value) * value.itemsize * 4 // 3)
             return {"numbers": [value.typecode, base64.b64encode(value.tobytes()).decode()]}
-        if isinstance(value, Enum):
-            return {"member": [_name_of(kind), value.name]}
+        future = future_class(value)
+        if future is not None:
+            return {"pending": future}
+        if is_member(value):
+            return {"member": [_name_of(kind), name_of(value)]}
         if isinstance(value, tuple) and hasattr(kind, "_fields"):
             return {"namedtuple": [_name_of(kind), [self.keep(item, depth) for item in tuple(value)]]}
         return self._object(value, depth)
@@ -247,10 +252,11 @@ def _named(name: str) -> Any:
 
 #: objects that were there before
 _REFERENCES: dict[str, Callable[[Any, Mapping[str, Any]], Any]] = {
+    "pending": never_done,
     "here": lambda name, here: here[name],
     "name": lambda name, here: _named(name),
     "call": lambda name, here: _named(name)(),
-    "member": lambda content, here: _named(content[0])[content[1]],
+    "member": lambda content, here: member_of(_named(content[0]), content[1]),
 }
 #: values without parts
 _LEAVES: dict[str, Callable[[Any], Any]] = {

@@ -24,7 +24,7 @@ from mutabot.errors import PathError, nearest_name
 
 _STEP = re.compile(r"\.(?P<attribute>[^\W\d]\w*)|\[(?P<item>[^\[\]]*)\]")
 _NAME = re.compile(r"[^\W\d]\w*")
-_SLICE = re.compile(r"\s*(-?\d+)?\s*:\s*(-?\d+)?\s*(?::\s*(-?\d+)?\s*)?")
+_SLICE = re.compile(r"\s*(-?\d{1,9})?\s*:\s*(-?\d{1,9})?\s*(?::\s*(-?\d{1,9})?\s*)?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,14 +183,20 @@ def _with_step(value: Any, step: Step, inner: Any) -> Any:
         items[step.key] = inner
         return type(value)(*items) if hasattr(value, "_fields") else type(value)(items)
     copied = _copy_for_item(value, inner)
-    is_array = isinstance(value, array) and step.bounds is not None
-    copied[step.key] = array(value.typecode, inner) if is_array else inner
+    is_slice_of_array = isinstance(copied, array) and step.bounds is not None
+    copied[step.key] = array(copied.typecode, inner) if is_slice_of_array else inner
     return copied
 
 
 def _copy_for_item(value: Any, inner: Any) -> Any:
-    # An array of integers would silently cut off a fraction, and one without signs refuses a negative
-    # number; numpy is not imported for this.
+    # An array of integers of numpy's would silently cut off a fraction, and one of Python's refuses it; one
+    # without signs refuses a negative number. Numpy is not imported for this.
+    if isinstance(value, array) and value.typecode not in "fdu":
+        numbers = list(_numbers(inner if not isinstance(inner, array) else inner.tolist()))
+        if not all(float(number).is_integer() for number in numbers):
+            return array("d", value)
+        is_refused = value.typecode.isupper() and any(number < 0 for number in numbers)
+        return array("q", value) if is_refused else copy.copy(value)
     kind = getattr(getattr(value, "dtype", None), "kind", None)
     if kind in ("i", "u"):
         numbers = list(_numbers(inner))
@@ -220,6 +226,15 @@ def _with_attribute(value: Any, name: str, inner: Any) -> Any:
         setattr(copied, name, inner)
     except AttributeError:
         # A frozen dataclass forbids setattr, but its copy is ours alone. A property without a setter
-        # has no storage of its own, and object.__setattr__ refuses it as well.
-        object.__setattr__(copied, name, inner)
+        # shows what is stored under another name, or is computed: then object.__setattr__ refuses it.
+        object.__setattr__(copied, _stored_as(value, name), inner)
     return copied
+
+
+def _stored_as(value: Any, name: str) -> str:
+    """The attribute behind a property that only shows it, such as ``_value``; else the name itself."""
+    if isinstance(getattr(type(value), name, None), property):
+        shown = getattr(value, name)
+        hidden = (f"_{name}", *(f"_{base.__name__.lstrip('_')}__{name}" for base in type(value).__mro__))
+        return next((one for one in hidden if getattr(value, one, None) is shown), name)
+    return name

@@ -9,6 +9,7 @@ from enum import StrEnum
 from math import isclose
 from typing import Any
 
+from .members import is_member, member_of, written_of
 from .parts import numbers_of, with_numbers
 from .path import Path
 from .rotation import Quaternion, to_quaternion, to_values
@@ -192,9 +193,11 @@ class Quantity:
     def get(self, start: Any) -> Value:
         """Its value in what its path starts at: the seconds of a stamp, the numbers of an orientation.
 
-        Raises PathError.
+        A member of an enumeration is what ``values`` write for it. Raises PathError.
         """
         value = self.path.get(start)
+        if self.values is not None and is_member(value):
+            return written_of(value, self.values, self.name)
         if self.is_whole:
             return numbers_of(value, self._parts)
         return seconds_of(value) if self.kind is Kind.STAMP else value
@@ -207,6 +210,9 @@ class Quantity:
             value = with_seconds(self.path.get(start), value)
         elif self.is_whole:
             value = with_numbers(self.path.get(start), self._parts, value)
+        elif self.values is not None and is_member(before := self.path.get(start)):
+            member = member_of(type(before), value)
+            value = value if member is None else member
         return self.path.put(start, value)
 
     @property
@@ -321,6 +327,8 @@ def value_text(value: Any, digits: int = 4) -> str:
         return f"{value:.{digits}g}"
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{key}: {value_text(item, digits)}" for key, item in value.items()) + "}"
+    if isinstance(value, list | tuple) and not value:
+        return "[]"
     if isinstance(value, list | tuple):
         return "(" + ", ".join(value_text(item, digits) for item in value) + ")"
     return str(value)

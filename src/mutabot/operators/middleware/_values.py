@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 
 from mutabot.families import MIDDLEWARE
 from mutabot.model import Call, Kind, Middleware, Operation, Pattern, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import Value, same
+from mutabot.model.values.quantity import Value
+from mutabot.model.values.sameness import is_same
 from mutabot.operators.operator import Operator, Subject
 
 NOT_GIVEN = "the call gives no such value"
@@ -75,7 +76,7 @@ class ValueOperator(Operator):
         if quantity.name not in values:
             raise Away(NOT_SET if quantity.kind is Kind.SETTING else NOT_GIVEN)
         value = self.change(subject, values[quantity.name])
-        if same(value, values[quantity.name]):
+        if is_same(quantity, value, values[quantity.name]):
             raise Away(_SAME)
         return value
 

@@ -8,18 +8,14 @@ from random import Random
 from mutabot.model import Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import Quaternion, distance, from_rotation_vector, inverse, product
+from mutabot.model.values.sameness import SAME_ORIENTATION, TURNED_ROUND
 from mutabot.model.values.units import convert
 from mutabot.operators.operator import map_numbers
-
-#: radians within which two orientations are the same
-_SAME = 1e-9
-#: the same for one and its inverse: half a turn written as 3.1416 is turned back to where it was, nearly
-_TURNED_BACK = 1e-3
 
 
 def the_other_way(quantity: Quantity, value: Value) -> Value | None:
     """The inverse rotation, written like the value; the value itself where that is the same orientation."""
-    return _changed(quantity, value, inverse, _TURNED_BACK)
+    return _changed(quantity, value, inverse, TURNED_ROUND)
 
 
 def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float) -> Value | None:
@@ -30,7 +26,10 @@ def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float
 
 
 def _changed(
-    quantity: Quantity, value: Value, change: Callable[[Quaternion], Quaternion], least: float = _SAME
+    quantity: Quantity,
+    value: Value,
+    change: Callable[[Quaternion], Quaternion],
+    least: float = SAME_ORIENTATION,
 ) -> Value | None:
     before = quantity.orientation(value)
     if before is None:

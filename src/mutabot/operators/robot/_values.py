@@ -9,7 +9,8 @@ from dataclasses import replace
 from random import Random
 
 from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import Value, same
+from mutabot.model.values.quantity import Value
+from mutabot.model.values.sameness import is_same
 from mutabot.operators.operator import Operator, Subject
 
 _NAMES = re.compile(r"[._]")
@@ -118,9 +119,9 @@ def why_away(quantity: Quantity, before: Value, after: Value | None) -> str:
         if quantity.range is None:
             return "the value would be none of those that the vocabulary allows"
         return "the value would leave the range [{:g}, {:g}]".format(*quantity.range)
-    if same(before, after):
+    if is_same(quantity, before, after):
         return "the value would stay the same"
-    if quantity.clip is not None and same(quantity.clipped(before), quantity.clipped(after)):
+    if quantity.clip is not None and is_same(quantity, quantity.clipped(before), quantity.clipped(after)):
         return "both values are limited to the same one by clip = [{:g}, {:g}]".format(*quantity.clip)
     return ""
 

@@ -1,4 +1,4 @@
-"""reverse: a translation or rotation goes the other way."""
+"""reverse: a motion goes the other way."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from mutabot.model import (
     Quantity,
     Reply,
 )
+from mutabot.model.values.direction import EITHER, has_direction
 from mutabot.model.values.quantity import Value
 from mutabot.operators.operator import Example, Subject, is_number, map_numbers
 from mutabot.operators.rule import Published
@@ -32,8 +33,10 @@ _TURN = Quantity("angle", Path("angle"), Kind.ROTATION, "z", "deg", None, Mode.T
 _LIFT = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.5))
 _PUSH = Quantity("push", Path("push"), Kind.TRANSLATION, "x", "m", None, Mode.BY, range=(-1.0, 1.0))
 _LIMITED = replace(_PUSH, clip=(-1.0, 1.0))
+_FACING = replace(_TURN, range=None)
 _MOVE = Operation("robot:Arm.move_by", (_DY, _YAW))
 _TURN_TO = Operation("robot:Arm.turn_to", (_TURN,))
+_FACE = Operation("robot:Arm.face", (_FACING,))
 _STEP = Operation("env:Env.step", (_PUSH,))
 _CLIPPED = Operation("env:Env.step", (_LIMITED,))
 _ROTVEC = Quantity("rotation", Path("rotation"), Kind.ROTATION_VECTOR, unit="rad")
@@ -42,15 +45,19 @@ _PATH = Path.parse("message.pose.x", rooted=True)
 _GOAL = Quantity("pose.x", _PATH, Kind.TRANSLATION, "x", "m", mode=Mode.TO, relative=True)
 _HIDDEN = Operation("publish /arm/goal", (_GOAL,), current="receive /arm/pose")
 _LIFT_TO = Operation("robot:Arm.lift_to", (_LIFT,))
+_AHEAD = Quantity("linear.x", Path.parse("message.linear.x", rooted=True), Kind.SPEED, "x", "m/s")
+_DRIVE = Operation("publish /cmd_vel", (_AHEAD,))
+_SLOWLY = Quantity("speed", Path("speed"), Kind.SPEED, None, "m/s", range=(-0.2, 1.0))
+_GO = Operation("base:Base.go", (_SLOWLY,))
 
 
 class Reverse(WrittenValueOperator):
-    """Negates one translation or rotation component, or mirrors a target at where the robot is."""
+    """Negates one component of a motion, or mirrors a target at where the robot is."""
 
     name = "reverse"
-    summary = "A translation or rotation goes the other way: one component is negated."
+    summary = "A translation, rotation or speed goes the other way: one component is negated."
     rank = 10
-    where = "written translations, rotations and orientations as a whole"
+    where = "written translations, rotations, orientations as a whole, and speeds and ratios with a direction"
     published = (
         Published(1, "rotate left by θ", "rotate right by θ"),
         Published(2, "rotate right by θ", "rotate left by θ"),
@@ -97,6 +104,11 @@ class Reverse(WrittenValueOperator):
             away="half a turn the other way is the same orientation",
         ),
         Example(
+            Subject(_FACE, quantity=_FACING),
+            {"angle": 180},
+            away="the targets 180 and −180 degrees are the same",
+        ),
+        Example(
             Subject(_HIDDEN, quantity=_GOAL),
             {"pose.x": 0.5},
             current={"pose.x": 0.3},
@@ -109,6 +121,15 @@ class Reverse(WrittenValueOperator):
             current={"pose.x": 0.5},
             away="the target is where the robot is",
         ),
+        Example(
+            Subject(_DRIVE, quantity=_AHEAD),
+            {"linear.x": 0.4},
+            performed=({"linear.x": -0.4},),
+            note="a speed along an axis: the robot drives the wrong way",
+        ),
+        Example(
+            Subject(_GO, quantity=_SLOWLY), {"speed": 0.5}, away="−0.5 m/s is outside the range [−0.2, 1]"
+        ),
         Example(Subject(_MOVE, quantity=_DY), {"dy": 0.0}, away="a zero has no other way"),
         Example(Subject(_MOVE, quantity=_DY), {"yaw": 80}, away="the call does not give this component"),
         Example(Subject(_LIFT_TO, quantity=_LIFT), {"z": 0.3}, away="−0.3 m is outside the allowed range"),
@@ -116,6 +137,10 @@ class Reverse(WrittenValueOperator):
 
     def needs_where(self, subject: Subject) -> bool:
         return quantity_of(subject).relative
+
+    def needs_sign(self, subject: Subject) -> bool:
+        quantity = quantity_of(subject)
+        return quantity.kind in EITHER and has_direction(quantity) is None
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         quantity = quantity_of(subject)
@@ -143,6 +168,8 @@ class Reverse(WrittenValueOperator):
         return f"{label(quantity)} {quantity.text(before)} → as far to the other side of where it is"
 
     def fits(self, quantity: Quantity) -> bool:
+        if quantity.kind in EITHER:
+            return has_direction(quantity) is not False
         return quantity.kind in (Kind.TRANSLATION, Kind.ROTATION) or quantity.is_whole
 
     def change(self, subject: Subject, value: Value, random: Random) -> Value | None:

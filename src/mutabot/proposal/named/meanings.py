@@ -20,7 +20,7 @@ Meant = dict[str, Guess]
 _HEADER = "std_msgs/Header"
 _POINTS = frozenset({"geometry_msgs/Point", "geometry_msgs/Point32"})
 _TRANSLATION = ("geometry_msgs/Transform", "translation")
-#: holders of speeds, which a program sends to move something; read, no kind of quantity fits them
+#: holders of speeds
 _SPEEDS = "geometry_msgs/Twist"
 #: types whose fields are as conventions say, or unknown; their names alone tell nothing
 _STANDARD = re.compile(r"(?:geometry|sensor|nav|diagnostic|actionlib|action|visualization|shape)_msgs/.*")
@@ -34,7 +34,6 @@ _STROKE = 0.1
 _BYTES = ("uint8[", "char[", "byte[", "octet[", "sequence<uint8", "sequence<octet")
 _BY = frozenset({"by", "relative", "rel", "offset", "shift", "jog", "delta", "step", "increment"})
 _GETTERS = frozenset({"get", "read", "query", "is", "has", "where", "locate", "detect", "measure", "lookup"})
-_VELOCITY = "unit: m stands for m/s, and rad for rad/s, if it is a speed"
 
 
 @dataclass(frozen=True)
@@ -135,13 +134,16 @@ def _placed(kind: str, name: str, place: Place) -> Guess:
 
 
 def _speed(part: Part, place: Place) -> Meant | None:
+    """A part of a ``Twist``: a speed, unless the name says that a relative move is sent in it."""
     if len(part.within) < 2 or part.within[-2][0] != _SPEEDS:
         return None
-    if not place.is_written:
-        return {}
-    kind, unit = ("rotation", "rad") if part.within[-2][1] == "angular" else ("translation", "m")
-    table = _framed({"kind": kind, "axis": part.within[-1][1], "unit": unit}, place)
-    return {part.path: Guess({**table, "mode": "by"}, [] if place.is_by else [_VELOCITY])}
+    turns, axis = part.within[-2][1] == "angular", part.within[-1][1]
+    if place.is_written and place.is_by:
+        kind, unit = ("rotation", "rad") if turns else ("translation", "m")
+        table = _framed({"kind": kind, "axis": axis, "unit": unit}, place)
+        return {part.path: Guess({**table, "mode": "by"})}
+    unit = "rad/s" if turns else "m/s"
+    return {part.path: Guess(_framed({"kind": "speed", "axis": axis, "unit": unit}, place))}
 
 
 def _framed(table: Table, place: Place) -> Table:

@@ -74,6 +74,7 @@ def _round(outcome: Outcome | None) -> dict[str, Any] | None:
         "engine": outcome.engine,
         "repeats": outcome.repeats,
         "stuck": outcome.stuck,
+        "beside": outcome.beside,
         "kills": [[one.test, one.by.value, one.message] for one in outcome.kills[1:]],
         "diverged": [_diverged(one) for one in outcome.diverged],
     }

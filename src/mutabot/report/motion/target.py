@@ -51,4 +51,5 @@ def written_whole(file: Path) -> Iterator[Path]:
 
 def missing(library: str, what: str, extra: str) -> UsageError:
     """The error where a library of an extra is not installed."""
-    return UsageError(f"{what} needs {library}, which is not installed: pip install 'mutabot[{extra}]'")
+    install = f"pip install 'path/to/mutabot[{extra}]'"
+    return UsageError(f"{what} needs {library}, which is not installed: {install}")

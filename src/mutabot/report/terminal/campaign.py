@@ -37,6 +37,10 @@ from .repeats import repeat_lines
 
 #: verdicts outside the score that a user should look at, in this order
 _TOLD = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
+_SET_ASIDE = "The journal holds what mutabot has not written, or what is damaged; it counts as not run:"
+_ALTERED = "Something else changed the journal while the campaign ran; what mutabot had found was restored:"
+#: rows of a journal that are named
+_ROWS = 8
 #: rounds from which on a row gives counts in place of one letter each
 _MANY_ROUNDS = 12
 #: columns from which on every fact of a mutant has a column of its own
@@ -337,7 +341,9 @@ def trust_lines(results: Results) -> Iterator[RenderableType]:
         yield heading(f"{plural(len(results.flaky.tests), 'test')} set aside, which cannot be relied on")
         for line in results.flaky.tests:
             yield Text(plain(line), overflow="fold")
-    for remark in results.meta.get(REMARKS, ()):
+    yield from _journal_lines(_SET_ASIDE, results.set_aside)
+    yield from _journal_lines(_ALTERED, results.altered)
+    for remark in results.meta.get(REMARKS) or ():
         yield Text(f"\n{plain(remark)}", style="bold", overflow="fold")
     checked = results.verification
     if checked is not None:
@@ -354,6 +360,16 @@ def trust_lines(results: Results) -> Iterator[RenderableType]:
         )
         yield Text(text, style="bold red" if confirmed["unstable"] else "dim")
     yield from repeat_lines(results.repeats)
+
+
+def _journal_lines(told: str, rows: Sequence[str]) -> Iterator[RenderableType]:
+    """What others did to the journal."""
+    if not rows:
+        return
+    yield Text(f"\n{told}", style="bold red", overflow="fold")
+    more = [f"and {len(rows) - _ROWS} more"] if len(rows) > _ROWS else []
+    for line in [*rows[:_ROWS], *more]:
+        yield Padding(Text(plain(line), overflow="fold"), (0, 0, 0, 2))
 
 
 def _controls(results: Results) -> Iterator[RenderableType]:

@@ -18,7 +18,7 @@ from mutabot.vocabulary.cases.modes import Undecided, in_cases
 from mutabot.vocabulary.cases.when import in_case, read_when
 from mutabot.vocabulary.idle import read_idle
 from mutabot.vocabulary.patterns import read_patterns
-from mutabot.vocabulary.quantities import in_message, read_fields, read_quantity
+from mutabot.vocabulary.quantities import in_message, is_quantity, read_fields, read_quantity, read_result
 from mutabot.vocabulary.schema import NamedTable
 from mutabot.vocabulary.targets import target_fault
 
@@ -198,6 +198,8 @@ def _read(check: Check, table: NamedTable, form: Form, key: str, place: KeyPath)
         return (Quantity(key, Path(), Kind.SETTING),)
     if form is Form.PARAMETER:
         where = (*place, key)
+        if not is_quantity(raw):
+            return read_result(check, raw, where)
         return tuple(read_quantity(check, raw, where, Path(), written=False, name=key, sides=_SIDES[form]))
     return read_fields(check, raw, (*place, key), None, _SIDES[form])
 

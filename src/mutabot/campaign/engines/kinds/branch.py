@@ -13,6 +13,7 @@ from mutabot.campaign.baseline.taking import REPETITIONS
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import Control, controls_in_branches, end_of
 from mutabot.campaign.engines.engine import Engine, Remainder, Trial
+from mutabot.campaign.engines.fresh import Hindered, replay_alone
 from mutabot.campaign.engines.suspects import clear_up
 from mutabot.campaign.engines.trunk import Trunks
 from mutabot.journal.records import ControlEnd
@@ -55,10 +56,16 @@ class Branch:
         controls = _Controls.of(campaign, trials)
         campaign.progress.stage("mutants", len(trials))
         trunks = Trunks(campaign, left, self.name)
+        by_id = {mutant.id: mutant for mutant, _ in trials}
+        hindered = Hindered()
         for outcome in trunks.run([*controls.trials, *trials], only=controls.tests):
             control = controls.by_id.get(outcome.mutant)
-            if control is None:
+            why = trunks.hindered.get((outcome.mutant, outcome.round))
+            if control is None and why is not None:
+                hindered.add(by_id[outcome.mutant], outcome, why)
+            elif control is None:
                 yield outcome
+            if control is None:
                 continue
             end = end_of(campaign, control, outcome)
             yield end
@@ -68,6 +75,7 @@ class Branch:
         _tell(campaign, left)
         clear_up(campaign, trunks.suspects, trunks.orders)
         left.trials = [trial for trial in left.trials if trial[0].id not in controls.by_id]
+        yield from replay_alone(campaign, hindered)
 
     def try_controls(
         self, campaign: Campaign, mutants: Iterable[Mutant], left: Remainder

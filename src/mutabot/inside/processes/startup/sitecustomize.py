@@ -99,7 +99,7 @@ def enter(command: "str | None" = None) -> None:
     if not folder or any(isinstance(finder, _Finder) for finder in sys.meta_path):
         return
     try:
-        with open(os.path.join(folder, "wake"), encoding="utf-8") as file:
+        with open(os.path.join(folder, "wake"), encoding="utf-8", errors="surrogateescape") as file:
             lines = [line.rstrip("\n").partition(" ") for line in file]
     except OSError:  # the campaign is over
         return

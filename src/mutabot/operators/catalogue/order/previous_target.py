@@ -7,7 +7,8 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.model import Call, Kind, Middleware, Mode, Operation, Path, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import WHOLE, Value, same_values
+from mutabot.model.values.quantity import WHOLE, Value
+from mutabot.model.values.sameness import are_same
 from mutabot.operators._evidence import TIMING
 from mutabot.operators.catalogue._commands import CommandFault
 from mutabot.operators.operator import Example, Subject
@@ -50,7 +51,7 @@ class PreviousTarget(CommandFault):
                 return await proceed(call.as_is("there is none before it"))
             again = {name: before[name] for name in names if name in before and name in call.values}
             values = {**call.values, **again}
-            if same_values(values, call.values):
+            if are_same(subject.written, values, call.values):
                 return await proceed(call.as_is("the one before it was the same"))
             return await proceed(replace(call, values=values))
 

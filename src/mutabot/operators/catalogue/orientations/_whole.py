@@ -7,13 +7,10 @@ from typing import Any, ClassVar
 
 from mutabot.model import Kind, Quantity
 from mutabot.model.values.quantity import Value
-from mutabot.model.values.rotation import distance
+from mutabot.model.values.sameness import is_same
 from mutabot.operators.catalogue._shape import Away, ValueFault
 from mutabot.operators.operator import Subject, map_numbers
 from mutabot.operators.robot._values import quantity_of
-
-#: radians within which two orientations are the same
-_SAME = 1e-9
 
 
 class OtherReading(ValueFault):
@@ -34,12 +31,10 @@ class OtherReading(ValueFault):
 
     def change(self, subject: Subject, value: Value, memory: Any) -> Value | None:
         quantity = quantity_of(subject)
-        before = quantity.orientation(value)
-        if before is None:
+        if quantity.orientation(value) is None:
             raise Away("its value is no orientation")
         numbers = self.numbers(subject, [float(part) for part in value])
-        after = quantity.orientation(numbers)
-        if after is None or distance(before, after) < _SAME:
+        if quantity.orientation(numbers) is None or is_same(quantity, value, numbers):
             raise Away("it would be the same orientation")
         parts = iter(numbers)
         return map_numbers(value, lambda _: next(parts) + 0.0)  # no −0

@@ -67,6 +67,9 @@ class Dropout(Operator):
                 raised.add(quantity.missing)  # the whole call raises; what comes by itself raises nothing
                 yield replace(whole, quantity=quantity)
 
+    def only_reads(self, subject: Subject) -> bool:
+        return quantity_of(subject).missing in (_NONE, _NAN)
+
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         quantity = quantity_of(subject)
 

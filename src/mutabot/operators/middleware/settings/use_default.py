@@ -9,7 +9,8 @@ from typing import ClassVar
 from mutabot.families import MIDDLEWARE
 from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
 from mutabot.model.named import DEFAULT, Form
-from mutabot.model.values.quantity import Value, same
+from mutabot.model.values.quantity import Value
+from mutabot.model.values.sameness import is_same
 from mutabot.operators.middleware._examples import SPEED
 from mutabot.operators.middleware._forms import form_of
 from mutabot.operators.middleware._values import NOT_GIVEN, quantity_of
@@ -53,8 +54,8 @@ class UseDefault(Operator):
             if quantity.name not in reply.values:
                 return reply.as_is(NOT_GIVEN)
             default = call.values[DEFAULT.name]
-            is_same = same(default, reply.values[quantity.name])
-            return reply.as_is(_IS_DEFAULT) if is_same else reply.with_value(quantity, default)
+            is_default = is_same(quantity, default, reply.values[quantity.name])
+            return reply.as_is(_IS_DEFAULT) if is_default else reply.with_value(quantity, default)
 
         return mutated
 

@@ -38,7 +38,7 @@
     return () => { gone = true; stops.forEach((stop) => stop()); };
   });
 
-  const NOTHING = { test: null, exception: null, message: null, place: null, away: [], example: null, divergence: [], gaps: [], compared: null, indistinguishable: null, repeats: 0, stuck: null, kills: [], diverged: [] };
+  const NOTHING = { test: null, exception: null, message: null, place: null, away: [], example: null, divergence: [], gaps: [], compared: null, indistinguishable: null, repeats: 0, stuck: null, beside: null, kills: [], diverged: [] };
   const ALIKE = { at: null, what: "", story: "", apart: [], near: [], fault: null };
   /** The data of the page, with what they leave out where nothing is to be said. */
   function whole(one, page) {
@@ -277,7 +277,7 @@
       values.length ? h("div", { class: "scroll", role: "region", tabindex: "0", "aria-label": "Values" }, h("table", { class: "values" }, h("thead", null, h("tr", null, ["round", "value", "in its place"].map((name, index) => h("th", { scope: "col", class: "n" }, name)))),
         h("tbody", null, those.map((each) => [each, page.rounds[each]]).filter(([, each]) => each && each.example && each.example.length === 2).map(([each, found]) => h("tr", null, h("td", { class: "n" }, each + 1), h("td", { class: "n" }, value(found.example[0], one.unit)), h("td", { class: "n" }, value(found.example[1], one.unit))))))) : null,
       h("p", { class: "hint" }, [`acted at ${outcome.acted} of ${count(outcome.hits, "hit")}`, count(outcome.tests, "test") + " run", outcome.compared && `compared ${outcome.compared}${outcome.indistinguishable ? ": nothing differs" : ""}`,
-        `${number(outcome.wall, 2)} s`, outcome.repeats ? `run again ${outcome.repeats} times, the same` : null, ...outcome.away.map(([why, many]) => `stayed away ${many} times: ${why}`)].filter(Boolean).join(" · ")),
+        `${number(outcome.wall, 2)} s`, outcome.repeats ? `run again ${outcome.repeats} times, the same` : null, outcome.beside ? `run alone, since beside others the wall clock had ended it: ${outcome.beside}` : null, ...outcome.away.map(([why, many]) => `stayed away ${many} times: ${why}`)].filter(Boolean).join(" · ")),
       outcome.stuck ? h("pre", { tabindex: "0", "aria-label": "Where it was stuck" }, outcome.stuck) : null);
   }
   const value = (found, unit) => `${typeof found === "number" ? number(found, 7) : String(found)}${unit && typeof found === "number" ? ` ${unit}` : ""}`;

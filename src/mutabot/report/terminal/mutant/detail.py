@@ -205,6 +205,8 @@ def _evidence(outcome: Outcome) -> Iterator[str]:
     if outcome.compared is not None:
         equal = ": nothing differs (indistinguishable)" if outcome.indistinguishable else ""
         yield f"compared with the original: {outcome.compared.text}{equal}"
+    if outcome.beside is not None:
+        yield f"run alone, since beside others the wall clock had ended it: {outcome.beside}"
     yield from outcome.divergence
     yield from (f"not compared: {gap}" for gap in outcome.gaps)
     yield from (f"stayed away at {_hits(count)}: {why}" for why, count in outcome.away.items())

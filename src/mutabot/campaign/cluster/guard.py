@@ -1,0 +1,115 @@
+"""Nothing that workers send is unpickled here: what Dask would unpickle becomes words.
+
+Dask's client unpickles results, exceptions, the types of results, and warnings of workers. Its option
+``deserializers`` does not close this: messages on the stream from the scheduler, parts that a message marks
+as pickled, and the type of data that Dask serializes itself are unpickled whatever it says. So the functions
+themselves are replaced, in this whole process, once it connects to a cluster. They raise nothing: an error in
+them would make the client deaf to all other answers.
+"""
+
+from __future__ import annotations
+
+import importlib
+import io
+import pickle
+from types import SimpleNamespace
+from typing import Any
+
+from mutabot.errors import ClusterError
+
+#: how the type of bytes is pickled, which is all that an answer needs
+_BYTES = {pickle.dumps(bytes, protocol) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)}
+#: characters of what an exception says that are kept
+_SAID = 1000
+
+
+class Unreadable(Exception):  # noqa: N818  # it is a value
+    """Stands for an object that was not unpickled, or for one of its parts.
+
+    Attributes:
+        kind: the name of its class.
+        said: its texts, as far as they are plain.
+    """
+
+    kind = said = ""
+
+    def __init__(self, *given: Any, **_: Any) -> None:
+        super().__init__()
+        flat = [part for one in given for part in (one if type(one) is tuple else (one,))]
+        self.said = ": ".join(one[:_SAID] for one in flat if type(one) is str)[:_SAID]
+        # an exception comes with what makes it, which comes first
+        kinds = (one.__name__ for one in given if isinstance(one, type))
+        self.kind = next(kinds, type(self).__name__)
+
+    def __setstate__(self, state: Any) -> None:
+        """Take nothing over."""
+
+    def __str__(self) -> str:
+        return self.said or "an object that is not read"
+
+
+class _Reader(pickle.Unpickler):
+    """Imports nothing and calls nothing: classes and functions are stand-ins."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        return type(str(name)[:100], (Unreadable,), {})
+
+
+def install() -> None:
+    """Replace what unpickles. Raises ClusterError if Dask has changed so much that it is not where it was."""
+    for module, name, replacement in (
+        ("distributed.protocol.pickle", "loads", _loaded),
+        ("distributed.protocol.core", "merge_and_deserialize", _deserialized),
+        ("distributed.core", "clean_exception", _exception),
+        ("distributed.client", "clean_exception", _exception),
+        ("distributed.client", "loads", _loaded),
+        ("distributed.client", "pickle", SimpleNamespace(loads=_loaded)),
+    ):
+        found = importlib.import_module(module)
+        if not hasattr(found, name):
+            raise ClusterError(
+                f"this version of distributed has no {module}.{name}, so workers could run programs on this "
+                "machine: install another version of mutabot or distributed"
+            )
+        setattr(found, name, replacement)
+
+
+def words(error: object) -> str:
+    """What an exception says, in one line; of other objects, what they are."""
+    said = str(error).strip().splitlines() if isinstance(error, Exception) else []
+    kind = error.kind if isinstance(error, Unreadable) and error.kind else type(error).__name__
+    return f"{kind}: {said[0]}" if said else kind
+
+
+def _loaded(data: Any, **given: Any) -> Any:
+    """In the place of ``pickle.loads``: plain values, the type of bytes, and stand-ins."""
+    try:
+        if bytes(data) in _BYTES:
+            return bytes
+        return _Reader(io.BytesIO(data), buffers=given.get("buffers") or ()).load()
+    except Exception as error:
+        return Unreadable(f"no readable data ({type(error).__name__})")
+
+
+def _deserialized(header: Any, frames: Any, deserializers: Any = None) -> Any:
+    """In the place of what reads a value in a message: bytes as they are, words for all else."""
+    try:
+        data = b"".join(map(bytes, frames))
+        match header.get("serializer"):
+            case "dask" if bytes(header["type-serialized"]) in _BYTES:
+                return data
+            case "pickle":
+                return _loaded(data)
+            case "error":
+                return Unreadable(data[:_SAID].decode("utf-8", "replace"))
+    except Exception as error:
+        return Unreadable(f"no readable data ({type(error).__name__})")
+    return Unreadable("an object that is not read")
+
+
+def _exception(exception: Any = None, traceback: Any = None, **_: Any) -> tuple[type[Any], Any, None]:
+    """In the place of what makes an exception of what came; tracebacks are of no use here."""
+    found = _loaded(exception) if isinstance(exception, bytes | bytearray) else exception
+    if not isinstance(found, BaseException):
+        found = Unreadable(found if type(found) is str else "an object that is not read")
+    return type(found), found, None

@@ -1,0 +1,56 @@
+"""Which files git tracks, asked of git itself: it alone reads every repository. Nothing is written."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+
+#: variables by which git would look at another repository than the one that a folder lies in
+_OF_A_REPOSITORY = {
+    "GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX", "GIT_COMMON_DIR", "GIT_NAMESPACE",
+    "GIT_OBJECT_DIRECTORY", "GIT_ALTERNATE_OBJECT_DIRECTORIES", "GIT_INTERNAL_SUPER_PREFIX",
+    "GIT_CEILING_DIRECTORIES", "GIT_LITERAL_PATHSPECS", "GIT_GLOB_PATHSPECS", "GIT_NOGLOB_PATHSPECS",
+    "GIT_ICASE_PATHSPECS",
+}  # fmt: skip
+
+
+class GitError(Exception):
+    """Git cannot tell; the text says why."""
+
+
+def repository_of(folder: Path) -> Path | None:
+    """The top of the repository that a folder lies in; None if it lies in none."""
+    return next((one for one in (folder, *folder.parents) if (one / ".git").exists()), None)
+
+
+def tracked(folder: Path, *names: str) -> list[str]:
+    """The files below a folder that git tracks, relative to it, those of submodules included.
+
+    ``names``: only these files, and what is below them if they are folders. Raises GitError.
+    """
+    if not names:
+        return _listed(folder, "--cached", "--recurse-submodules")
+    return _listed(folder, "--cached", "--", *(f":(literal){name}" for name in names))
+
+
+def unignored(folder: Path) -> list[str]:
+    """The files below a folder that git does not track, bar those that it is told to ignore.
+
+    Raises GitError.
+    """
+    return _listed(folder, "--others", "--exclude-standard")
+
+
+def _listed(folder: Path, *options: str) -> list[str]:
+    environment = {name: value for name, value in os.environ.items() if name not in _OF_A_REPOSITORY}
+    environment |= {"GIT_OPTIONAL_LOCKS": "0", "LC_ALL": "C"}
+    command = ["git", "-C", os.fspath(folder), "ls-files", "-z", *options]
+    try:
+        done = subprocess.run(command, capture_output=True, check=False, env=environment)
+    except OSError as error:
+        raise GitError(f"git cannot be started: {error.strerror}") from error
+    if done.returncode:
+        said = os.fsdecode(done.stderr).strip().splitlines()
+        raise GitError(f"git says: {said[0] if said else f'exit code {done.returncode}'}")
+    return list(dict.fromkeys(os.fsdecode(name) for name in done.stdout.split(b"\0") if name))

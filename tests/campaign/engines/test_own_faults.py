@@ -1,0 +1,100 @@
+"""What goes wrong in mutabot while it judges one mutant is an error of that mutant; the others are judged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.campaign.engines import fresh, judge, trunk
+from mutabot.errors import JournalError
+from mutabot.model import Verdict
+from tests.campaign.project import run, write_project
+
+MISSION = "def run(arm):\n    arm.move_by(0.25)\n    arm.move_by(-0.5)\n    arm.position()\n"
+TESTS = """
+    import mission
+    from robot import Arm
+
+    def test_run():
+        arm = Arm()
+        mission.run(arm)
+        assert arm.x == -0.25
+"""
+CHOSEN = "mission.py:run:arm.move_by#2:dx:reverse"
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    return write_project(tmp_path, MISSION, TESTS)
+
+
+@pytest.mark.parametrize("engine", ["branch", "replay"])
+def test_a_mutant_that_cannot_be_judged_is_an_error(
+    project: Path, monkeypatch: pytest.MonkeyPatch, engine: str
+) -> None:
+    judged = judge.judge
+
+    def broken(campaign: Any, one: Any) -> Any:
+        if one.mutant.id == CHOSEN:
+            raise RuntimeError("broken")
+        return judged(campaign, one)
+
+    monkeypatch.setattr(judge, "judge", broken)
+    found = run(project, engine=engine)
+    assert found[CHOSEN].verdict is Verdict.ERROR
+    assert "mutabot could not judge what it saw of it: RuntimeError: broken" in (found[CHOSEN].message or "")
+    others = {one.verdict for mutant, one in found.items() if mutant != CHOSEN}
+    assert others == {Verdict.KILLED, Verdict.SURVIVED}
+
+
+def test_a_report_of_a_worker_that_cannot_be_used_is_an_error(
+    project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run_of = fresh.run_of
+
+    def broken(result: Any, sources: Any) -> Any:
+        if result.task.job.mutant.id == CHOSEN:
+            raise RuntimeError("broken")
+        return run_of(result, sources)
+
+    monkeypatch.setattr(fresh, "run_of", broken)
+    found = run(project, engine="replay")
+    assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
+
+
+def test_a_report_of_a_branch_that_cannot_be_used_is_an_error(
+    project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended = trunk._Trunk._branch_ended
+
+    def broken(self: Any, line: Any) -> Any:
+        if line.mutant == CHOSEN:
+            raise RuntimeError("broken")
+        return ended(self, line)
+
+    monkeypatch.setattr(trunk._Trunk, "_branch_ended", broken)
+    found = run(project, engine="branch")
+    assert [mutant for mutant, one in found.items() if one.verdict is Verdict.ERROR] == [CHOSEN]
+
+
+def test_a_test_of_the_trunk_that_cannot_be_used_is_left_to_replay(
+    project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(self: Any, end: Any) -> Any:
+        raise RuntimeError("broken")
+
+    monkeypatch.setattr(trunk._Trunk, "_test_ended", broken)
+    found = run(project, engine="auto")
+    assert {one.engine for one in found.values()} == {"replay"}
+    assert {one.verdict for one in found.values()} == {Verdict.KILLED, Verdict.SURVIVED}
+
+
+def test_an_error_of_the_disk_is_none_of_the_mutant(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(campaign: Any, one: Any) -> Any:
+        raise JournalError("the disk is full", path="journal")
+
+    monkeypatch.setattr(judge, "judge", full)
+    with pytest.raises(JournalError):
+        run(project, engine="branch")

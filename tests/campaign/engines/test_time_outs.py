@@ -1,0 +1,201 @@
+"""On a busy machine the wall clock says little: a mutant has its time, or is run once more alone."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.border import time_used
+from mutabot.border.time_used import TimeUsed
+from mutabot.campaign.engines.judge import Death, Run, _ruling
+from mutabot.campaign.run import run_campaign
+from mutabot.campaign.workers import workers
+from mutabot.campaign.workers.workers import Workers
+from mutabot.model import Outcome, Verdict
+from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+
+PROCESSOR = min(os.sched_getaffinity(0))
+LOOP = "while True: pass"
+#: what a test does with a wrong arm is in ``when_wrong``
+MISSION = """
+    import os, pathlib, time
+
+    def run(arm):
+        arm.move_by(0.5)
+        if arm.x != 0.5:
+            when_wrong()
+
+    def compute(seconds):
+        os.sched_setaffinity(0, {{ {processor} }})  # where others are as well
+        until = time.process_time() + seconds
+        while time.process_time() < until:
+            pass
+
+    def when_wrong():
+        {when_wrong}
+    """
+TESTS = """
+    from mission import run
+    from robot import Arm
+
+    def test_run():
+        run(Arm())
+    """
+#: seconds that a test may take
+LIMIT = 4
+HANG_ONCE = """
+        if not pathlib.Path({flag!r}).exists():
+            pathlib.Path({flag!r}).touch()
+            while True:
+                time.sleep(0.1)
+"""
+
+
+@contextmanager
+def loops(count: int = 6) -> Iterator[list[int]]:
+    """So many busy programs on one processor."""
+    processes = [subprocess.Popen([sys.executable, "-c", LOOP]) for _ in range(count)]
+    try:
+        for process in processes:
+            os.sched_setaffinity(process.pid, {PROCESSOR})
+        yield [process.pid for process in processes]
+    finally:
+        for process in processes:
+            process.kill()
+            process.wait()
+
+
+def campaign(folder: Path, when_wrong: str, engine: str, tests: str = TESTS) -> tuple[Outcome, list[str]]:
+    """How the one mutant ends, and what is told."""
+    limits = f"timeout_seconds = {LIMIT}\n"
+    mission = MISSION.format(processor=PROCESSOR, when_wrong=when_wrong)
+    project = write_project(folder, mission, tests, configuration=CONFIGURATION + limits)
+    progress = Quiet()
+    (found,) = outcomes(
+        run_campaign(request_for(project, engine=engine, rounds=1, only=("reverse",)), progress)
+    )
+    return found, progress.lines
+
+
+@pytest.fixture
+def begun(monkeypatch: pytest.MonkeyPatch) -> list[tuple[bool, int]]:
+    """Of each worker that began whether it is to be alone, and how many there were then."""
+    found: list[tuple[bool, int]] = []
+    start: Callable[..., Any] = Workers._start
+
+    def noted(self: Workers, task: Any) -> None:
+        start(self, task)
+        found.append((task.alone, len(self._workers)))
+
+    monkeypatch.setattr(Workers, "_start", noted)
+    return found
+
+
+@pytest.fixture
+def flag() -> Iterator[Path]:
+    """A file that no run keeps to itself."""
+    path = Path(f"/dev/shm/mutabot-flag-{os.getpid()}")
+    path.unlink(missing_ok=True)
+    yield path
+    path.unlink(missing_ok=True)
+
+
+ENGINES = ["branch", pytest.param("replay", marks=pytest.mark.whole)]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_mutant_that_is_kept_from_the_processor_gets_its_time(engine: str, tmp_path: Path) -> None:
+    with loops():
+        found, _ = campaign(tmp_path, "compute(1.5)", engine)
+    assert (found.verdict, found.engine, found.message) == (Verdict.SURVIVED, engine, None)
+    assert found.wall > LIMIT
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(
+    "limit",
+    [
+        "no end after 4 s of wall clock",
+        pytest.param("Timeout (>3.0s) from pytest-timeout", marks=pytest.mark.whole),
+    ],
+)
+def test_what_the_clock_ends_on_a_busy_machine_is_run_alone(
+    engine: str, limit: str, tmp_path: Path, flag: Path, begun: list[tuple[bool, int]]
+) -> None:
+    tests = TESTS
+    if "pytest-timeout" in limit:
+        pytest.importorskip("pytest_timeout")
+        tests = TESTS.replace("    def test", "    @pytest.mark.timeout(3)\n    def test").replace(
+            "    from m", "    import pytest\n    from m"
+        )
+    with loops():
+        found, lines = campaign(tmp_path, HANG_ONCE.format(flag=str(flag)).strip(), engine, tests)
+    assert flag.exists()
+    assert (found.verdict, found.engine) == (Verdict.SURVIVED, "replay")
+    assert found.beside is not None
+    assert limit in found.beside
+    assert [count for is_alone, count in begun if is_alone] == [1]
+    assert any(line.endswith("1 of 1 ended otherwise") for line in lines), lines
+
+
+@pytest.mark.whole
+def test_on_a_quiet_machine_a_time_out_is_one(
+    tmp_path: Path, begun: list[tuple[bool, int]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(TimeUsed, "hindrance", lambda *arguments: None)
+    found, _ = campaign(tmp_path, "while True: time.sleep(0.1)", "replay")
+    assert (found.verdict, found.beside) == (Verdict.TIMEOUT, None)
+    assert not any(is_alone for is_alone, _ in begun)
+
+
+@pytest.mark.whole
+def test_a_mutant_that_never_gets_its_time_is_no_time_out(
+    tmp_path: Path, begun: list[tuple[bool, int]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(time_used, "MOST", 1.2)
+    monkeypatch.setattr(workers, "MOST", 1.2)
+    with loops(16):
+        found, _ = campaign(tmp_path, "compute(1000)", "replay")
+    assert found.verdict is Verdict.UNSTABLE
+    assert found.message is not None
+    assert "of which it had too little" in found.message
+    assert [count for is_alone, count in begun if is_alone] == [1]
+
+
+def test_who_had_too_little_time_is_not_judged() -> None:
+    mutant: Any = None
+    death = Death("no end", "test", overdue=True, acted=True, hindered="why", is_starved=True)
+    assert _ruling(Run(mutant, 0, ("test",), death=death))[0] is Verdict.UNSTABLE
+    death.is_starved = False
+    assert _ruling(Run(mutant, 0, ("test",), death=death))[0] is Verdict.TIMEOUT
+
+
+def test_time_in_the_queue_is_not_used() -> None:
+    with loops(10) as (one, *_):
+        used = TimeUsed.from_now([one])
+        while used.left(1.0, [one]) > 0:  # until it has been on the processor for that long
+            pass
+        passed = time_used.monotonic() - used.began
+        assert passed > 2.0
+        assert used.hindrance([one]) is not None
+        assert used.left(2 * passed, [one]) > 0
+        assert used.left(passed / time_used.MOST, [one]) <= 0  # whatever it had
+
+
+def test_time_asleep_is_used() -> None:
+    process = subprocess.Popen(["sleep", "600"])
+    try:
+        used = TimeUsed.from_now([process.pid])
+        while used.left(0.5, [process.pid]) > 0:
+            pass
+        assert 0.5 <= time_used.monotonic() - used.began < 0.5 * time_used.MOST
+    finally:
+        process.kill()
+        process.wait()

@@ -1,0 +1,47 @@
+"""Suites that put mocks in the place of operations, and of what we use ourselves, are judged like others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mutabot.model import Verdict
+from tests.campaign.project import run, write_project
+
+MISSION = "def run(arm):\n    arm.move_by(0.25)\n    arm.move_by(-0.5)\n    return arm.position()\n"
+TESTS = """
+    import time
+    from unittest import mock
+
+    import mission
+    from robot import Arm
+
+    def test_plain():
+        arm = Arm()
+        mission.run(arm)
+        assert arm.x == -0.25
+
+    def test_of_mocks():
+        with mock.patch.object(Arm, "move_by", autospec=True) as fake:
+            mission.run(Arm())
+        assert fake.call_count == 2
+
+    def test_without_an_operation(monkeypatch):
+        monkeypatch.delattr(Arm, "position")
+        arm = mock.create_autospec(Arm, instance=True)
+        arm.position = lambda: 4
+        assert mission.run(arm) == 4
+
+    def test_that_leaves_what_it_has_put_there():
+        time.perf_counter = lambda: None
+        Arm.position = mock.Mock(return_value=4)
+        assert mission.run(Arm()) == 4
+"""
+
+
+@pytest.mark.parametrize("engine", ["auto", "replay"])
+def test_mocks_end_no_campaign(tmp_path: Path, engine: str) -> None:
+    found = run(write_project(tmp_path, MISSION, TESTS), engine=engine)
+    assert found
+    assert {one.verdict for one in found.values()} <= {Verdict.KILLED, Verdict.SURVIVED, Verdict.NO_EFFECT}

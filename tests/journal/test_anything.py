@@ -1,0 +1,275 @@
+"""A journal with anything in its rows: reading it never fails, and no other mutant's outcome is touched."""
+
+from __future__ import annotations
+
+import json
+import random
+import shutil
+import sqlite3
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from analysis import samples
+from mutabot.analysis.gate import decide
+from mutabot.analysis.results import find_mutant, read_results
+from mutabot.analysis.stored.campaign import open as open_campaign
+from mutabot.analysis.thresholds.thresholds import thresholds_of
+from mutabot.border.test_end import TestEnd
+from mutabot.cli.app import main
+from mutabot.cli.report import FORMATS
+from mutabot.errors import JournalError
+from mutabot.exit_codes import ExitCode
+from mutabot.journal.database import decode
+from mutabot.journal.fitting import inflated
+from mutabot.journal.journal import Journal
+from mutabot.journal.marks import mark_of
+from mutabot.journal.reader import JournalReader
+from mutabot.journal.records import REACHING
+from mutabot.journal.schema import COLUMNS
+from mutabot.report.choice import format_of
+from mutabot.report.format import Material
+from mutabot.report.shaping.portable import portable
+from mutabot.report.terminal.campaign import print_results
+from mutabot.report.terminal.console import make_console
+from mutabot.report.terminal.mutant.detail import print_mutant
+
+TIMES, SEED = 1000, 24
+OTHER = replace(samples.SKIP, number=9, site=replace(samples.SKIP.site, occurrence=2))
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A journal with rows in every table."""
+    path = tmp_path_factory.mktemp("journal") / "journal.sqlite"
+    samples.write_journal(path)
+    reached = {"tests": [samples.TEST], "sites": {samples.MOVE.id: [0]}}
+    with Journal.create(path, meta=samples.meta(**{REACHING: reached}), fresh=False) as journal:
+        for round in range(2):
+            journal.add_test(round, 0, TestEnd(samples.TEST, "passed", wall=0.5))
+        journal.set_plan(samples.MUTANTS, samples.LEFT_OUT, sources={"mission.py": samples.PROGRAM})
+        journal.set_known([(OTHER, True)])
+        journal.add_control("tests/test_mission.py", "identity", True, "as it must")
+        journal.add_parts({"digest": {"mission.py": "text"}})
+        journal.add_texts({"text": b"import robot"})
+        for outcome in samples.OUTCOMES:
+            journal.add_outcome(outcome, key="a digest c digest")
+        journal.finish("complete")
+    return path
+
+
+def texts(chance: random.Random) -> Iterator[Any]:
+    """Things that a column may hold."""
+    yield chance.randbytes(chance.choice((0, 1, 7, 300)))
+    yield chance.choice((None, -1, 0, 1, 2**63 - 1, -(2**63), 1e300, float("inf"), 0.5, "", "9" * 5000))
+    yield chance.choice(
+        ("[" * 100_000, "{}", "[]", "null", "NaN", "-Infinity", "1e999", "1", "2", '"\\ud800"', "1" * 9999)
+    )
+
+
+def bent(data: Any, chance: random.Random) -> Any:
+    """JSON-like data with something else somewhere."""
+    if isinstance(data, dict) and data and chance.random() < 0.9:
+        name = chance.choice([*data])
+        return {**data, name: bent(data[name], chance)}
+    if isinstance(data, list) and data and chance.random() < 0.9:
+        index = chance.randrange(len(data))
+        return [*data[:index], bent(data[index], chance), *data[index + 1 :]]
+    return chance.choice(
+        (None, True, -1, 0, 10**9, 10**18, 10**400, -0.5, 1e308, float("nan"), float("inf"), "", "x" * 1000,
+         "\x1b[2J\0", "../../etc/passwd", [], {}, [[]], {"a": [1]}, [None] * 50, [{}], "survived", "killed")
+    )  # fmt: skip
+
+
+def damage(connection: sqlite3.Connection, chance: random.Random) -> set[tuple[str, Any, Any]]:
+    """Put anything into one row; returns which it was: table, and its first two columns."""
+    table = chance.choice(["outcome", "outcome", "mutant", "kept", "meta", *COLUMNS])
+    columns = COLUMNS[table]
+    names = ", ".join(f'"{one}"' for one in columns)
+    rows = connection.execute(f"SELECT rowid, {names} FROM {table}").fetchall()
+    row, *values = chance.choice(rows)
+    index = chance.randrange(len(columns))
+    try:
+        data = json.loads(values[index])
+    except (ValueError, TypeError, RecursionError):
+        data = None
+    if data is not None and chance.random() < 0.8:
+        value: Any = json.dumps(bent(data, chance), ensure_ascii=chance.random() < 0.5)
+        if chance.random() < 0.2:
+            cut = chance.randrange(len(value))
+            value = value[:cut] + chance.choice(("", "}", "\\", '"', "\0")) + value[cut + 1 :]
+    else:
+        value = chance.choice(list(texts(chance)))
+    is_text = isinstance(value, bytes) and chance.random() < 0.5  # text that is no UTF-8
+    with closing(connection.cursor()) as cursor:
+        try:
+            place = "CAST(? AS TEXT)" if is_text else "?"
+            cursor.execute(f'UPDATE {table} SET "{columns[index]}" = {place} WHERE rowid = ?', (value, row))
+        except sqlite3.IntegrityError:  # a NULL, or a name that is taken
+            return set()
+    return {(table, values[0], values[1])}
+
+
+def damaged(whole: Path, path: Path, chance: random.Random) -> set[tuple[str, Any, Any]]:
+    """A copy of the journal with something wrong, marked as if Mutabot had written it, or not."""
+    shutil.copy(whole, path)
+    with closing(sqlite3.connect(path, isolation_level=None)) as connection:
+        connection.text_factory = decode
+        connection.execute("BEGIN")
+        found = set().union(*(damage(connection, chance) for _ in range(chance.choice((1, 1, 3)))))
+        if chance.random() < 0.7:
+            forge(connection)
+        connection.execute("COMMIT")
+    return found
+
+
+def forge(connection: sqlite3.Connection) -> None:
+    """Mark all rows as they are now."""
+    for table, columns in COLUMNS.items():
+        names = ", ".join(f'"{one}"' for one in columns)
+        for row, *values in connection.execute(f"SELECT rowid, {names} FROM {table}").fetchall():
+            mark = mark_of(table, *values)
+            connection.execute('UPDATE mark SET digest = ? WHERE "table" = ? AND row = ?', (mark, table, row))
+
+
+def use(path: Path, number: int, sample: list[Callable[[Path], None]]) -> None:
+    sample[number % len(sample)](path)
+
+
+def read_all(path: Path) -> None:
+    with JournalReader.open(path) as journal:
+        found = read_results(journal, earlier=True)
+        assert (found.state == "complete") <= (not found.set_aside)
+        for row in journal.found():
+            journal.row(*row)
+        for name in ("digest", "text"):
+            journal.parts(name)
+            journal.text(name)
+    decide(found, min_score=0.5, max_errors=0.5)
+    thresholds_of(found)
+    console = make_console()
+    print_results(console, found, everything=True)
+    for one in found.everything:
+        print_mutant(console, find_mutant(found, one.mutant.id), samples.PROGRAM)
+
+
+def written_as(name: str) -> Callable[[Path], None]:
+    def write(path: Path) -> None:
+        format_of(name).make(Material(portable(open_campaign(path)), "", None))
+
+    return write
+
+
+def test_rows_may_hold_anything(whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    chance = random.Random(SEED)
+    ways = [read_all, read_all, *(written_as(name) for name in FORMATS)]
+    expected = {(one.mutant, one.round): one for one in samples.OUTCOMES}
+    path = tmp_path / "journal.sqlite"
+    for number in range(TIMES):
+        touched = damaged(whole, path, chance)
+        try:
+            with JournalReader.open(path) as journal:
+                found = {(one.mutant, one.round): one for one in journal.outcomes()}
+                rows = {
+                    row for table, *row in map(list, touched) if table == "outcome" for row in [tuple(row)]
+                }
+                for pair, outcome in expected.items():
+                    assert pair in rows or found.get(pair) == outcome
+                plan = {row[1] for row in touched if row[0] == "mutant"}
+                ids = {one.number for one in journal.mutants()}
+                assert {one.number for one in samples.MUTANTS} - ids <= plan
+            use(path, number, ways)
+        except Exception as error:
+            # only the row that says which version it is may say another
+            is_version = ("meta", "journal:version") in {row[:2] for row in touched}
+            if not isinstance(error, JournalError) or not is_version:
+                error.add_note(f"{number}: {touched}")
+                raise
+        capsys.readouterr()
+
+
+def edit(path: Path, statement: str, *values: Any) -> None:
+    with closing(sqlite3.connect(path, isolation_level=None)) as connection:
+        connection.text_factory = decode
+        connection.execute(statement, values)
+        forge(connection)
+
+
+BAD = {
+    "no JSON": ("UPDATE outcome SET data = '{' WHERE rowid = 1", 1),
+    "deep": (f"UPDATE outcome SET data = '{'[' * 100_000}' WHERE rowid = 1", 1),
+    "no text": ("UPDATE outcome SET data = CAST(x'ff' AS TEXT) WHERE rowid = 1", 1),
+    "no verdict": ("UPDATE outcome SET verdict = 'fine' WHERE rowid = 1", 1),
+    "another verdict": ("UPDATE outcome SET verdict = 'timeout' WHERE rowid = 1", 1),
+    "huge": (f"UPDATE outcome SET data = json_set(data, '$.hits', json('1{'0' * 400}')) WHERE rowid = 1", 1),
+    "not a number": ("UPDATE outcome SET data = replace(data, '\"wall\": 1.5', '\"wall\": NaN')", 1),
+    "round": ("UPDATE outcome SET round = 4000000000 WHERE rowid = 1", 1),
+    "rounds": ("UPDATE meta SET value = '1000000000' WHERE key = 'rounds'", 0),
+    "mutant": ("UPDATE mutant SET data = '[]' WHERE number = 1", 2),
+    "test": ('UPDATE test SET data = \'{"test": 1, "outcome": []}\'', 0),
+    "fact": ("UPDATE meta SET value = '[1, 2' WHERE key = 'started'", 0),
+    "key": ("UPDATE outcome SET key = x'00ff' WHERE rowid = 1", 0),
+}
+
+
+@pytest.mark.parametrize(("statement", "lost"), BAD.values(), ids=BAD)
+def test_a_bad_row_is_named_and_the_rest_is_used(
+    whole: Path, tmp_path: Path, statement: str, lost: int
+) -> None:
+    path = tmp_path / "journal.sqlite"
+    shutil.copy(whole, path)
+    edit(path, statement)
+    with JournalReader.open(path) as journal:
+        found = read_results(journal)
+        journal.found()
+        named = journal.set_aside
+    assert len(named) == 1, named
+    assert found.done == len(samples.OUTCOMES) - lost
+    if named == list(found.set_aside):
+        assert found.state == "incomplete"
+        assert decide(found).exit_code == ExitCode.UNRELIABLE
+
+
+@pytest.mark.parametrize("attack", ["bytes", "row", "view"])
+@pytest.mark.parametrize("command", ["results", "show", "report"])
+def test_commands_work_with_what_is_left(
+    whole: Path, tmp_path: Path, attack: str, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / ".mutabot" / "journal.sqlite"
+    path.parent.mkdir()
+    shutil.copy(whole, path)
+    match attack:
+        case "bytes":
+            with closing(sqlite3.connect(path)) as connection, connection:
+                connection.execute(
+                    "UPDATE outcome SET data = ? WHERE rowid = 3", (random.Random(1).randbytes(99),)
+                )
+        case "row":
+            edit(path, "UPDATE meta SET value = '1000000000' WHERE key = 'rounds'")
+        case "view":
+            with closing(sqlite3.connect(path)) as connection, connection:
+                connection.execute("ALTER TABLE outcome RENAME TO other")
+                connection.execute(
+                    "CREATE VIEW outcome AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
+                    "SELECT i AS mutant, i AS round, i AS data, i AS key, i AS reused FROM n"
+                )
+    arguments = {"show": ["2"], "report": ["--format", "markdown"]}.get(command, [])
+    code = main(["-C", str(tmp_path), command, *arguments])
+    printed = capsys.readouterr()
+    if attack == "view":
+        assert code == ExitCode.USAGE
+        assert "something else than mutabot has changed it" in printed.err or "not a journal" in printed.err
+    else:
+        assert code == ExitCode.FINE
+        assert "gripper.command" in printed.out
+
+
+def test_what_a_compressed_text_becomes_has_an_end() -> None:
+    assert inflated(zlib.compress(b"import robot")) == b"import robot"
+    with pytest.raises(ValueError, match="more than"):
+        inflated(zlib.compress(bytes((1 << 28) + 1)))
