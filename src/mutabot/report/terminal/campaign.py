@@ -145,7 +145,7 @@ def mutant_table(results: Results, width: int) -> Table:
         more = [_row(result.rounds, many)]
         if with_rates:
             more.insert(0, _kill_rate(result.kill_rate, narrow=narrow))
-        number = f"{mutant.number}{'*' if result.outdated else '~' if result.presumed else ''}"
+        number = f"{mutant.number}{'*' if result.outdated else ''}"
         add_row(table, number, facts, mutant.description, *more, narrow=narrow)
     return table
 
@@ -352,13 +352,6 @@ def trust_lines(results: Results) -> Iterator[RenderableType]:
         for one in checked.disagreements:
             words = f"mutant {one.number}, round {one.round + 1}: {one.first}; afresh: {one.second}"
             yield Padding(Text(plain(words), overflow="fold"), (0, 0, 0, 2))
-    confirmed = results.confirmation
-    if confirmed is not None:
-        kept = confirmed["checked"] - confirmed["unstable"]
-        text = (
-            f"\nConfirmed: {kept} of {confirmed['checked']} kills, survivors and time-outs end so once more."
-        )
-        yield Text(text, style="bold red" if confirmed["unstable"] else "dim")
     yield from repeat_lines(results.repeats)
 
 

@@ -179,7 +179,6 @@
           h("ul", null, verified.disagreements.map(([many, round, first, second]) => h("li", null, h("a", { href: address(["mutant", String(many)]) }, `mutant ${many}`), `, round ${round + 1}: ${first}; afresh ${second}`))))
         : h("li", null, `${count(verified.checked, "outcome")} were run again in fresh processes, and came out the same.`));
     }
-    if (campaign.confirmation) lines.push(h("li", null, `--confirm looked at ${campaign.confirmation.checked} outcomes; ${campaign.confirmation.unstable} were unstable.`));
     for (const [name, found] of [["kills", campaign.repeats.falseKills], ["survivors", campaign.repeats.falseSurvivors]]) {
       if (found) lines.push(h("li", null, `False ${name}, by repeats: ${number(found[0], 2)} expected among ${found[3]} (95 % interval ${number(found[1], 2)} to ${number(found[2], 2)}).`));
     }
