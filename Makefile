@@ -23,7 +23,8 @@ of_ros  = $(wildcard tests/*/test_ros$(1)*.py tests/*/*/test_ros$(1)*.py)
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
-	$(VENV)/bin/mutabot -C examples/paper run --selection published.txt --table
+	$(VENV)/bin/mutabot -C examples/paper run --only @published.txt
+	$(VENV)/bin/mutabot -C examples/paper results
 	$(RUN) benchmarks/paper_scores.py examples/paper
 
 ## lint, types and the whole test suite
@@ -53,7 +54,7 @@ format: $(READY)
 docs: $(READY)
 	$(RUN) tools/make_docs.py
 	$(RUN) tools/make_classical_page.py
-	$(RUN) tools/make_comparison_page.py
+	cd benchmarks && ../$(RUN) -m comparison.page
 	$(RUN) tools/make_design_page.py
 
 ## build the documentation as a site, in site/; what would be a dead link there is an error
@@ -71,13 +72,12 @@ pictures: $(READY) $(REPORTS)
 ## compare the families of operators on the examples (of the largest a tenth of the mutants), and write
 ## docs/comparison.md from it
 comparison: $(READY)
-	for name in paper pick_and_place scales; do \
+	cd benchmarks && for name in paper pick_and_place scales; do \
 	    test $$name = pick_and_place && sample="--sample 10%" || sample=""; \
-	    $(VENV)/bin/mutabot -C examples/$$name compare --rounds 5 --no-oracle $$sample --json \
-	        > $(VENV)/$$name.json || exit; \
+	    ../$(RUN) -m comparison.run ../examples/$$name --rounds 5 $$sample > ../$(VENV)/$$name.json || exit; \
 	done
-	$(RUN) tools/make_comparison_page.py \
-	    $(foreach name,paper pick_and_place scales,$(name)=$(VENV)/$(name).json)
+	cd benchmarks && ../$(RUN) -m comparison.page \
+	    $(foreach name,paper pick_and_place scales,$(name)=../$(VENV)/$(name).json)
 
 ## measure: the cost of an intercepted call, start-up, simulation speed, 200 seeds of each example
 bench: $(READY)

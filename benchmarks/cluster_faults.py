@@ -72,7 +72,7 @@ class Trial:
         """Start a campaign, as a user would."""
         words = [
             "-C", str(self.folder), "run", "--fresh", "--engine", self.engine, "--rounds", str(self.rounds),
-            "--selection", "published.txt", *more,
+            "--only", "@published.txt", *more,
         ]  # fmt: skip
         return subprocess.Popen(
             [sys.executable, "-m", "mutabot.cli.app", *words],

@@ -29,7 +29,7 @@ def campaign(given: argparse.Namespace, folder: Path, evidence: bool) -> float:
         file.write_text(text, encoding="utf-8")
     command = [sys.executable, "-m", "mutabot", "-C", str(folder), "run", "--rounds", str(given.rounds)]
     if given.selection:
-        command += ["--selection", given.selection]
+        command += ["--only", f"@{given.selection}"]
     before = os.times()
     subprocess.run(command, check=True, capture_output=True)
     after = os.times()

@@ -1,4 +1,4 @@
-"""What tests that fail at random do to campaigns: false kills, with and without `--confirm`.
+"""What tests that fail at random do to campaigns: false kills.
 
     python benchmarks/flaky_campaigns.py --count 100 --chance 3 --chance 10
 
@@ -139,12 +139,12 @@ def write_project(folder: Path, chance: float, moves: int) -> None:
         path.write_text(content, encoding="utf-8")
 
 
-def campaign(folder: Path, seed: int, *, confirm: bool, repeats: bool = True) -> Results:
+def campaign(folder: Path, seed: int, *, repeats: bool = True) -> Results:
     """One campaign; raises MutabotError if it ends without verdicts."""
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, configuration.root)
     request = Request(configuration, vocabulary, rounds=1, seed=seed, jobs=2, fresh=True)
-    path = run_campaign(replace(request, confirm=confirm, repeats=repeats), _Silent())
+    path = run_campaign(replace(request, repeats=repeats), _Silent())
     with Journal.open(path) as journal:
         return read_results(journal)
 
@@ -175,19 +175,19 @@ def _holds(estimate: Estimate | None, number: int) -> bool:
     return estimate is None or estimate.low <= number <= estimate.high
 
 
-def series(chance: float, count: int, moves: int, *, confirm: bool) -> Tally:
+def series(chance: float, count: int, moves: int) -> Tally:
     """So many campaigns with this probability."""
     tally = Tally()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_project(folder, 0.0, moves)
-        exact = campaign(folder, 1, confirm=False, repeats=False)
+        exact = campaign(folder, 1, repeats=False)
         truth = {one.mutant.id: one.outcomes[0].verdict for one in exact.mutants}
         write_project(folder, chance, moves)
         started = time.monotonic()
         for seed in range(count):
             try:
-                add(tally, campaign(folder, seed, confirm=confirm), truth)
+                add(tally, campaign(folder, seed), truth)
             except MutabotError as error:
                 tally.stopped += 1
                 print(f"\rstopped: {error}", file=sys.stderr)
@@ -204,22 +204,21 @@ def main() -> int:
     parser.add_argument("--moves", type=int, default=4, help="size of the program")
     options = parser.parse_args()
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"  # they only take time here
-    print("| chance | --confirm | campaigns | stopped | false kills, first | left, most in one "
+    print("| chance | campaigns | stopped | false kills, first | left, most in one "
           "| unstable | false survivors | interval held | s each |")  # fmt: skip
-    print("|---|---|---:|---:|---:|---:|---:|---:|---:|---:|")
+    print("|---|---:|---:|---:|---:|---:|---:|---:|---:|")
     wrong = 0
     for percent in options.chance or [3.0, 10.0]:
-        for confirm in (False, True):
-            one = series(percent / 100, options.count, options.moves, confirm=confirm)
-            n = max(1, one.campaigns)
-            print(
-                f"\r| {percent:g} % | {'yes' if confirm else 'no'} | {one.campaigns} | {one.stopped} "
-                f"| {one.before / n:.2f} | {one.left / n:.2f}, {one.most} | {one.unstable / n:.2f} "
-                f"| {one.survivors / n:.2f} | {one.held} of {one.told} "
-                f"| {one.seconds / options.count:.1f} |",
-                flush=True,
-            )
-            wrong += one.told > 0 and one.held / one.told < 0.9
+        one = series(percent / 100, options.count, options.moves)
+        n = max(1, one.campaigns)
+        print(
+            f"\r| {percent:g} % | {one.campaigns} | {one.stopped} "
+            f"| {one.before / n:.2f} | {one.left / n:.2f}, {one.most} | {one.unstable / n:.2f} "
+            f"| {one.survivors / n:.2f} | {one.held} of {one.told} "
+            f"| {one.seconds / options.count:.1f} |",
+            flush=True,
+        )
+        wrong += one.told > 0 and one.held / one.told < 0.9
     return int(wrong > 0)
 
 

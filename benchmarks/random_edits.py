@@ -185,7 +185,7 @@ SUBJECTS: dict[str, Callable[[], Subject]] = {
         program=["mission.py"],
         tests=["tests/test_mission.py"],
         helpers=["tests/expected.py", "tests/conftest.py", "tracker.py"],
-        options=("--selection", "published.txt"),
+        options=("--only", "@published.txt"),
         pinned=True,
     ),
 }

@@ -52,7 +52,17 @@ class Tally:
 
 def campaign(folder: Path, rounds: int, *options: str) -> str | None:
     """Run one; returns what it said, or None where its baseline fails."""
-    command = [sys.executable, "-m", "mutabot", "run", "--rounds", str(rounds), "--no-repeats", *options]
+    command = [
+        sys.executable,
+        "-m",
+        "mutabot",
+        "run",
+        "--rounds",
+        str(rounds),
+        "-o",
+        "repeats=false",
+        *options,
+    ]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode in (2, 3):
         return None

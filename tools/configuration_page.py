@@ -20,6 +20,7 @@ HEAD = """\
 The configuration stands in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml`, there without that
 heading. `mutabot init` proposes one. An unknown key or a wrong value is an error that names the line and the
 nearest key. Paths are relative to the project's folder, in which the file lies, and must not lead out of it.
+`-o KEY=VALUE` sets a key for one command: `mutabot run -o rounds=5 -o when=once`.
 
 ```toml
 [tool.mutabot]

@@ -128,7 +128,7 @@ def write_project(
 
 
 def request_for(folder: Path, **changes: Any) -> Request:
-    """The request that ``mutabot run --no-repeats`` would make in this folder: repeats take time."""
+    """The request that ``mutabot run -o repeats=false`` would make in this folder: repeats take time."""
     configuration = load_configuration(folder)
     vocabulary = load(configuration.vocabulary, configuration.root)
     values = {

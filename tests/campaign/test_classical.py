@@ -364,48 +364,6 @@ def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path) -> None
         assert [kill.test.rpartition("::")[2] for kill in one.kills] == ["test_far"]
 
 
-def test_without_the_oracle_only_exceptions_kill(tmp_path: Path) -> None:
-    mission = "def near(x):\n    assert x >= 0\n    return 1 / (x - 0.5) < 0\n"
-    tests = """
-        import unittest
-        import helper
-        import mission
-        import pytest
-
-        def test_near():
-            assert mission.near(0.1)
-            helper.check(mission.near(0.2))
-
-        class TestFar(unittest.TestCase):
-            def test_far(self):
-                self.assertFalse(mission.near(0.9))
-                self.assertRaises(AssertionError, mission.near, -1.0)
-
-        def test_fails():
-            if not mission.near(0.3):
-                pytest.fail("it is far")
-    """
-    helper = {"tests/helper.py": "def check(value):\n    assert value\n", "tests/conftest.py": ""}
-    configuration = QUICK.replace("pythonpath=.", "pythonpath=. tests")
-    project = write_project(tmp_path, mission, tests, configuration=configuration, more=helper)
-    inverted = "mission.py:near:1 / (x - 0.5) < 0#1:UOI=not"
-    program = "mission.py:near:x >= 0#1:UOI=not"  # an assertion of the program is none of the tests'
-    bomb = "mission.py:near:return 1 / (x - 0.5) < 0#1:BSR"
-    for engine in ("auto", "replay"):
-        wanted = {
-            "engine": engine,
-            "families": ("classical",),
-            "only": (inverted, program, bomb),
-            "fresh": True,
-        }
-        checked, unchecked = run(project, **wanted), run(project, **wanted, no_oracle=True)
-        assert checked.keys() == unchecked.keys()
-        assert not [mutant for mutant, one in unchecked.items() if one.by is By.CHECK]
-        assert (checked[inverted].by, unchecked[inverted].verdict) == (By.CHECK, Verdict.SURVIVED)
-        assert (unchecked[program].verdict, unchecked[program].by) == (Verdict.KILLED, By.EXCEPTION)
-        assert unchecked[bomb].verdict is Verdict.KILLED
-
-
 def test_two_mutants_at_once_count_only_if_both_act(project: Path) -> None:
     wanted = {"families": ("robot", "classical"), "order": 2, "pairs": 8, "fresh": True}
     ends = {engine: run(project, engine=engine, only=ONLY, **wanted) for engine in ("auto", "replay")}

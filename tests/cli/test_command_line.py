@@ -12,15 +12,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import typer
 
 import mutabot
 from analysis import samples
 from mutabot.campaign import run as campaign
-from mutabot.cli.app import main
+from mutabot.cli.app import app, main
+from mutabot.cli.gone import _OPTIONS
 from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
 
-COMMANDS = ("init", "check", "list", "run", "compare", "results", "show", "report", "replay")
+COMMANDS = ("init", "check", "list", "run", "results", "show", "report", "replay")
 
 
 @pytest.fixture
@@ -141,30 +143,22 @@ def test_a_run_prints_the_results(fake: Campaign, capsys: pytest.CaptureFixture[
     assert "mutants" in err
 
 
-def test_a_run_prints_every_mutant_on_request(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", "--table"]) == 0
-    out = capsys.readouterr().out
-    main(["results"])
-    assert "Mutants by rounds" in out
-    assert out == capsys.readouterr().out
-
-
 def test_options_of_a_run_reach_the_campaign(fake: Campaign) -> None:
     (fake.project / "s.txt").write_text("")
-    words = "--only reverse --only skip --skip 3 --rounds 4 --seed 0 -j 3 --engine replay --selection s.txt"
-    assert main(["run", *words.split(), "--verify", "7", "--confirm"]) == 0
+    words = "--only reverse --only @s.txt --skip 3 --rounds 4 --seed 0 -j 3 --engine replay --verify 7"
+    assert main(["run", *words.split()]) == 0
     request = fake.request
-    assert (request.verify, request.confirm) == (7, True)
-    assert (request.only, request.skip) == (("reverse", "skip"), ("3",))
+    assert request.verify == 7
+    assert (request.only, request.skip) == (("reverse", "@s.txt"), ("3",))
     assert (request.rounds, request.seed, request.jobs) == (4, 0, 3)
-    assert (request.engine, request.selection) == ("replay", Path("s.txt"))
+    assert request.engine == "replay"
 
 
 def test_a_sample_reaches_the_campaign(fake: Campaign) -> None:
-    assert main(["run", "--sample", "10%", "--one-per-site"]) == 0
-    assert (fake.request.sample.text, fake.request.one_per_site) == ("10%", True)
+    assert main(["run", "--sample", "10%"]) == 0
+    assert fake.request.sample.text == "10%"
     assert main(["run"]) == 0
-    assert (fake.request.sample, fake.request.one_per_site) == (None, False)
+    assert fake.request.sample is None
 
 
 @pytest.mark.parametrize("command", ["run", "list"])
@@ -194,12 +188,78 @@ def test_the_configured_selection_lies_in_the_project(fake: Campaign) -> None:
     assert fake.request.selection == fake.project / "chosen.txt"
 
 
-def test_a_selection_file_is_looked_for_here_and_in_the_project(
-    fake: Campaign, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["run", "--selection", "nowhere.txt"]) == 2
-    assert "no selection file nowhere.txt" in capsys.readouterr().err
+def test_a_list_is_looked_for_here_and_in_the_project(
+    fake: Campaign, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    assert main(["run", "--only", "@nowhere.txt"]) == 2
+    assert "no list of mutants nowhere.txt" in capsys.readouterr().err
     assert fake.request is None
+    (fake.project / "chosen.txt").write_text("")
+    monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
+    assert main(["-C", str(fake.project), "run", "--only", "@chosen.txt"]) == 0
+    assert fake.request.only == (f"@{fake.project / 'chosen.txt'}",)
+
+
+def test_a_key_of_the_configuration_can_be_set_for_one_command(fake: Campaign) -> None:
+    words = ["-o", "rounds=3", "-o", "when=once", "-o", 'pytest_args=["-x"]', "-o", "memory = 5 GB"]
+    assert main(["run", *words]) == 0
+    configuration = fake.request.configuration
+    assert (fake.request.rounds, configuration.when) == (3, ("once",))
+    assert (configuration.pytest_args, configuration.memory) == (("-x",), 5_000_000_000)
+    assert main(["run"]) == 0
+    assert fake.request.rounds == 1
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ("rounds=0", "-o rounds=0 · rounds: must be at least 1"),
+        ("round=3", "did you mean 'rounds'?"),
+        ("rounds", "-o rounds: write KEY=VALUE"),
+        ("=3", "-o =3: write KEY=VALUE"),
+        ("a.b.c=1", "write KEY=VALUE"),
+        ("when=onc", "'onc' is no moment"),
+        ("cluster.cacert=x", "unknown key 'cacert'"),
+        ("program=nowhere.py", "there is no 'nowhere.py'"),
+        (f"rounds={'[' * 5000}", "rounds"),
+        (f"rounds={'9' * 5000}", "rounds"),
+    ],
+)
+def test_a_wrong_setting_is_2_and_names_the_option(
+    fake: Campaign, given: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", "-o", given]) == 2
+    assert told in capsys.readouterr().err
+    assert fake.request is None
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("run --selection few.txt", "--selection is gone; use --only @FILE"),
+        ("run --table", "`mutabot results`"),
+        ("run --serve", "`mutabot live`"),
+        ("list --when once", "use -o when=MOMENT"),
+        ("compare", "the command compare is gone; `make comparison`"),
+    ],
+)
+def test_what_went_away_says_what_to_use_instead(
+    fake: Campaign, words: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words.split()) == 2
+    err = capsys.readouterr().err
+    assert told in err
+    assert len(err.splitlines()) == 1
+
+
+def test_every_option_that_went_away_is_none_of_todays() -> None:
+    commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    today = {
+        name: [parameter.opts for parameter in commands[name].params] for name in ("run", "list", "check")
+    }
+    assert not {option for every in today.values() for opts in every for option in opts} & _OPTIONS.keys()
+    assert len(today["run"]) == 18
 
 
 def test_a_project_elsewhere_can_be_named(
@@ -375,7 +435,7 @@ def test_a_pipe_that_closes_early_is_no_error(fake: Campaign, command: str) -> N
     assert not (fake.project / ".mutabot" / "crash.txt").exists()
 
 
-@pytest.mark.parametrize("command", [[], ["run"], ["show"], ["compare"]])
+@pytest.mark.parametrize("command", [[], ["run"], ["show"]])
 def test_the_short_option_asks_for_help_too(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*command, "-h"]) == 0
     short = capsys.readouterr().out

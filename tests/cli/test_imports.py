@@ -39,7 +39,7 @@ def test_looking_at_results_loads_nothing_that_runs_a_campaign(tmp_path: Path, w
     assert_light(done.stderr)
 
 
-@pytest.mark.parametrize("name", [name for name in FORMATS if name != "parquet"])
+@pytest.mark.parametrize("name", FORMATS)
 def test_a_report_loads_nothing_that_runs_a_campaign_and_no_other_format(tmp_path: Path, name: str) -> None:
     samples.write_journal(tmp_path / ".mutabot" / "journal.sqlite")
     words = [sys.executable, "-c", CODE, "-C", str(tmp_path), "report", "--format", name]

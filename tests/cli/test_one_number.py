@@ -43,11 +43,11 @@ def test_list_and_run_number_alike_with_and_without_a_selection(
     chosen = [*whole][3:0:-2]
     Path("chosen.txt").write_text("\n".join(chosen))
     wanted = {one: whole[one] for one in whole if one in chosen}
-    assert printed(capsys, "list", "--selection", "chosen.txt") == wanted
-    assert printed(capsys, "run", "--selection", "chosen.txt") == wanted
+    assert printed(capsys, "list", "--only", "@chosen.txt") == wanted
+    assert printed(capsys, "run", "--only", "@chosen.txt") == wanted
     assert printed(capsys, "results") == wanted
     assert printed(capsys, "run") == whole
-    shown = printed(capsys, "run", "--selection", "chosen.txt")
+    shown = printed(capsys, "run", "--only", "@chosen.txt")
     assert {one: shown[one] for one in wanted} == wanted
     with Path("mutabot.toml").open("a") as file:
         file.write('selection = "chosen.txt"\n')

@@ -55,7 +55,7 @@ def test_a_campaign_that_is_terminated_ends_cleanly_and_goes_on_later(
 ) -> None:
     write_project(tmp_path, MISSION, TESTS)
     mark = str(uuid4())
-    run = [sys.executable, "-m", "mutabot", "run", "--no-repeats", "-j", "1", "--engine", engine]
+    run = [sys.executable, "-m", "mutabot", "run", "-o", "repeats=false", "-j", "1", "--engine", engine]
     process = subprocess.Popen(
         run, cwd=tmp_path, text=True, stderr=subprocess.PIPE, stdout=subprocess.PIPE,
         env={**os.environ, MARK: mark},

@@ -158,7 +158,7 @@ def test_one_magnitude_is_shown_like_any_mutant(tmp_path: Path, capsys: pytest.C
     assert "mutabot suggest" not in out
 
 
-@pytest.mark.parametrize("name", ["markdown", "junit", "sarif", "github", "csv", "badge", "mutation-testing"])
+@pytest.mark.parametrize("name", ["markdown", "junit", "sarif", "github", "csv", "mutation-testing"])
 def test_every_format_takes_a_campaign_of_ladders_alone(
     project: Path, name: str, capfdbinary: pytest.CaptureFixture[bytes]
 ) -> None:

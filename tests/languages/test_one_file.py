@@ -76,7 +76,17 @@ def test_its_lines_are_sites_with_verdicts_from_both_engines(engine: str, site: 
     configuration = 'program = ["mission.steps"]\nvocabulary = ["robot.toml"]\n'
     write_project(tmp_path, "", TESTS, more=more, configuration=configuration)
     found = mutants(
-        site, tmp_path, "run", "--engine", engine, "--no-repeats", "--only", "*skip", "--only", "*reverse"
+        site,
+        tmp_path,
+        "run",
+        "--engine",
+        engine,
+        "-o",
+        "repeats=false",
+        "--only",
+        "*skip",
+        "--only",
+        "*reverse",
     )
     verdicts = {name: one["rounds"][0]["verdict"] for name, one in found.items()}
     assert verdicts == {

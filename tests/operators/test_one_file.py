@@ -96,7 +96,7 @@ def test_both_come_last_in_the_plan_and_the_others_keep_their_order(site: Path, 
 @pytest.mark.parametrize("engine", ["branch", "replay"])
 def test_both_get_verdicts_from_both_engines(engine: str, site: Path, tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS)
-    only = ("--only", "bit-off", "--only", "CZR", "--engine", engine, "--no-repeats")
+    only = ("--only", "bit-off", "--only", "CZR", "--engine", engine, "-o", "repeats=false")
     found = of_both_families(site, tmp_path, "run", *only)
     verdicts = {name: one["rounds"][0]["verdict"] for name, one in found.items()}
     assert verdicts == {

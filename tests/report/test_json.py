@@ -33,14 +33,12 @@ SECOND_LOOK: dict[str, Any] = {
             }
         ],
     },
-    "confirmation": {"checked": 3, "unstable": 1},
     "flaky": {"tests": ["test_a in round 1: failed and passed in equal runs"], "known": 4},
     "repeats": {"doubted": {"outcomes": 4, "repeated": 4, "changed": 1}, "survivors": {"outcomes": 9}},
 }
 DRAWING = {
     "drawing": {
         "sample": "10%",
-        "one_per_site": True,
         "selected": 60,
         "strata": [
             {"family": "robot", "role": "program", "population": 30, "drawn": 3},
@@ -120,7 +118,6 @@ def test_a_second_look_is_in_it(tmp_path: Path) -> None:
     assert (found["verification"]["checked"], found["verification"]["agreed"]) == (10, 9)
     (wrong,) = found["verification"]["disagreements"]
     assert (wrong["id"], wrong["round"], wrong["first"]) == (samples.SKIP.id, 2, "survived")
-    assert found["confirmation"] == {"checked": 3, "unstable": 1}
     assert found["flaky"] == ["test_a in round 1: failed and passed in equal runs"]
     assert found["repeats"]["doubted"] == {"outcomes": 4, "repeated": 4, "changed": 1}
     kills = found["repeats"]["false_kills"]
@@ -128,12 +125,12 @@ def test_a_second_look_is_in_it(tmp_path: Path) -> None:
     assert found["repeats"]["false_survivors"] is None
     assert not set(SECOND_LOOK) & set(found["meta"])
     without = data(tmp_path)
-    assert (without["verification"], without["confirmation"], without["flaky"]) == (None, None, [])
+    assert (without["verification"], without["flaky"]) == (None, [])
 
 
 def test_a_sample_carries_what_it_says_about_all(tmp_path: Path) -> None:
     found = data(tmp_path, **DRAWING)
-    assert found["sample"] == {"size": "10%", "one_per_site": True, "selected": 60}
+    assert found["sample"] == {"size": "10%", "selected": 60}
     program = found["groups"][0]
     assert (program["mutants"], program["population"]) == (3, 30)
     assert 0 <= program["sample_interval"]["low"] < program["score"] < program["sample_interval"]["high"]
@@ -192,7 +189,6 @@ def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
         found["sample"],
         found["verification"],
         *found["verification"]["disagreements"],
-        found["confirmation"],
         found["repeats"],
         found["repeats"]["doubted"],
         found["repeats"]["false_kills"],

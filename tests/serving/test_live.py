@@ -45,8 +45,8 @@ def project(tmp_path: Path) -> Path:
 
 @contextmanager
 def running(folder: Path, *options: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """``mutabot run --serve`` in a project, and the address that it prints."""
-    words = [sys.executable, "-m", "mutabot", "run", "--serve", "--no-repeats", "-j", "1", *options]
+    """``mutabot live`` in a project, and the address that it prints."""
+    words = [sys.executable, "-m", "mutabot", "live", "-o", "repeats=false", "-j", "1", *options]
     process = subprocess.Popen(
         words, cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL
     )
@@ -118,12 +118,12 @@ def test_stop_is_like_ctrl_c_also_in_a_pause_and_the_campaign_goes_on_later(
         assert journal.finished == "interrupted"
         found = len(journal.outcomes())
         assert 0 < found < len(journal.mutants())
-    assert main(["-C", str(project), "run", "--no-repeats", *ONE_BY_ONE]) == ExitCode.FINE
+    assert main(["-C", str(project), "run", "-o", "repeats=false", *ONE_BY_ONE]) == ExitCode.FINE
     assert f"reused {found} of" in "".join(capsys.readouterr())
 
 
 def test_what_an_earlier_campaign_found_is_not_shown_as_this_one(project: Path) -> None:
-    assert main(["-C", str(project), "run", "--no-repeats", "--only", "1"]) == ExitCode.FINE
+    assert main(["-C", str(project), "run", "-o", "repeats=false", "--only", "1"]) == ExitCode.FINE
     with running(project) as (_, address), listening(address) as events:
         until(events, lambda state: state["stage"])
         assert ask(address, "data/campaign.js").text == ""
@@ -142,8 +142,3 @@ def test_a_campaign_that_ends_before_its_first_mutant_says_so(project: Path) -> 
         process.communicate(timeout=PATIENCE)
     assert "nothing-like-it" in states[-1]["ended"]
     assert process.returncode == ExitCode.USAGE
-
-
-def test_a_port_without_serve_is_refused(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["-C", str(project), "run", "--port", "8000"]) == ExitCode.USAGE
-    assert "--port goes with --serve" in capsys.readouterr().err

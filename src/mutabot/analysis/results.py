@@ -14,7 +14,6 @@ from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
     ALTERED,
     BUDGET,
-    CONFIRMATION,
     DRAWING,
     FLAKY,
     INCOMPLETE,
@@ -54,7 +53,6 @@ class MutantResult:
         why: one line about how it ended.
         earlier: whether an earlier campaign found some of it.
         outdated: whether something has changed since that it depends on, as far as that is known.
-        presumed: whether an outcome is only presumed to be as it was before something changed elsewhere.
     """
 
     mutant: Mutant
@@ -63,7 +61,6 @@ class MutantResult:
     why: str
     earlier: bool = False
     outdated: bool = False
-    presumed: bool = False
 
     @property
     def outcomes(self) -> tuple[Outcome, ...]:
@@ -124,7 +121,6 @@ class Results:
         controls: the control mutants.
         tests: the baseline.
         verification: what ``--verify`` found; None if it was not asked for.
-        confirmation: ``checked`` and ``unstable`` outcomes of ``--confirm``; None if it was not asked for.
         repeats: how many outcomes were run once more, and how many ended otherwise.
         flaky: tests that cannot be relied on.
         drawing: how the mutants were drawn from those selected; None if they are all.
@@ -150,7 +146,6 @@ class Results:
     controls: tuple[ControlEnd, ...]
     tests: tuple[BaselineTest, ...]
     verification: Verification | None = None
-    confirmation: Mapping[str, int] | None = None
     repeats: Repeats = field(default_factory=Repeats)
     flaky: Flaky = field(default_factory=Flaky)
     drawing: Drawing | None = None
@@ -267,7 +262,6 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         outcomes = [*outcomes, *old.outcomes]
         groups = groups_of(mutants, outcomes, rounds, None)
     graded = {mutant.id for mutant in mutants if mutant.family == GRADED}
-    presumed = {name for name, _ in journal.presumed()}
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
     def result(mutant: Mutant) -> MutantResult:
@@ -278,7 +272,6 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
             found,
             earlier=mutant.id in old.ids,
             outdated=mutant.id in old.outdated,
-            presumed=mutant.id in presumed,
         )
 
     found = Results(
@@ -293,7 +286,6 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         controls=tuple(journal.controls()),
         tests=tuple(journal.tests()),
         verification=from_data(Verification, meta[VERIFICATION]) if VERIFICATION in meta else None,
-        confirmation=meta.get(CONFIRMATION),
         repeats=from_data(Repeats, meta[REPEATS]) if REPEATS in meta else Repeats(),
         flaky=from_data(Flaky, meta[FLAKY]) if FLAKY in meta else Flaky(),
         drawing=drawing,

@@ -114,7 +114,6 @@ class Job:
         branching: set for a trunk: fork a branch for each live mutant at its site.
         serving: set for a fork server: the socket over which jobs come. It runs no test itself.
         instrumentation: what to put into the program text; None to leave it alone.
-        no_oracle: whether all checks are switched off.
         private_files: whether the process is to keep to itself what it does to files.
         oracle_nodes: resolved names of the tests' own nodes, in which ``*`` stands for any text.
         refused: the calls that the robot refuses in the original, by node id: a mutant that is refused there
@@ -141,7 +140,6 @@ class Job:
     branching: Branching | None = None
     serving: int | None = None
     instrumentation: Instrumentation | None = None
-    no_oracle: bool = False
     private_files: bool = True
     oracle_nodes: tuple[str, ...] = ()
     refused: Mapping[str, tuple[RefusedAt, ...]] = field(default_factory=dict)

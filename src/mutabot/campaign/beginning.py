@@ -100,9 +100,9 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
         mutants = pairs(campaign.baseline, mutants, request.pairs, request.seed)
         if not mutants:
             raise NothingToDoError("no test reaches two mutants of this selection at different places")
-    if request.sample is None and not request.one_per_site:
+    if request.sample is None:
         return Plan(mutants, plan.left_out)
-    drawn, drawing = draw(mutants, request.seed, sample=request.sample, one_per_site=request.one_per_site)
+    drawn, drawing = draw(mutants, request.seed, request.sample)
     return Plan(drawn, plan.left_out, drawing)
 
 

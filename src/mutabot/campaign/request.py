@@ -34,14 +34,11 @@ class Request:
         cluster: where the executor ``cluster`` runs them.
         fresh: whether to run everything, also what an earlier campaign has found.
         verify: how many outcomes to run once more in fresh processes, and compare.
-        confirm: whether to run kills, survivors and time-outs once more.
         repeats: whether to run once more the kills that may be chance.
         baseline: how often the baseline runs each round; None for as often as the engine needs.
         families: the families of operators whose mutants are made.
         every_test: whether a mutant runs every test that reaches it, also after one has noticed it.
-        no_oracle: whether every assertion of the tests is switched off.
         sample: how many of the mutants to run, chosen at random; None for all.
-        one_per_site: whether to run one mutant per site, chosen at random.
         order: how many mutants are one: 1 or 2.
         pairs: how many mutants of the second order to plant.
         journal: name of the journal's file in mutabot's folder.
@@ -50,7 +47,6 @@ class Request:
         shard: the part of the plan to run; None for all of it.
         evidence: whether to record what the world does while tests run.
         since: the revision of git from which on changes are looked at; None for no such comparison.
-        sites_only: whether to presume that changes elsewhere in the program alter no outcome.
         other_journal: a journal, or the folder of a project, to take outcomes over from beside the own one.
         budget: seconds that the campaign may take; None for no limit.
         pause: by what the campaign can be paused; None if it cannot.
@@ -69,14 +65,11 @@ class Request:
     cluster: ClusterSettings | None = None
     fresh: bool = False
     verify: int = 0
-    confirm: bool = False
     repeats: bool = True
     baseline: int | None = None
     families: tuple[str, ...] = USUAL
     every_test: bool = False
-    no_oracle: bool = False
     sample: Sample | None = None
-    one_per_site: bool = False
     order: int = 1
     pairs: int = 200
     journal: str = JOURNAL
@@ -85,7 +78,6 @@ class Request:
     shard: Shard | None = None
     evidence: bool = False
     since: str | None = None
-    sites_only: bool = False
     other_journal: Path | None = None
     budget: float | None = None
     pause: Pause | None = None
@@ -99,11 +91,6 @@ class Request:
     def arguments(self) -> tuple[str, ...]:
         """The project's pytest arguments."""
         return (*self.configuration.tests, *self.configuration.pytest_args)
-
-    @property
-    def is_mixed(self) -> bool:
-        """Whether outcomes may come from machines that run with something else than this one."""
-        return self.cluster is not None and self.cluster.mixed
 
     @property
     def journal_path(self) -> Path:
@@ -124,7 +111,6 @@ class Request:
             seed=self.seed,
             round=round,
             memory=self.configuration.memory,
-            no_oracle=self.no_oracle,
             private_files=self.configuration.private_files,
             oracle_nodes=self.configuration.oracle_nodes,
             evidence=self.evidence,

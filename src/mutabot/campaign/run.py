@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import platform
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -137,9 +137,7 @@ def _run(
     journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
     write_shard(journal, request.shard, part, dependencies)
     note_outdated(journal, request, dependencies)
-    found = reuse(
-        journal, dependencies, part.mutants, request.rounds, progress, others, presume=request.sites_only
-    )
+    found = reuse(journal, dependencies, part.mutants, request.rounds, progress, others)
     if revision is not None:
         altered = Altered.of(revision, campaign, _collected(results), dependencies, part.mutants)
         part = only_altered(journal, altered, found, part, request.rounds, progress)
@@ -148,7 +146,7 @@ def _run(
         is_whole = _run_all(campaign, part, sink, found, started)
     finally:
         _forget_if_edited(request, journal, progress, dependencies, after)
-    _tidy(request, journal, whole, found.presumed.values())
+    _tidy(request, journal, whole)
     return _end(journal, part, request, progress, is_whole=is_whole)
 
 
@@ -209,15 +207,12 @@ def _run_mutants(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tu
     run_ladders(campaign, ladders, sink, done, always)
 
 
-def _tidy(request: Request, journal: Journal, whole: Plan, origins: Iterable[str]) -> None:
-    """Forget mutants that the program has no longer; of other families and orders nothing is known now.
-
-    ``origins``: mutants on whose outcomes others are presumed.
-    """
+def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
+    """Forget mutants that the program has no longer; of other families and orders nothing is known now."""
     if request.order == 1:
         known = {mutant.id for mutant, _ in journal.known()}
         others = {mutant for mutant, _ in journal.kept() if family_of(mutant) not in request.families}
-        journal.tidy([*others, *known, *origins, *(mutant.id for mutant in whole.mutants)])
+        journal.tidy([*others, *known, *(mutant.id for mutant in whole.mutants)])
 
 
 def _collected(results: Sequence[Result]) -> set[str]:
@@ -340,7 +335,6 @@ def _meta(request: Request) -> dict[str, Any]:
         "order": request.order,
         "pairs": request.pairs,
         "every_test": request.every_test,
-        "no_oracle": request.no_oracle,
         "fresh": request.fresh,
         "started": time.time(),
         "vocabulary": to_data(request.vocabulary),

@@ -19,7 +19,7 @@ from mutabot.exit_codes import ExitCode
 from mutabot.limits import shortened
 
 from . import campaign, init, replay, report, results, suggest, thresholds
-from .comparing import compare
+from .gone import gone
 from .lists import operators
 from .merging import merge
 from .options import Version
@@ -55,8 +55,8 @@ app.command(rich_help_panel=_SETUP)(campaign.check)
 app.command("list", rich_help_panel=_SETUP)(campaign.list_)
 app.command(rich_help_panel=_SETUP)(operators.operators)
 app.command(rich_help_panel=_RUN)(campaign.run)
+app.command(rich_help_panel=_RUN)(campaign.live)
 app.command(rich_help_panel=_RUN)(merge.merge)
-app.command(rich_help_panel=_RUN)(compare.compare)
 app.command(rich_help_panel=_RUN)(replay.replay)
 app.command(rich_help_panel=_RUN)(suggest.suggest)
 app.command(rich_help_panel=_LOOK)(results.results)
@@ -74,9 +74,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with terminated_like_ctrl_c() as termination:
         code = _code_of(arguments)
     if code == ExitCode.INTERRUPTED:
-        command = "compare --results" if "compare" in arguments else "results"
         how = "ended by SIGTERM" if termination.has_come else "interrupted"
-        typer.echo(f"{how}; `mutabot {command}` shows what is there", err=True)
+        typer.echo(f"{how}; `mutabot results` shows what is there", err=True)
     return ExitCode.TERMINATED if code == ExitCode.INTERRUPTED and termination.has_come else code
 
 
@@ -96,6 +95,9 @@ def _code_of(arguments: Sequence[str]) -> int:
 def _usage_or_crash(error: Exception, arguments: Sequence[str]) -> int:
     show = getattr(error, "show", None)
     if callable(show) and hasattr(error, "exit_code"):  # the parser's own errors, for a wrong command line
+        if (told := gone(error)) is not None:
+            typer.echo(f"mutabot: {told}", err=True)
+            return ExitCode.USAGE
         error.message = shortened(str(getattr(error, "message", "")), _LONGEST)  # type: ignore[attr-defined]
         show()
         return ExitCode.USAGE

@@ -5,14 +5,12 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
-
-from mutabot.errors import UsageError
 
 from . import options
 from .output import decided, echo, exit_as, print_json, progress_shown, show_results, tell
@@ -29,11 +27,12 @@ def check(
     jobs: options.Jobs = None,
     rounds: options.Rounds = None,
     family: options.Families = None,
+    settings: options.Settings = None,
 ) -> None:
     """Try the whole set-up without running mutants."""
     from mutabot.campaign import check as campaign
 
-    request = request_of(context.obj, jobs=jobs, rounds=rounds, family=family)
+    request = request_of(context.obj, jobs=jobs, rounds=rounds, family=family, settings=settings)
     with progress_shown() as progress:
         report = campaign.check(request, progress)
     print_json(report.data) if json else echo("\n".join(report.lines))
@@ -44,16 +43,12 @@ def list_(
     only: options.Only = None,
     skip: options.Skip = None,
     family: options.Families = None,
-    when: options.When = None,
-    order: options.Order = None,
-    pairs: options.Pairs = None,
-    selection: options.Selection = None,
     sample: options.Sample = None,
-    one_per_site: options.OnePerSite = False,
     rounds: options.Rounds = None,
     seed: options.Seed = None,
     shard: options.Part = None,
     jobs: options.Jobs = None,
+    settings: options.Settings = None,
     all: options.All = False,
     json: options.Json = False,
 ) -> None:
@@ -63,9 +58,8 @@ def list_(
     from mutabot.report.terminal.listing import plan_data, print_plan
 
     request = request_of(
-        context.obj, only=only, skip=skip, family=family, when=when, order=order, pairs=pairs,
-        selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
-        shard=shard,
+        context.obj, only=only, skip=skip, family=family, sample=sample, rounds=rounds, seed=seed, jobs=jobs,
+        shard=shard, settings=settings,
     )  # fmt: skip
     with progress_shown() as progress:
         mutants, left_out = plan_only(request, progress)
@@ -80,67 +74,68 @@ def run(
     only: options.Only = None,
     skip: options.Skip = None,
     family: options.Families = None,
-    when: options.When = None,
-    whole_ladders: options.WholeLadders = False,
-    order: options.Order = None,
-    pairs: options.Pairs = None,
-    selection: options.Selection = None,
-    sample: options.Sample = None,
-    one_per_site: options.OnePerSite = False,
     rounds: options.Rounds = None,
-    seed: options.Seed = None,
-    shard: options.Part = None,
     jobs: options.Jobs = None,
+    min_score: options.MinScore = None,
+    json: options.Json = False,
+    settings: options.Settings = None,
+    sample: options.Sample = None,
+    seed: options.Seed = None,
     engine: options.Engine = "auto",
     fresh: options.Fresh = False,
+    verify: options.Verify = 0,
     since: options.Since = None,
-    sites_only: options.SitesOnly = False,
     journal: options.OtherJournal = None,
     budget: options.Budget = None,
-    verify: options.Verify = 0,
-    confirm: options.Confirm = False,
-    repeats: options.Repeats = True,
-    baseline: options.BaselineRuns = None,
-    min_score: options.MinScore = None,
-    table: options.Table = False,
-    json: options.Json = False,
-    serve: options.Serve = False,
-    port: options.Port = None,
+    shard: options.Part = None,
     cluster: options.Cluster = None,
-    mixed: options.Mixed = False,
-    tls_ca: options.TlsCa = None,
-    tls_cert: options.TlsCert = None,
-    tls_key: options.TlsKey = None,
 ) -> None:
     """Run the campaign, or go on with it: baseline, controls, mutants, scores."""
-    if port is not None and not serve:
-        raise UsageError("--port goes with --serve")
-    if sites_only and since is None:
-        raise UsageError("--sites-only goes with --since")
     request = request_of(
-        context.obj, only=only, skip=skip, family=family, when=when, whole_ladders=whole_ladders,
-        order=order, pairs=pairs,
-        selection=selection, sample=sample, one_per_site=one_per_site, rounds=rounds, seed=seed, jobs=jobs,
-        engine=engine, fresh=fresh, verify=verify, confirm=confirm, repeats=repeats, baseline=baseline,
-        evidence=True, since=since, sites_only=sites_only, other_journal=journal, budget=budget,
-        shard=shard,
-        cluster=_cluster(cluster, mixed=mixed, ca=tls_ca, cert=tls_cert, key=tls_key),
+        context.obj, only=only, skip=skip, family=family, rounds=rounds, jobs=jobs, settings=settings,
+        sample=sample, seed=seed, engine=engine, fresh=fresh, verify=verify, since=since,
+        other_journal=journal, budget=budget, shard=shard, cluster=cluster, evidence=True,
     )  # fmt: skip
-    with ExitStack() as stack:
-        campaign = stack.enter_context(_served(request, port)).run if serve else partial(_run, request)
-        with progress_shown() as progress:
-            journal_path = campaign(progress)
-        results = show_results(journal_path, json=json, summary=not table)
-        exit_as(decided(request.configuration, results, min_score))
+    _show_end(request, partial(_run, request), min_score, json=json)
 
 
-def _cluster(address: str | None, **given: bool | str | None) -> dict[str, bool | str | None] | None:
-    """What the options say about a cluster. Raises UsageError for those that need one."""
-    if address is not None:
-        return {"address": address, **{name: value for name, value in given.items() if value}}
-    if any(given.values()):
-        raise UsageError("--mixed, --tls-ca, --tls-cert and --tls-key go with --cluster")
-    return None
+def live(
+    context: typer.Context,
+    only: options.Only = None,
+    skip: options.Skip = None,
+    family: options.Families = None,
+    rounds: options.Rounds = None,
+    jobs: options.Jobs = None,
+    settings: options.Settings = None,
+    sample: options.Sample = None,
+    seed: options.Seed = None,
+    engine: options.Engine = "auto",
+    fresh: options.Fresh = False,
+    budget: options.Budget = None,
+    cluster: options.Cluster = None,
+    port: options.Port = None,
+) -> None:
+    """Run the campaign and show its report in a browser while it fills, with pause and stop."""
+    request = request_of(
+        context.obj, only=only, skip=skip, family=family, rounds=rounds, jobs=jobs, settings=settings,
+        sample=sample, seed=seed, engine=engine, fresh=fresh, budget=budget, cluster=cluster, evidence=True,
+    )  # fmt: skip
+    with _served(request, port) as served:
+        _show_end(request, served.run)
+
+
+def _show_end(
+    request: Request,
+    campaign: Callable[[Progress], Path],
+    min_score: float | None = None,
+    *,
+    json: bool = False,
+) -> None:
+    """Run a campaign, print how it ended, and exit as the limits decide. Raises typer.Exit."""
+    with progress_shown() as progress:
+        path = campaign(progress)
+    results = show_results(path, json=json, summary=True)
+    exit_as(decided(request.configuration, results, min_score))
 
 
 def _run(request: Request, progress: Progress) -> Path:

@@ -39,10 +39,19 @@ Only = Annotated[
         "--only",
         metavar="WHICH",
         help="Only these: id, number, numbers (3,16-20), file, file:line, operator, family or role; "
-        "globs too. Repeatable.",
+        "globs too; @FILE for a list, one per line. Repeatable.",
     ),
 ]
-Skip = Annotated[list[str] | None, typer.Option("--skip", metavar="WHICH", help="All but these, likewise.")]
+Skip = Annotated[
+    list[str] | None,
+    typer.Option("--skip", metavar="WHICH", help="Exclude these mutants. Same syntax as --only. Repeatable."),
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "-o", metavar="KEY=VALUE", help="Set a key of the configuration for this command. Repeatable."
+    ),
+]
 Families = Annotated[
     list[str] | None,
     typer.Option(
@@ -52,31 +61,6 @@ Families = Annotated[
         autocompletion=lambda: list(FAMILIES),
     ),
 ]
-WholeLadders = Annotated[
-    bool,
-    typer.Option(
-        "--whole-ladders", help="Run every magnitude of graded faults, not only what a search needs."
-    ),
-]
-When = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--when",
-        metavar="MOMENT",
-        help='At which calls of its site a mutant acts: every, 3, "from 10", once, "2-2.5 s". Repeatable.',
-    ),
-]
-Order = Annotated[
-    int | None,
-    typer.Option("--order", metavar="1|2", min=1, max=2, help="Mutants at once: 2 plants pairs of them."),
-]
-Pairs = Annotated[
-    int | None,
-    typer.Option("--pairs", metavar="N", min=1, max=limits.PAIRS, help="How many pairs --order 2 plants."),
-]
-Selection = Annotated[
-    Path | None, typer.Option("--selection", metavar="FILE", help="File with one mutant id per line.")
-]
 Sample = Annotated[
     str | None,
     typer.Option(
@@ -84,9 +68,6 @@ Sample = Annotated[
         metavar="SIZE",
         help="Only a random sample: 10% of each family and role, or 50 of each family.",
     ),
-]
-OnePerSite = Annotated[
-    bool, typer.Option("--one-per-site", help="Only one mutant per family and site, chosen at random.")
 ]
 Rounds = Annotated[
     int | None,
@@ -99,7 +80,7 @@ Seed = Annotated[
 ]
 Jobs = Annotated[
     int | None,
-    typer.Option("-j", "--jobs", metavar="N", min=1, max=limits.JOBS, help="Runs at work at a time."),
+    typer.Option("-j", "--jobs", metavar="N", min=1, max=limits.JOBS, help="Number of parallel runs."),
 ]
 Engine = Annotated[
     str,
@@ -113,42 +94,27 @@ Engine = Annotated[
 OneMutant = Annotated[
     str, typer.Argument(metavar="MUTANT", help="The mutant's number or id, or as much of it as is unique.")
 ]
-Table = Annotated[bool, typer.Option("--table", help="Print every mutant at the end, not only a summary.")]
-NoOracle = Annotated[
-    bool,
-    typer.Option(
-        "--no-oracle", help="Run a second time with every assertion off: what a score is then worth."
-    ),
-]
-Picture = Annotated[
-    Path | None, typer.Option("--picture", metavar="FILE", help="Draw the ends as bars: FILE.svg.")
-]
 Part = Annotated[
     str | None,
     typer.Option("--shard", metavar="N/M", help="Run only part N of M; `mutabot merge` puts them together."),
 ]
-Stored = Annotated[bool, typer.Option("--results", help="Run nothing; show what the last comparison found.")]
-Fresh = Annotated[bool, typer.Option("--fresh", help="Run everything again, also outcomes that still hold.")]
+Fresh = Annotated[
+    bool, typer.Option("--fresh", help="Re-run everything, including results that are still valid.")
+]
 Since = Annotated[
     str | None,
     typer.Option(
         "--since",
         metavar="REF",
-        help="Run only what changes since this revision of git can have altered; take over the rest.",
-    ),
-]
-SitesOnly = Annotated[
-    bool,
-    typer.Option(
-        "--sites-only",
-        help="With --since: presume that mutants whose own statement, operation and tests are unchanged end "
-        "as before, also where other program text has changed.",
+        help="Run only what changes since this git revision can have altered; reuse the other results.",
     ),
 ]
 OtherJournal = Annotated[
     Path | None,
     typer.Option(
-        "--journal", metavar="PATH", help="Take over what still holds from this journal as well, as of CI."
+        "--journal",
+        metavar="PATH",
+        help="Also reuse valid outcomes from this journal, e.g. one downloaded from CI.",
     ),
 ]
 Budget = Annotated[
@@ -156,7 +122,7 @@ Budget = Annotated[
     typer.Option(
         "--budget",
         metavar="TIME",
-        help="End within this time (90s, 10m, 1h30m), baseline included: run first what tells most.",
+        help="Stop after this much time (90s, 10m, 1h30m), baseline included; the most informative first.",
     ),
 ]
 Verify = Annotated[
@@ -166,20 +132,7 @@ Verify = Annotated[
         metavar="N",
         min=0,
         max=limits.VERIFIED,
-        help="Run N random outcomes once more in fresh processes; exit with 4 if one ends otherwise.",
-    ),
-]
-Confirm = Annotated[
-    bool,
-    typer.Option("--confirm", help="Run every kill, survivor and time-out once more; else unstable."),
-]
-Repeats = Annotated[
-    bool, typer.Option("--repeats/--no-repeats", help="Run kills that may be chance once more.")
-]
-BaselineRuns = Annotated[
-    int | None,
-    typer.Option(
-        "--baseline", metavar="N", min=1, max=limits.BASELINES, help="Run the original N times per round."
+        help="Re-run N random outcomes in fresh processes; exit with 4 if one ends differently.",
     ),
 ]
 Round = Annotated[
@@ -193,28 +146,9 @@ Cluster = Annotated[
         help="Run mutants on a Dask cluster: tcp://host:8786, tls://…, local:4, or a scheduler file.",
     ),
 ]
-Mixed = Annotated[
-    bool, typer.Option("--mixed", help="With --cluster: workers may run with other versions than here.")
-]
-TlsCa = Annotated[
-    str | None, typer.Option("--tls-ca", metavar="FILE", help="With --cluster: certificates to trust.")
-]
-TlsCert = Annotated[
-    str | None, typer.Option("--tls-cert", metavar="FILE", help="With --cluster: our certificate.")
-]
-TlsKey = Annotated[str | None, typer.Option("--tls-key", metavar="FILE", help="With --cluster: its key.")]
-Serve = Annotated[
-    bool,
-    typer.Option(
-        "--serve",
-        help="Show the report in a browser while it fills, with pause and stop. Prints its address.",
-    ),
-]
 Port = Annotated[
     int | None,
-    typer.Option(
-        "--port", metavar="N", min=1, max=65535, help="Port of --serve on this machine; else a free one."
-    ),
+    typer.Option("--port", metavar="N", min=1, max=65535, help="Port on this machine; else a free one."),
 ]
 MinScore = Annotated[
     float | None,

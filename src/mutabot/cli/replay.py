@@ -115,7 +115,7 @@ def _run(
     request = request_of(
         path.parent.parent, rounds=found.rounds, seed=found.meta.get("seed"), jobs=jobs,
         family=found.meta.get("families"), order=found.meta.get("order"),
-        every_test=found.meta.get("every_test"), no_oracle=found.meta.get("no_oracle"),
+        every_test=found.meta.get("every_test"),
     )  # fmt: skip
     with progress_shown() as progress:
         return replay_one(request, journal, mutant, rounds, progress, also)

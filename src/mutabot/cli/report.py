@@ -201,10 +201,8 @@ def _show(changes: Changes, *, json: bool) -> None:
 
 
 def _write(format: Format, material: Material, file: Path) -> None:
-    made = format.make(material)
-    data = made.encode() if isinstance(made, str) else made
-    if not data.endswith(b"\n") and isinstance(made, str):
-        data += b"\n"
+    text = format.make(material)
+    data = (text if text.endswith("\n") else f"{text}\n").encode()
     if file == _STANDARD:
         _print(data)
         return

@@ -17,13 +17,13 @@ from .options import ENGINES
 if TYPE_CHECKING:
     from mutabot.campaign.request import Request
     from mutabot.model import Moment
+    from mutabot.settings.cluster import ClusterSettings
     from mutabot.settings.configuration import Configuration
 
 
 def request_of(
     project: Path,
     *,
-    selection: Path | None = None,
     sample: str | None = None,
     engine: str = "auto",
     configured_selection: bool = True,
@@ -34,7 +34,6 @@ def request_of(
     Raises UsageError and ConfigurationError.
     """
     from mutabot.campaign.request import Request
-    from mutabot.settings.cluster import cluster_settings
     from mutabot.settings.configuration import load_configuration
     from mutabot.settings.duration import seconds_of
     from mutabot.settings.sample import Sample
@@ -45,59 +44,53 @@ def request_of(
         raise UsageError(unknown_name_text("engine", engine, ENGINES))
     size = Sample.parse(sample) if sample is not None else None
     families = families_of(given.get("family"))
-    configuration = load_configuration(project, families)
-    families = families or configuration.families
-    if selection is None and configuration.selection is not None and configured_selection:
-        selection = configuration.root / configuration.selection
-    elif selection is not None:
-        selection = _found(selection, configuration.root)
+    configuration = load_configuration(project, families, given.get("settings") or ())
+    root, families = configuration.root, families or configuration.families
+    selection = None
+    if configuration.selection is not None and configured_selection:
+        selection = root / configuration.selection
     cluster = None
     if given.get("cluster"):
-        cluster = cluster_settings(**_certified(configuration, **given["cluster"]))
+        cluster = _cluster(configuration, given["cluster"])
     return Request(
         configuration=configuration,
         vocabulary=load(configuration.vocabulary, configuration.root, families),
         rounds=given.get("rounds") or configuration.rounds,
         seed=configuration.seed if given.get("seed") is None else given["seed"],
         jobs=given.get("jobs") or configuration.jobs or len(os.sched_getaffinity(0)),
-        only=tuple(given.get("only") or ()),
-        skip=tuple(given.get("skip") or ()),
+        only=_listed(given.get("only"), root),
+        skip=_listed(given.get("skip"), root),
         selection=selection,
         engine=engine,
         executor="local" if cluster is None else "cluster",
         cluster=cluster,
         fresh=bool(given.get("fresh")),
         verify=given.get("verify") or 0,
-        confirm=bool(given.get("confirm")),
-        repeats=given.get("repeats", True),
-        baseline=given.get("baseline") or configuration.baseline_repetitions,
+        repeats=configuration.repeats,
+        baseline=configuration.baseline_repetitions,
         families=families,
         sample=size,
-        one_per_site=bool(given.get("one_per_site")),
         order=given.get("order") or configuration.order,
-        pairs=given.get("pairs") or configuration.pairs,
+        pairs=configuration.pairs,
         every_test=bool(given.get("every_test")),
-        no_oracle=bool(given.get("no_oracle")),
-        moments=_moments(given.get("when") or configuration.when),
-        whole_ladders=bool(given.get("whole_ladders")),
+        moments=_moments(configuration.when),
         shard=Shard.parse(given["shard"]) if given.get("shard") is not None else None,
         evidence=bool(given.get("evidence")) and configuration.evidence > 0,
         since=given.get("since"),
-        sites_only=bool(given.get("sites_only")),
         other_journal=given.get("other_journal"),
         budget=None if given.get("budget") is None else seconds_of(given["budget"]),
     )
 
 
-def _certified(configuration: Configuration, address: str, **given: Any) -> dict[str, Any]:
-    """What is known of a cluster, with the certificate files of the configuration where it may need them."""
-    files: dict[str, str] = {}
-    if not address.startswith(("tcp://", "local:")):
-        table = configuration.cluster
-        files = {
-            name: str(configuration.root / table[name]) for name in ("ca", "cert", "key") if name in table
-        }
-    return {"address": address, **files, **given}
+def _cluster(configuration: Configuration, address: str) -> ClusterSettings:
+    """The cluster, with the certificate files of the configuration if it may need them. Raises UsageError."""
+    from mutabot.settings.cluster import cluster_settings
+
+    if address.startswith(("tcp://", "local:")):
+        return cluster_settings(address)
+    table, root = configuration.cluster, configuration.root
+    files = {name: str(root / table[name]) for name in ("ca", "cert", "key") if name in table}
+    return cluster_settings(address, ca=files.get("ca"), cert=files.get("cert"), key=files.get("key"))
 
 
 def families_of(given: Sequence[str] | None) -> tuple[str, ...]:
@@ -109,22 +102,29 @@ def families_of(given: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def _moments(texts: Sequence[str]) -> tuple[Moment | None, ...]:
-    """At which calls mutants act. Raises UsageError."""
+    """At which calls mutants act; the texts were checked with the configuration."""
     from mutabot.model import Moment
 
     found: dict[str, Moment | None] = {}
-    try:
-        for text in texts:
-            moment = Moment.parse_any(text)
-            found.setdefault(moment.text if moment is not None else "", moment)
-    except ValueError as error:
-        raise UsageError(f"--when: {error}") from error
+    for text in texts:
+        moment = Moment.parse_any(text)
+        found.setdefault(moment.text if moment is not None else "", moment)
     return tuple(found.values())
 
 
-def _found(selection: Path, root: Path) -> Path:
-    """The selection file, looked for here and in the project; said now rather than after the baseline."""
-    for place in (selection, root / selection):
-        if place.is_file():
-            return place
-    raise UsageError(f"there is no selection file {selection}, neither here nor in {root}")
+def _listed(words: Sequence[str] | None, root: Path) -> tuple[str, ...]:
+    """Words of ``--only`` and ``--skip``; a list, ``@FILE``, is looked for here and in the project.
+
+    Raises UsageError now rather than after the baseline.
+    """
+    found = []
+    for word in words or ():
+        if word.startswith("@"):
+            places = [Path(word[1:]), root / word[1:]]
+            file = next((place for place in places if place.is_file()), None)
+            if file is None:
+                raise UsageError(f"there is no list of mutants {word[1:]}, neither here nor in {root}")
+            found.append(f"@{file}")
+        else:
+            found.append(word)
+    return tuple(found)

@@ -14,7 +14,6 @@ from mutabot.model import By, Mutant, Outcome, Verdict, Vocabulary
 from .records import (
     ALTERED,
     BUDGET,
-    CONFIRMATION,
     DRAWING,
     DRAWS,
     FLAKY,
@@ -55,7 +54,6 @@ _FACTS: Mapping[str, Any] = {
     "order": int,
     "pairs": int,
     "every_test": bool,
-    "no_oracle": bool,
     "fresh": bool,
     "started": float,
     "seconds": float,
@@ -64,7 +62,6 @@ _FACTS: Mapping[str, Any] = {
     REMARKS: tuple[str, ...],
     OPERATORS: Mapping[str, str],
     DRAWS: tuple[str, ...],
-    CONFIRMATION: Mapping[str, int],
     DRAWING: Drawing,
     VERIFICATION: Verification,
     FLAKY: Flaky,

@@ -32,7 +32,6 @@ from .schema import (
     ATTEMPT_KEY,
     FINISHED_KEY,
     KNOWN_BEFORE,
-    PRESUMED,
     SCHEMA_VERSION,
     TABLES,
     VERSION_KEY,
@@ -231,7 +230,7 @@ class Journal(JournalReader):
                 execute(
                     "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?, ?)",
                     row.mutant, row.round, row.verdict, row.by, row.data, row.key,
-                    PRESUMED if row.presumed else KNOWN_BEFORE,
+                    KNOWN_BEFORE,
                 )  # fmt: skip
 
     def add_texts(self, texts: Mapping[str, bytes]) -> None:

@@ -28,7 +28,7 @@ from .fitting import (
 )
 from .marks import named, word_for
 from .records import BaselineTest, ControlEnd, Kept, Row
-from .schema import ATTEMPT_KEY, FINISHED_KEY, LAST, PRESUMED
+from .schema import ATTEMPT_KEY, FINISHED_KEY, LAST
 from .store import Store
 
 
@@ -178,14 +178,6 @@ class JournalReader:
         """The mutants and rounds whose outcomes were taken over from an earlier campaign."""
         return set(self._store.rows(f"SELECT mutant, round FROM outcome WHERE reused AND rowid IN ({LAST})"))
 
-    def presumed(self) -> set[tuple[str, int]]:
-        """Those of them that are only presumed to be what they would be now."""
-        return set(
-            self._store.rows(
-                f"SELECT mutant, round FROM outcome WHERE reused = {PRESUMED} AND rowid IN ({LAST})"
-            )
-        )
-
     # Earlier campaigns
 
     def kept(self) -> dict[tuple[str, int], Kept]:
@@ -196,13 +188,12 @@ class JournalReader:
         """The same, with those that the last campaign itself found or knew."""
         return self.kept() | self._of_rows(
             "outcome",
-            f"SELECT mutant, round, verdict, data, key FROM outcome "
-            f"WHERE rowid IN ({LAST}) AND reused != {PRESUMED}",
+            f"SELECT mutant, round, verdict, data, key FROM outcome WHERE rowid IN ({LAST})",
         )
 
     def row(self, mutant: str, round: int) -> Row | None:
         """One of those that were ``found``; None if it holds what no outcome can."""
-        for table, condition in (("outcome", f"AND reused != {PRESUMED} ORDER BY rowid DESC"), ("kept", "")):
+        for table, condition in (("outcome", "ORDER BY rowid DESC"), ("kept", "")):
             rows = self._store.rows(
                 f'SELECT verdict, "by", data, key FROM {table} '
                 f"WHERE mutant = ? AND round = ? AND key != '' {condition} LIMIT 1",

@@ -11,7 +11,7 @@ from mutabot.model.outcome import same_end
 
 #: keys of the journal's meta
 DRAWING = "drawing"
-VERIFICATION, CONFIRMATION, FLAKY = "verification", "confirmation", "flaky"
+VERIFICATION, FLAKY = "verification", "flaky"
 REPEATS = "repeats"
 SINCE, BUDGET = "since", "budget"
 SHARD = "shard"
@@ -81,7 +81,6 @@ class Row:
         mutant, round, verdict, by: as in the outcome.
         data: the outcome as JSON.
         key: what it depends on.
-        presumed: whether it is only presumed to be what it would be now.
     """
 
     mutant: str
@@ -90,7 +89,6 @@ class Row:
     by: str | None
     data: str
     key: str
-    presumed: bool = False
 
     def with_data(self, data: str) -> Row:
         """The same with other data."""
@@ -139,14 +137,12 @@ class Drawing:
     """How the mutants of a campaign were drawn from the selected ones.
 
     Attributes:
-        sample: the size that was asked for; None for all.
-        one_per_site: whether one mutant per site was drawn before; the sample is of those.
+        sample: the size that was asked for.
         selected: how many mutants there were before anything was drawn.
         strata: one per family and role; the population is what the sample was drawn from.
     """
 
-    sample: str | None
-    one_per_site: bool
+    sample: str
     selected: int
     strata: tuple[Stratum, ...]
 
@@ -164,7 +160,6 @@ class Since:
         run: how many were run, by the reason.
         taken_over: how many were taken over.
         not_judged: how many were neither, by the reason.
-        presumed: how many were only presumed to be as they were.
     """
 
     ref: str
@@ -172,7 +167,6 @@ class Since:
     run: Mapping[str, int] = field(default_factory=dict)
     taken_over: int = 0
     not_judged: Mapping[str, int] = field(default_factory=dict)
-    presumed: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,14 +44,14 @@ COLUMNS = {
 }
 #: the rows that hold the last outcome of each mutant and round
 LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
-#: what ``reused`` says of an outcome: found by this campaign, known from another, or only presumed
-FOUND, KNOWN_BEFORE, PRESUMED = 0, 1, 2
-#: from one campaign to the next; what was only presumed is not known
+#: what ``reused`` says of an outcome: found by this campaign, or known from another
+FOUND, KNOWN_BEFORE = 0, 1
+#: from one campaign to the next
 ADOPT = f"""
 INSERT OR REPLACE INTO known SELECT id, data, 1 FROM mutant;
 INSERT OR REPLACE INTO kept
     SELECT mutant, round, verdict, "by", data, key FROM outcome
-    WHERE rowid IN ({LAST}) AND reused != {PRESUMED};
+    WHERE rowid IN ({LAST});
 DELETE FROM meta;
 DELETE FROM test;
 DELETE FROM mutant;

@@ -15,7 +15,6 @@ from mutabot.border.codec import to_data
 from mutabot.journal.records import (
     ALTERED,
     BUDGET,
-    CONFIRMATION,
     DRAWING,
     DRAWS,
     FLAKY,
@@ -38,7 +37,7 @@ from mutabot.model import Mutant, Outcome, Quantity, Verdict
 FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
 _ELSEWHERE = {
-    "vocabulary", VERIFICATION, CONFIRMATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS,
+    "vocabulary", VERIFICATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS,
     SINCE, BUDGET, SHARD, ALTERED,
 }  # fmt: skip
 
@@ -95,7 +94,6 @@ def results_data(results: Results) -> dict[str, Any]:
         "budget": budget_data(results),
         "flaky": list(results.flaky.tests),
         "verification": _verification(results.verification),
-        "confirmation": dict(results.confirmation) if results.confirmation is not None else None,
         "repeats": repeats_data(results.repeats),
         "shard": _shard(results.shard),
         "set_aside": list(results.set_aside),
@@ -164,7 +162,6 @@ def result_data(result: MutantResult) -> dict[str, Any]:
         "why": result.why,
         "earlier": result.earlier,
         "outdated": result.outdated,
-        "presumed": result.presumed,
     }
 
 
@@ -316,7 +313,7 @@ def drawing_data(drawing: Drawing | None) -> dict[str, Any] | None:
     """How the mutants were drawn, or None if all of them were run."""
     if drawing is None:
         return None
-    return {"size": drawing.sample, "one_per_site": drawing.one_per_site, "selected": drawing.selected}
+    return {"size": drawing.sample, "selected": drawing.selected}
 
 
 def interval_data(interval: Interval | None) -> dict[str, float] | None:

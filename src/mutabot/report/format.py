@@ -45,10 +45,10 @@ class Format:
 
     Attributes:
         name: by which users ask for it.
-        make: the whole report: a text, or bytes where a format is none.
+        make: the text of the whole report.
         tells_changes: whether it can hold what differs from an older campaign.
     """
 
     name: str
-    make: Callable[[Material], str | bytes]
+    make: Callable[[Material], str]
     tells_changes: bool = False

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mutabot.analysis.families import FamilyComparison
 from mutabot.errors import UsageError
 
-from .picture import Picture, bars_of, picture_of, svg
-
-_TITLE = "What became of the mutants"
+from .picture import Picture, svg
 
 
 def check_picture(path: Path) -> None:
@@ -21,11 +18,6 @@ def check_picture(path: Path) -> None:
         raise UsageError(
             f"the picture {path} cannot be written: {what} {path if path.is_dir() else path.parent}"
         )
-
-
-def write_picture(comparison: FamilyComparison, path: Path) -> None:
-    """Draw the ends of all families. Raises UsageError if the file cannot be written."""
-    write_drawing(picture_of(bars_of(comparison.families), _TITLE), path, by="mutabot compare")
 
 
 def write_drawing(picture: Picture, path: Path, *, by: str) -> None:

@@ -39,12 +39,10 @@ class ClusterSettings:
 
     Attributes:
         address: of the scheduler, or ``local:N``, or the path of a scheduler file.
-        mixed: whether workers may differ from this machine in what they run with.
         ca, cert, key: files in PEM format for TLS; None without it.
     """
 
     address: str
-    mixed: bool = False
     ca: str | None = None
     cert: str | None = None
     key: str | None = None
@@ -69,13 +67,12 @@ class ClusterSettings:
 def cluster_settings(
     address: str,
     *,
-    mixed: bool = False,
     ca: str | None = None,
     cert: str | None = None,
     key: str | None = None,
 ) -> ClusterSettings:
     """The cluster that a user has named. Raises UsageError for what cannot be one."""
-    found = ClusterSettings(address, mixed, ca, cert, key)
+    found = ClusterSettings(address, ca, cert, key)
     name = address if len(address) <= _SHOWN else f"{address[:_SHOWN]}…"
     if found.local is not None:
         _check_count(found.local, name)
@@ -89,13 +86,16 @@ def cluster_settings(
         raise UsageError(f"--cluster {name}: an address is like tcp://host:8786 or tls://host:8786")
     for option, file in (("ca", ca), ("cert", cert), ("key", key)):
         if file is not None and not Path(file).is_file():
-            raise UsageError(f"--tls-{option} {file}: there is no such file")
+            raise UsageError(f"cluster.{option} = {file!r}: there is no such file")
     if found.files and found.local is not None:
         raise UsageError(f"--cluster {address} makes its own certificates: certificate files go with tls://")
     if found.files and address.startswith("tcp://"):
         raise UsageError(f"--cluster {address} is not encrypted: certificate files go with tls://")
     if address.startswith("tls://") and len(found.files) < 3:
-        raise UsageError(f"--cluster {address} needs --tls-ca, --tls-cert and --tls-key")
+        raise UsageError(
+            f"--cluster {address} needs certificates: set the keys ca, cert and key of the table cluster, "
+            "or -o cluster.ca=FILE -o cluster.cert=FILE -o cluster.key=FILE"
+        )
     return found
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_origin
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
@@ -24,6 +24,7 @@ from .demands import check_demands
 from .document import Document
 from .families import need_vocabulary, why_unknown
 from .mistakes import Check, raise_errors
+from .overrides import overridden
 from .toml_lines import KeyPath
 
 _NO_VOCABULARY = (
@@ -164,7 +165,7 @@ class Settings(BaseModel):
     """
     selection: str | None = None
     """File with the ids of the mutants to run, one per line. Without it, all are
-    run. `--selection` goes before it.
+    run.
 
         selection = "published.txt"
     """
@@ -232,7 +233,6 @@ class Settings(BaseModel):
     """At which of the calls of its site a mutant acts, a mutant each: `"every"` call; the third (`"3"`); all
     `"from 10"` on; `"once"`, at a call drawn anew for each round and test; or while the simulated time of the
     test is within a window (`"2-2.5 s"`). In a control loop a fault at every step is noticed by any test.
-    `--when` goes before it.
 
         when = ["every", "once", "from 10"]
     """
@@ -243,21 +243,27 @@ class Settings(BaseModel):
         families = ["robot", "classical"]
     """
     order: Literal[1, 2] = 1
-    """How many mutants are planted at once. `--order` goes before it.
+    """How many mutants are planted at once.
 
         order = 2
     """
     pairs: Annotated[int, Field(ge=1, le=limits.PAIRS)] = 200
     """How many pairs are planted where `order` is 2, chosen by
-    the seed. `--pairs` goes before it.
+    the seed.
 
         pairs = 1000
     """
     baseline_repetitions: Annotated[int, Field(ge=1, le=limits.BASELINES)] | None = None
     """How often the original is run per round; without it, as often as the engine
-    needs. More runs find more of the tests that fail at random. `--baseline` goes before it.
+    needs. More runs find more of the tests that fail at random.
 
         baseline_repetitions = 10
+    """
+    repeats: bool = True
+    """Whether kills that may be a coincidence are run once more; see
+    [verdicts](verdicts.md#a-second-look).
+
+        repeats = false
     """
     demand: Annotated[tuple[dict[str, Any], ...], Field(strict=False)] = ()
     """How small a fault may be that the tests do not notice: a table each, with double brackets; see
@@ -268,9 +274,8 @@ class Settings(BaseModel):
     cluster: dict[str, Any] = {}
     """For a [cluster](cluster.md): `files` are sent to workers beside
     [what git tracks](cluster.md#what-is-shipped); folders and patterns may be named. `ca`, `cert` and
-    `key` are files in PEM format for [TLS](cluster.md#tls); `--tls-ca`, `--tls-cert` and `--tls-key` go
-    before them. Which cluster it is says `--cluster`. Where this table stands, `mutabot check` lists what
-    is sent.
+    `key` are files in PEM format for [TLS](cluster.md#tls). Which cluster it is says `--cluster`. Where this
+    table stands, `mutabot check` lists what is sent.
 
         cluster = { files = ["data/table.json"], ca = "ca.pem", cert = "cert.pem", key = "key.pem" }
     """
@@ -290,15 +295,37 @@ class Configuration(Settings):
     demands: tuple[Demand, ...] = ()
 
 
-def load_configuration(folder: Path, families: Collection[str] = ()) -> Configuration:
+#: keys that hold a list
+_LISTS = {name for name, field in Settings.model_fields.items() if get_origin(field.annotation) is tuple}
+
+
+def load_configuration(
+    folder: Path, families: Collection[str] = (), overrides: Sequence[str] = ()
+) -> Configuration:
     """The configuration of the project in ``folder``.
 
-    ``families``: those that are asked for instead of those that it names.
+    ``families``: those that are asked for instead of those that it names. ``overrides``: keys that the
+    command line sets, as ``KEY=VALUE``.
 
     Raises ConfigurationError or UnknownNameError: the first mistake, with a message that tells about all.
     """
     document, place = _find(folder)
-    raw = _child(document.data, place)
+    found = _checked(document, place, folder, families, ())
+    if not overrides:
+        return found
+    # the file is without a mistake, so what is wrong now is wrong with what the command line says
+    said = Document(" ".join(f"-o {text}" for text in overrides), document.data, {}, ConfigurationError)
+    return _checked(said, place, folder, families, overrides).model_copy(update={"file": found.file})
+
+
+def _checked(
+    document: Document,
+    place: KeyPath,
+    folder: Path,
+    families: Collection[str],
+    overrides: Sequence[str],
+) -> Configuration:
+    raw = overridden(_child(document.data, place), overrides, _LISTS)
     check = Check(document)
     if document.file == _OWN and isinstance(raw.get("tool"), dict) and "mutabot" in raw["tool"]:
         raise document.error(

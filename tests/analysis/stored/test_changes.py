@@ -100,7 +100,7 @@ def test_a_family_that_was_not_to_run_is_neither_gone_nor_new(tmp_path: Path) ->
 
 
 def test_a_sample_is_told(tmp_path: Path) -> None:
-    drawing = {"sample": "10%", "one_per_site": False, "selected": 60, "strata": []}
+    drawing = {"sample": "10%", "selected": 60, "strata": []}
     found = changes(results(tmp_path, ()), results(tmp_path, (), drawing=drawing))
     (note,) = found.notes
     assert note.startswith("the new campaign is of a sample")

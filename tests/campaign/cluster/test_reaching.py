@@ -16,7 +16,6 @@ from mutabot.campaign.cluster.bundle import Bundle
 from mutabot.campaign.cluster.local import LocalCluster, address_in
 from mutabot.campaign.cluster.roster import Roster
 from mutabot.campaign.cluster.shipping import Shipment
-from mutabot.cli.app import main
 from mutabot.cli.request import request_of
 from mutabot.errors import ClusterError, ConfigurationError, UsageError
 from mutabot.settings.cluster import ClusterSettings, cluster_settings
@@ -40,7 +39,7 @@ from .clusters import cluster, processes, strange_worker, until, write, write_sl
         ("no/such/file.json", "nor a scheduler file that is there"),
         ("http://host:8786", "an address is like tcp://host:8786"),
         ("tcp://host", "an address is like tcp://host:8786"),
-        ("tls://host:8786", "needs --tls-ca, --tls-cert and --tls-key"),
+        ("tls://host:8786", "needs certificates"),
     ],
 )
 def test_what_is_no_cluster_is_refused(address: str, says: str) -> None:
@@ -49,7 +48,7 @@ def test_what_is_no_cluster_is_refused(address: str, says: str) -> None:
 
 
 def test_a_missing_certificate_is_named() -> None:
-    with pytest.raises(UsageError, match=r"--tls-ca nowhere\.pem: there is no such file"):
+    with pytest.raises(UsageError, match=r"cluster\.ca = .*nowhere\.pem.*: there is no such file"):
         cluster_settings("tls://host:8786", ca="nowhere.pem")
 
 
@@ -75,12 +74,6 @@ def test_certificates_without_encryption_are_refused(tmp_path: Path) -> None:
     (tmp_path / "ca.pem").touch()
     with pytest.raises(UsageError, match="certificate files go with tls://"):
         cluster_settings("tcp://host:8786", ca=str(tmp_path / "ca.pem"))
-
-
-def test_options_of_a_cluster_need_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    write(tmp_path)
-    assert main(["-C", str(tmp_path), "run", "--mixed"]) == 2
-    assert "go with --cluster" in capsys.readouterr().err
 
 
 def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:

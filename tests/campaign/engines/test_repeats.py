@@ -83,14 +83,6 @@ def test_a_kill_in_doubt_that_does_not_come_out_again_is_unstable(tmp_path: Path
     assert (estimate.expected, estimate.low, estimate.high, estimate.known) == (0.0, 0, 0, 0)
 
 
-def test_confirm_looks_at_kills_too(tmp_path: Path) -> None:
-    write_project(tmp_path, MISSION, TESTS)
-    results, found, _ = campaign(tmp_path, engine="branch", confirm=True)
-    assert found[FALSE].verdict is Verdict.UNSTABLE
-    assert results.confirmation == {"checked": len(found), "unstable": 1}
-    assert {one.repeats for mutant, one in found.items() if mutant != FALSE} == {1}
-
-
 def test_repeats_beyond_their_time_are_left_and_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(repeats, "SECONDS", 0.0)
     monkeypatch.setattr(repeats, "SHARE", 0.0)

@@ -92,47 +92,6 @@ def test_verify_finds_an_outcome_that_a_second_run_does_not_have(tmp_path: Path,
     assert any(wrong.mutant in line for line in decision.lines)
 
 
-@ENGINES
-def test_confirm_makes_what_a_second_run_does_not_have_unstable(tmp_path: Path, engine: str) -> None:
-    write_project(tmp_path, RESTLESS, RESTLESS_TESTS)
-    results, _ = campaign(tmp_path, engine=engine, confirm=True, only=("*:reverse",))
-    (outcome,) = results.mutants[0].outcomes
-    assert outcome.verdict is Verdict.UNSTABLE
-    assert outcome.message == (
-        "survived; run once more: "
-        "killed by exception in tests/test_mission.py::test_runs: it went wrong this time"
-    )
-    assert results.confirmation == {"checked": 1, "unstable": 1}
-    assert decide(results, max_unstable=0.1).exit_code == 4
-
-
-def test_confirm_leaves_survivors_that_survive_again_as_they_are(tmp_path: Path) -> None:
-    write_project(tmp_path, MISSION, TESTS)
-    only = ("*:skip", "*:negate")
-    before, _ = campaign(tmp_path, only=only)
-    found = [one.verdict for one in outcomes(tmp_path / ".mutabot/journal.sqlite")]
-    survivors, kills = found.count(Verdict.SURVIVED), found.count(Verdict.KILLED)
-    results, _ = campaign(tmp_path, confirm=True, only=only)
-    assert survivors > 0
-    assert results.confirmation == {"checked": survivors + kills, "unstable": 0}
-    assert [one.outcomes[0].verdict for one in results.mutants] == [
-        one.outcomes[0].verdict for one in before.mutants
-    ]
-
-
-def test_a_time_out_that_does_not_come_again_is_unstable(tmp_path: Path) -> None:
-    mission = RESTLESS.replace(
-        'and times() > 1:\n            raise RuntimeError("it went wrong this time")',
-        "and times() == 1:\n            while True:\n                arm.position()",
-    )
-    write_project(tmp_path, mission, RESTLESS_TESTS)
-    results, _ = campaign(tmp_path, confirm=True, only=("*:reverse",))
-    (outcome,) = results.mutants[0].outcomes
-    assert outcome.verdict is Verdict.UNSTABLE
-    assert (outcome.message or "").startswith("timeout in tests/test_mission.py::test_runs")
-    assert "run once more: survived" in (outcome.message or "")
-
-
 def test_tests_that_pass_only_together_are_verified_together(tmp_path: Path) -> None:
     write_project(tmp_path, *DEPENDENT)
     results, _ = campaign(tmp_path, engine="replay", verify=100, only=("*:reverse", "*:negate"))

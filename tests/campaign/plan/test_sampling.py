@@ -37,7 +37,7 @@ MIXED = [
 
 
 def drawn(mutants: list[Mutant], size: str, seed: int = 1) -> list[Mutant]:
-    return draw(mutants, seed, sample=Sample.parse(size))[0]
+    return draw(mutants, seed, Sample.parse(size))[0]
 
 
 @pytest.mark.parametrize(
@@ -131,28 +131,6 @@ def test_every_mutant_is_as_likely_as_any_other() -> None:
     hits = Counter(one.id for seed in range(seeds) for one in drawn(MANY[:20], "5", seed))
     # each is drawn in a quarter of the cases; the standard deviation is 19.4, and 5 of them are never met
     assert all(abs(hits[one.id] - seeds / 4) < 5 * 19.4 for one in MANY[:20])
-
-
-def test_one_per_site_leaves_one_of_each_family_at_each_site() -> None:
-    crowded = [
-        mutant(10 * line + n, family, line=line) for line in (1, 2) for n in (1, 2, 3) for family in "ab"
-    ]
-    chosen, drawing = draw(crowded, 1, one_per_site=True)
-    assert Counter((one.family, one.site.span.line) for one in chosen) == Counter(
-        {(family, line): 1 for family in "ab" for line in (1, 2)}
-    )
-    assert (drawing.selected, drawing.sample) == (12, None)
-    assert {one.id for seed in range(50) for one in draw(crowded, seed, one_per_site=True)[0]} == {
-        one.id for one in crowded
-    }
-
-
-def test_a_sample_with_one_per_site_is_of_those() -> None:
-    crowded = [mutant(10 * line + n, line=line) for line in range(1, 21) for n in (1, 2, 3)]
-    chosen, drawing = draw(crowded, 1, sample=Sample.parse("50%"), one_per_site=True)
-    (stratum,) = drawing.strata
-    assert (drawing.selected, stratum.population, stratum.drawn) == (60, 20, 10)
-    assert len({one.site for one in chosen}) == 10
 
 
 PROJECT = (

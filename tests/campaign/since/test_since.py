@@ -181,37 +181,6 @@ def test_moved_and_renamed_code_keeps_its_outcomes(project: Project) -> None:
     }  # which draws its numbers by its name
 
 
-def test_sites_only_presumes_what_other_statements_could_alter_and_never_takes_it_for_known(
-    project: Project,
-) -> None:
-    first = project.run()
-    project.edit("mission.py", lambda text: text.replace("move_by(0.1)", "move_by(0.15)"))
-    edited = {pair for pair in first if ":left:arm.move_by#2" in pair[0]}
-    assert project.run(since="HEAD", sites_only=True) == edited
-    presumed = of("left", first) - edited
-    with Journal.open(project.journal) as journal:
-        assert journal.presumed() == presumed
-        results = read_results(journal)
-    assert {one.mutant.id for one in results.mutants if one.presumed} == {name for name, _ in presumed}
-    assert results.since is not None
-    assert results.since.presumed == len(presumed)
-    assert project.run(since="HEAD", sites_only=True) == set()
-    assert project.run(since="HEAD") == presumed
-    with Journal.open(project.journal) as journal:
-        assert not journal.presumed()
-
-
-def test_sites_only_knows_statements_by_what_they_say(project: Project) -> None:
-    first = project.run()
-    project.edit(
-        "mission.py",
-        lambda text: text.replace("    arm.move_by(0.2)", "    arm.move_by(0.05)\n    arm.move_by(0.2)"),
-    )
-    new = project.run(since="HEAD", sites_only=True)
-    assert {name.split(":")[2] for name, _ in new} == {"arm.move_by#1"}
-    assert len(of("left", first)) + len(new) == 3 * len(new)
-
-
 @pytest.mark.parametrize(
     ("ref", "said"), [("nowhere", "git knows no such revision"), ("--all", "no name of a revision")]
 )

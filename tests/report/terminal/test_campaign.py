@@ -118,10 +118,10 @@ def test_with_one_round_there_is_no_interval(tmp_path: Path) -> None:
 @WIDTHS
 def test_a_sample_is_told_with_what_it_says_about_all(tmp_path: Path, width: int) -> None:
     stratum = {"family": "robot", "role": "program", "population": 30, "drawn": 3}
-    drawing = {"sample": "10%", "one_per_site": True, "selected": 60, "strata": [stratum]}
+    drawing = {"sample": "10%", "selected": 60, "strata": [stratum]}
     with Journal.open(samples.write_journal(tmp_path / "journal.sqlite", drawing=drawing)) as journal:
         text = " ".join(report(read_results(journal), width).split())
-    assert "5 of 60 mutants were drawn: a sample of 10% of one per site" in text
+    assert "5 of 60 mutants were drawn: a sample of 10%" in text
     assert "robot · program: 3 of 30; score of all of them in these rounds " in text
 
 
@@ -133,7 +133,6 @@ def test_a_second_look_is_told(tmp_path: Path, width: int) -> None:
     path = samples.write_journal(
         tmp_path / "journal.sqlite",
         verification={"wanted": 9, "checked": 9, "disagreements": [wrong]},
-        confirmation={"checked": 4, "unstable": 1},
         flaky={"tests": ["tests/t.py::test_a in round 1: failed in an equal run"], "known": 8},
         repeats={
             "doubted": {"outcomes": 5, "repeated": 4, "changed": 1},
@@ -146,11 +145,10 @@ def test_a_second_look_is_told(tmp_path: Path, width: int) -> None:
     flat = " ".join(text.split())
     assert "Verified: 8 of 9 outcomes end the same in fresh processes." in flat
     assert "mutant 2, round 1: survived; afresh: killed by check" in flat
-    assert "Confirmed: 3 of 4 kills, survivors and time-outs end so once more." in flat
     assert (
         "Kills: of 5 kills that may be chance 4 were run once more, 1 ended otherwise and count no more, "
         "1 were not; false kills left among 4: 0.3 (0 to 4); 30 other kills by tests without "
-        "simulated time were not repeated (--confirm)."
+        "simulated time were not repeated (--verify N repeats some)."
     ) in flat
     assert "1 test set aside, which cannot be relied on tests/t.py::test_a in round 1" in flat
     assert max(cell_len(line) for line in text.splitlines()) <= width

@@ -82,7 +82,7 @@ class Cluster:
                     f"the connection to {self.link.address} is not encrypted: whoever can reach its port "
                     "can run programs on the workers; tls:// closes it (docs/cluster.md, TLS)"
                 )
-            self.roster = Roster(self.link, self._versions, settings.mixed, self._tell_of_worker)
+            self.roster = Roster(self.link, self._versions, self._tell_of_worker)
             self._meet()
         except BaseException:
             self._let_go()
@@ -161,9 +161,7 @@ class Cluster:
                     return False
                 with interruptible():
                     time.sleep(1.0)
-        self.roster = Roster(
-            self.link, self._versions, self._settings.mixed, self._tell_of_worker, bundle, told
-        )
+        self.roster = Roster(self.link, self._versions, self._tell_of_worker, bundle, told)
         return True
 
     def _tell_of_worker(self, text: str) -> None:

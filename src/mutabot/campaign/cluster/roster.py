@@ -26,7 +26,7 @@ class _Worker:
         asked: numbers of what it was asked and has not answered.
         fault: what went wrong with one of them, or None.
         failures: how often in a row something did.
-        is_known: whether it runs with the same, or may differ.
+        is_known: whether it runs with the same.
         is_fit: whether units can be given to it.
         refused: why it is not used, or None.
     """
@@ -46,8 +46,7 @@ class Roster:
     Args:
         link: the connection.
         versions: what this machine runs with.
-        mixed: whether workers may differ in that.
-        tell: is told of workers that do, once for each difference.
+        tell: is told of workers that are not used, once for each reason.
 
     Attributes:
         bundle: the project; None as long as it is not needed.
@@ -56,7 +55,6 @@ class Roster:
 
     link: Link
     versions: Mapping[str, str]
-    mixed: bool
     tell: Callable[[str], None]
     bundle: Bundle | None = None
     told: dict[str, None] = field(default_factory=dict)
@@ -159,11 +157,8 @@ class Roster:
         differing = differences(self.versions, one.versions)
         if differing:
             more = f" and {len(differing) - _SHOWN} more" if len(differing) > _SHOWN else ""
-            text = "; ".join(differing[:_SHOWN]) + more
-            if not self.mixed:
-                self.refuse(address, f"{text} (--mixed uses it all the same)")
-                return
-            self._tell_once(shown(f"worker {one.host} runs with something else: {text}"))
+            self.refuse(address, f"it runs with something else: {'; '.join(differing[:_SHOWN])}{more}")
+            return
         worker.is_known = True
         if one.has:
             worker.is_fit = True

@@ -1,4 +1,4 @@
-"""Repeats: kills that may be chance are run once more, and what ``--verify`` and ``--confirm`` ask for.
+"""Repeats: kills that may be chance are run once more, and what ``--verify`` asks for.
 
 A kill that does not come out again becomes ``unstable``. If one of a test's kills does not, all its other
 kills are in doubt as well. Kills in doubt are repeated cheapest first, within a bounded share of the
@@ -15,7 +15,6 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.request import Progress
 from mutabot.campaign.sink import Sink
 from mutabot.journal.records import (
-    CONFIRMATION,
     FLAKY,
     REPEATS,
     VERIFICATION,
@@ -33,11 +32,10 @@ from .second_look import Looker, choose, disagreement, flaky_of, unconfirmed
 SHARE, SECONDS = 0.2, 10.0
 #: how often an outcome is repeated whose operator leaves to chance what happens
 RACES = 3
-_CONFIRMED = (Verdict.SURVIVED, Verdict.TIMEOUT, Verdict.KILLED)
 
 
 def look_again(campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, spent: float) -> None:
-    """Verify, confirm and repeat, and write down what came of it, flaky tests included.
+    """Verify and repeat, and write down what came of it, flaky tests included.
 
     ``spent``: seconds that the campaign has taken until now.
     """
@@ -49,16 +47,13 @@ def look_again(campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, spent:
     looker = Looker(campaign)
     second = _SecondLook(Doubts(baseline, by_id, outcomes), looker, sink, progress)
     chosen = choose(outcomes.values(), request.verify, request.seed)
-    wanted = second.confirmable() if request.confirm else []
-    second.run(dict.fromkeys([*chosen, *wanted]))
+    second.run(chosen)
     if request.verify:
         found = [disagreement(by_id[key[0]], outcomes[key], looker.found[key]) for key in chosen]
         verification = Verification(request.verify, len(chosen), tuple(one for one in found if one))
         journal.set_meta(VERIFICATION, to_data(verification))
         progress.note(f"verify: {verification.agreed} of {verification.checked} outcomes agree")
-    if request.confirm:
-        second.confirm(wanted)
-    elif request.repeats:
+    if request.repeats:
         seconds = max(SHARE * spent, SECONDS)
         second.repeat_raced(seconds)
         second.repeat_doubted(seconds)
@@ -74,21 +69,10 @@ class _SecondLook:
     sink: Sink
     progress: Progress
 
-    def confirmable(self) -> list[Key]:
-        """All that ``--confirm`` repeats, cheapest first."""
-        found = [key for key, one in self.doubts.outcomes.items() if one.verdict in _CONFIRMED]
-        return sorted(found, key=self.doubts.cost)
-
     def run(self, keys: Iterable[Key], until: float | None = None) -> None:
         """Run these once more, as far as ``until`` (``Request.clock``) allows."""
         trials: list[Trial] = [(self.doubts.mutants[mutant], round) for mutant, round in keys]
         self.looker.look(trials, self.doubts.outcomes, until)
-
-    def confirm(self, keys: Sequence[Key]) -> None:
-        """Write down what ``--confirm`` found about these."""
-        changed = self._settle(keys)
-        self.sink.journal.set_meta(CONFIRMATION, {"checked": len(keys), "unstable": len(changed)})
-        self.progress.note(f"confirm: {len(keys) - len(changed)} of {len(keys)} outcomes are confirmed")
 
     def repeat_raced(self, seconds: float) -> None:
         """Run what chance decides several times more; what does not always end alike becomes unstable."""

@@ -1,7 +1,7 @@
 """A second look: do outcomes come out the same in fresh processes, and can the tests be relied on?
 
 ``--verify N`` runs outcomes chosen at random once more by replay, the reference, and compares how they end.
-``--confirm`` does so with all kills, survivors and time-outs, see ``repeats``.
+What is in doubt is run again by ``repeats``.
 """
 
 from __future__ import annotations

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator, Mapping
 from .piece import Piece
 from .project import Project
 from .renaming import Renaming
-from .statements import matched, statements
 
 #: a place as outcomes name it: ``file:line``, or ``file:line:column-line:column``
 _PLACE = re.compile(r"(?<![\w./-])([\w./-]+\.py):(\d+)(?::(\d+)-(\d+):(\d+))?")
@@ -27,13 +26,9 @@ class Lines:
     Args:
         old, new: the projects.
         renaming: how files and functions of the new one were called in the old one.
-        by_statement: whether lines of statements count that stand in a piece that has changed.
     """
 
-    def __init__(
-        self, old: Project, new: Project, renaming: Renaming | None = None, *, by_statement: bool = False
-    ) -> None:
-        self._by_statement = by_statement
+    def __init__(self, old: Project, new: Project, renaming: Renaming | None = None) -> None:
         self._old, self._new = old, new
         self._renaming = renaming or Renaming()
         self._known: Mapping[str, Mapping[Extent, _Place | None]] | None = None
@@ -69,10 +64,9 @@ class Lines:
         found: dict[str, dict[Extent, _Place | None]] = defaultdict(dict)
         for name, olds in before.items():
             for old, new in zip(olds, now.get(name, ()), strict=False):
-                is_same = self._old.digest(old) == self._new.digest(new, self._renaming)
-                if not is_same and not self._by_statement:
+                if self._old.digest(old) != self._new.digest(new, self._renaming):
                     continue
-                for was, is_now in _lines(old, new) if is_same else _lines_of_statements(old, new):
+                for was, is_now in _lines(old, new):
                     place = (new.file, is_now)
                     if found[old.file].setdefault(was, place) != place:
                         found[old.file][was] = None
@@ -96,17 +90,6 @@ def _shown(extent: Extent) -> str:
 def _lines(old: Piece, new: Piece) -> set[tuple[Extent, Extent]]:
     """Lines and extents in two pieces that say the same."""
     return {pair for nodes in zip(old.nodes, new.nodes, strict=True) for pair in _extents(*nodes)}
-
-
-def _lines_of_statements(old: Piece, new: Piece) -> set[tuple[Extent, Extent]]:
-    """Those of the statements that stand in both."""
-    before, now = statements(old), statements(new)
-    return {
-        pair
-        for is_now, was in matched(before, now).items()
-        for nodes in zip(before[was].nodes, now[is_now].nodes, strict=True)
-        for pair in _extents(*nodes)
-    }
 
 
 def _extents(before: ast.AST, now: ast.AST) -> Iterator[tuple[Extent, Extent]]:

@@ -1,4 +1,4 @@
-"""Drawing some of the selected mutants at random: a sample, or one per site.
+"""Drawing a sample of the selected mutants at random.
 
 What is drawn depends on the campaign's seed and the mutants' ids alone, so it is the same on every machine; a
 new mutant elsewhere takes the place of one other at most, and a larger sample holds the smaller one.
@@ -14,28 +14,16 @@ from mutabot.model import Mutant
 from mutabot.settings.sample import Sample
 
 
-def draw(
-    mutants: Sequence[Mutant], seed: int, *, sample: Sample | None = None, one_per_site: bool = False
-) -> tuple[list[Mutant], Drawing]:
+def draw(mutants: Sequence[Mutant], seed: int, sample: Sample) -> tuple[list[Mutant], Drawing]:
     """The mutants to run, in their order and with their numbers, and how they were drawn."""
-    left = _one_per_site(mutants, seed) if one_per_site else list(mutants)
-    strata = _strata(left)
-    drawn = _sampled(strata, seed, sample) if sample is not None else {mutant.id for mutant in left}
+    strata = _strata(mutants)
+    drawn = _sampled(strata, seed, sample)
     described = (
         Stratum(family, role, len(those), sum(one.id in drawn for one in those))
         for (family, role), those in strata.items()
     )
-    drawing = Drawing(sample.text if sample else None, one_per_site, len(mutants), tuple(described))
-    return [mutant for mutant in left if mutant.id in drawn], drawing
-
-
-def _one_per_site(mutants: Sequence[Mutant], seed: int) -> list[Mutant]:
-    """One of each family at each site: families do not take places from one another."""
-    chosen: dict[tuple[str, object], Mutant] = {}
-    for mutant in _shuffled(mutants, f"{seed}:site"):
-        chosen.setdefault((mutant.family, mutant.site), mutant)
-    ids = {mutant.id for mutant in chosen.values()}
-    return [mutant for mutant in mutants if mutant.id in ids]
+    drawing = Drawing(sample.text, len(mutants), tuple(described))
+    return [mutant for mutant in mutants if mutant.id in drawn], drawing
 
 
 def _sampled(strata: Mapping[tuple[str, str], Sequence[Mutant]], seed: int, sample: Sample) -> set[str]:

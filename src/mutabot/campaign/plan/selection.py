@@ -28,7 +28,7 @@ def select(
     beginning of a line or after a space is a comment. Numbers are those of the plan, whatever is selected:
     all commands call a mutant by the same. ``only`` and ``skip`` take ids (also with ``*`` and
     ``?``), numbers (``3``, ``16-20``, ``3,16-20``), names of operators, families or roles, files, file globs,
-    and lines (``mission.py:22``, ``mission.py:20-30``).
+    and lines (``mission.py:22``, ``mission.py:20-30``), and ``@FILE``, a file like a selection file.
 
     Raises SelectionError for anything that fits no mutant, nor one that the plan leaves out.
     """
@@ -84,6 +84,9 @@ def _fitting(
     found: set[str] = set()
     unknown = []
     for pattern in patterns:
+        if pattern.startswith("@"):
+            found |= {mutant.id for mutant in _from_file(Path(pattern[1:]), mutants, set_aside)}
+            continue
         here = {mutant.id for mutant in _of_id(pattern, mutants) or mutants if fits(pattern, mutant)}
         if not here and not any(is_like(pattern, other) for other in set_aside):
             unknown.append(pattern)

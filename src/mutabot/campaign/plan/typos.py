@@ -45,7 +45,7 @@ class _Known:
 
     def may_fit(self, word: str) -> bool:
         """Whether there may be such a mutant. What holds wild signs or numbers is for the plan to say."""
-        if means_numbers(word):
+        if means_numbers(word) or word.startswith("@"):  # what a list says is for the plan to say as well
             return True
         file, colon, _ = word.partition(":")
         if _WILD.search(file) or (not colon and word in self._names):

@@ -67,8 +67,8 @@ def own_files(request: Request) -> set[str]:
     configuration = request.configuration
     named = (configuration.selection or "", *configuration.vocabulary)
     own = {configuration.file, "pyproject.toml", *(PurePosixPath(name).as_posix() for name in named)}
-    if request.selection is not None:
-        own.add(_relative(request.selection, request.root))
+    lists = [Path(word[1:]) for word in (*request.only, *request.skip) if word.startswith("@")]
+    own |= {_relative(file, request.root) for file in lists}
     if request.other_journal is not None:
         name = _relative(request.other_journal, request.root)
         own |= {name, f"{name}-wal", f"{name}-shm", f"{name}.lock"}

@@ -311,8 +311,6 @@ def _settings(request: Request) -> dict[str, str]:
         "timeout_seconds": str(configuration.timeout_seconds),
         "memory": str(configuration.memory),
         **({"every test": "run"} if request.every_test else {}),
-        **({"the checks": "switched off"} if request.no_oracle else {}),
-        **({"workers": "may run with other versions"} if request.is_mixed else {}),
     }
 
 

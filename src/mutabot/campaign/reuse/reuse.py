@@ -13,7 +13,6 @@ from mutabot.journal.records import Kept
 from mutabot.model import Mutant, Verdict
 
 from .keys import Dependencies
-from .presumed import Presumed
 from .reasons import Reasons
 from .taken_over import TakenOver
 
@@ -34,7 +33,6 @@ class Reused:
         unsound: of which there are outcomes that say nothing.
         first: of which there are none.
         before: what the others were that do not hold.
-        presumed: which of ``done`` are only presumed, with the ids under which they were found.
         sites: mutants at which something else stands than when they were run.
     """
 
@@ -43,7 +41,6 @@ class Reused:
     unsound: set[Pair] = field(default_factory=set)
     first: list[Pair] = field(default_factory=list)
     before: dict[Pair, Verdict] = field(default_factory=dict)
-    presumed: dict[Pair, str] = field(default_factory=dict)
     sites: set[str] = field(default_factory=set)
 
 
@@ -54,14 +51,11 @@ def reuse(
     rounds: int,
     progress: Progress,
     others: Sequence[JournalReader] = (),
-    *,
-    presume: bool = False,
 ) -> Reused:
     """Take over the outcomes that still hold, and say why the others do not.
 
     Args:
         others: journals of other campaigns of this project, to be looked into beside its own.
-        presume: whether to take over also what is only presumed to be as it was.
     """
     sources = [(one, one.found()) for one in (journal, *others)]
     found = Reused()
@@ -73,8 +67,6 @@ def reuse(
     for round in range(rounds):
         for mutant in mutants:
             _take(found, taken, sources, reasons, dependencies, mutant, round)
-    if presume:
-        _presume(found, taken, [Presumed(*source, dependencies) for source in sources], mutants, rounds)
     journal.add_parts(dependencies.new_parts())
     journal.take_over(taken.rows)
     progress.note(text_of(found))
@@ -118,32 +110,13 @@ def _take(
         found.first.append(pair)
 
 
-def _presume(
-    found: Reused, taken: TakenOver, sources: Sequence[Presumed], mutants: Sequence[Mutant], rounds: int
-) -> None:
-    """Take over what no source holds, as far as it can be presumed."""
-    for pair, mutant in [((mutant.id, round), mutant) for round in range(rounds) for mutant in mutants]:
-        if pair in found.done or pair in found.unsound:
-            continue
-        rows = (source.row(mutant, pair[1]) for source in sources)
-        row = next((one for one in rows if one is not None), None)
-        if row is not None:
-            taken.rows.append(row[0])
-            found.presumed[pair] = row[1]
-            found.why.pop(pair, None)
-            found.first = [one for one in found.first if one != pair]
-    found.done.update(found.presumed)
-
-
 def text_of(found: Reused) -> str:
     """What was taken over, and why the rest was not, in words."""
-    reused = len(found.done) - len(found.presumed)
+    reused = len(found.done)
     planned = len(found.done) + len(found.why) + len(found.unsound - found.why.keys()) + len(found.first)
     if reused == planned:
         return f"reused all {planned} outcomes: nothing that they depend on has changed"
     parts = [f"reused {reused} of {planned} outcomes"]
-    if found.presumed:
-        parts.append(f"{len(found.presumed)} presumed to be as they were")
     parts += reasons_in_words(found.why.values())
     unsound = len(found.unsound - found.why.keys())
     if unsound:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, closing
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -20,7 +20,6 @@ from mutabot.journal.reader import JournalReader
 from mutabot.journal.recordings import Recordings, recordings_path
 from mutabot.journal.records import (
     ALTERED,
-    CONFIRMATION,
     FLAKY,
     REPEATS,
     SHARD,
@@ -178,10 +177,6 @@ def _verification(said: Sequence[Any]) -> Any:
     return to_data(whole)
 
 
-def _confirmation(said: Sequence[Mapping[str, int]]) -> Any:
-    return {key: sum(one[key] for one in said) for key in said[0]}
-
-
 def _repeats(said: Sequence[Any]) -> Any:
     each = [from_data(Repeats, one) for one in said]
     doubted, others, survivors = (
@@ -203,7 +198,6 @@ _ADDED = {
     ALTERED: lambda said: [line for one in said for line in one],
     FLAKY: _flaky,
     VERIFICATION: _verification,
-    CONFIRMATION: _confirmation,
     REPEATS: _repeats,
 }
 

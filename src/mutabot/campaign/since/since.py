@@ -101,8 +101,7 @@ def only_altered(
         ref=altered.revision.ref,
         commit=altered.revision.commit,
         run=dict(Counter(run.values()).most_common()),
-        taken_over=len(found.done) - len(found.presumed),
-        presumed=len(found.presumed),
+        taken_over=len(found.done),
         not_judged=dict(reasons.most_common()),
     )
     _tell(since, altered.revision.short, progress)
@@ -126,7 +125,6 @@ def _tell(since: Since, short: str, progress: Progress) -> None:
     unjudged = sum(since.not_judged.values())
     progress.note(
         f"since {short}: {total} to run, {since.taken_over} taken over"
-        + (f", {since.presumed} presumed to be as they were" if since.presumed else "")
         + (f", {unjudged} not judged" if unjudged else "")
     )
     for why, count in since.run.items():

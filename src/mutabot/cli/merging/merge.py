@@ -34,7 +34,6 @@ def merge(
     journals: _Journals,
     output: _Output = None,
     min_score: options.MinScore = None,
-    table: options.Table = False,
     json: options.Json = False,
 ) -> None:
     """Put the journals of shards together, and judge the campaign as `run` does.
@@ -47,7 +46,7 @@ def merge(
     configuration = load_configuration(context.obj)
     target = output or configuration.root / HOME / JOURNAL
     missing = put_together(journals, target, root=configuration.root, room=configuration.evidence)
-    results = show_results(target, json=json, summary=not table)
+    results = show_results(target, json=json, summary=True)
     exit_as(_decision(configuration, results, min_score, missing))
 
 

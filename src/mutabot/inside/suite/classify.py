@@ -51,11 +51,6 @@ class Ending:
         """Whether an exception ended the test that is no refusal."""
         return self.exception is not None and self.refused is None
 
-    @property
-    def is_mere_check(self) -> bool:
-        """Whether a check ended the test, and nothing else was the matter."""
-        return self.by is By.CHECK and self.timeout is None and self.failure is None
-
 
 def classify(
     error: BaseException,

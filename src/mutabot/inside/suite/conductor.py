@@ -37,7 +37,6 @@ from mutabot.model import Role
 from mutabot.operators.registry import preload
 
 from .classify import classify
-from .no_oracle import NoOracle
 from .running import Running, is_no_program
 
 if TYPE_CHECKING:
@@ -70,7 +69,6 @@ class Conductor:
         self._server = server
         self._collected: tuple[str, ...] = ()
         self._errors: list[str] = []
-        self._no_oracle: NoOracle | None = None
         self._not_private: str | None = None
 
     @property
@@ -104,10 +102,7 @@ class Conductor:
             conductor._make_private(job, home)
         conductor.session.returns = Returns(conductor.locator)
         conductor.session.install()
-        if job.no_oracle:
-            conductor.switch_off_checks()
-        else:
-            conductor.look_at_checks()
+        conductor.look_at_checks()
         if job.serving is None:
             conductor._begin(home)
         return conductor
@@ -139,11 +134,6 @@ class Conductor:
             return stack.ask(pid, file, self.job.root)
 
         self.session.grow(Trunk(branching, pipe, (log.st_dev, log.st_ino), branch, where_is))
-
-    def switch_off_checks(self) -> None:
-        """Let tests check nothing."""
-        self._no_oracle = NoOracle(self.job.root, self.locator)
-        self._no_oracle.install()
 
     def look_at_checks(self) -> None:
         """Note what tests check."""
@@ -178,12 +168,6 @@ class Conductor:
         if missing:
             self._errors.append(f"tests that were there before are gone: {', '.join(missing)}")
         items[:] = [by_id[test] for test in self.job.tests if test in by_id]
-
-    @pytest.hookimpl(tryfirst=True)
-    def pytest_pycollect_makemodule(self, module_path: Any) -> None:
-        """A test file is about to be imported."""
-        if self._no_oracle is not None:
-            self._no_oracle.note_tests(str(module_path))
 
     @pytest.hookimpl(wrapper=True)
     def pytest_make_collect_report(

@@ -137,8 +137,6 @@ class Running:
 
     def _note_failure(self, ending: Ending) -> None:
         """The first failure counts; of several subtests, the first that is more than a refusal."""
-        if self.session.job.no_oracle and ending.is_mere_check:
-            return
         first = self._ending
         if first is None or (first.refused is not None and first.phase == ending.phase and ending.is_raised):
             self._outcome, self._ending = FAILED, ending

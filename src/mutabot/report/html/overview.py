@@ -56,7 +56,6 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
         "flaky": results.flaky.tests,
         "controls": [[one.test_file, one.control, one.ok, one.detail] for one in results.controls],
         "verification": _verification(results.verification),
-        "confirmation": dict(results.confirmation) if results.confirmation is not None else None,
         "repeats": {
             "repeats": to_data(results.repeats),
             "falseKills": _chance(false_kills(results.repeats)),
@@ -129,4 +128,4 @@ def _drawing(campaign: StoredCampaign) -> dict[str, Any] | None:
     found = campaign.results.drawing
     if found is None:
         return None
-    return {"sample": found.sample, "onePerSite": found.one_per_site, "selected": found.selected}
+    return {"sample": found.sample, "selected": found.selected}

@@ -145,7 +145,7 @@ def mutant_table(results: Results, width: int) -> Table:
         more = [_row(result.rounds, many)]
         if with_rates:
             more.insert(0, _kill_rate(result.kill_rate, narrow=narrow))
-        number = f"{mutant.number}{'*' if result.outdated else '~' if result.presumed else ''}"
+        number = f"{mutant.number}{'*' if result.outdated else ''}"
         add_row(table, number, facts, mutant.description, *more, narrow=narrow)
     return table
 
@@ -236,9 +236,7 @@ def sample_lines(results: Results) -> Iterator[RenderableType]:
     if drawing is None:
         return
     drawn = f"{sum(group.mutants for group in results.drawn)} of {plural(drawing.selected, 'mutant')}"
-    how = [f"a sample of {drawing.sample}"] if drawing.sample is not None else []
-    how += ["one per site"] if drawing.one_per_site else []
-    yield heading(f"{drawn} were drawn: {' of '.join(how)}")
+    yield heading(f"{drawn} were drawn: a sample of {drawing.sample}")
     for group in results.drawn:
         if group.population is not None:
             yield Text(_all_text(group), overflow="fold")
@@ -354,13 +352,6 @@ def trust_lines(results: Results) -> Iterator[RenderableType]:
         for one in checked.disagreements:
             words = f"mutant {one.number}, round {one.round + 1}: {one.first}; afresh: {one.second}"
             yield Padding(Text(plain(words), overflow="fold"), (0, 0, 0, 2))
-    confirmed = results.confirmation
-    if confirmed is not None:
-        kept = confirmed["checked"] - confirmed["unstable"]
-        text = (
-            f"\nConfirmed: {kept} of {confirmed['checked']} kills, survivors and time-outs end so once more."
-        )
-        yield Text(text, style="bold red" if confirmed["unstable"] else "dim")
     yield from repeat_lines(results.repeats)
 
 

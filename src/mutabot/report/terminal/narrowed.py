@@ -25,9 +25,6 @@ def since_lines(results: Results) -> Iterator[RenderableType]:
         yield Text(f"{count} run: {why}", overflow="fold")
     for why, count in since.not_judged.items():
         yield Text(f"{count} not judged, though no change can have altered them: {why}", overflow="fold")
-    if since.presumed:
-        text = f"{since.presumed} (~) only presumed to be as before: other program text has changed"
-        yield Text(text, overflow="fold")
     if unjudged:
         yield Text("Scores are of those that were run or taken over, not of all mutants.", overflow="fold")
 

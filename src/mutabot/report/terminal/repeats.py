@@ -33,7 +33,7 @@ def _kills_text(doubted: Repeated, others: Repeated, found: Estimate | None) -> 
     parts.append(_estimate("false kills", found))
     if others.outcomes and not others.repeated:
         text = f"{plural(others.outcomes, 'other kill')} by tests without simulated time were not repeated"
-        parts.append(f"{text} (--confirm)")
+        parts.append(f"{text} (--verify N repeats some)")
     return f"Kills: {'; '.join(parts)}."
 
 

@@ -34,8 +34,7 @@
     const complete = campaign.state === "complete" && campaign.done >= campaign.planned;
     const facts = [typeof meta.seconds === "number" && `took ${duration(meta.seconds)}`,
       meta.families && `families ${meta.families.join(", ")}`, count(campaign.tests.length, "test"),
-      campaign.drawing && campaign.drawing.sample && `a sample of ${campaign.drawing.sample} of ${count(campaign.drawing.selected, "mutant")}`,
-      campaign.drawing && campaign.drawing.onePerSite && "one mutant per site"];
+      campaign.drawing && `a sample of ${campaign.drawing.sample} of ${count(campaign.drawing.selected, "mutant")}`];
     return [
       h("p", { class: "lead" }, complete ? "complete · " : "", facts.filter(Boolean).join(" · ")),
       complete || isUnderWay(campaign) ? null : h("p", { class: "notice" }, h("strong", null, `This campaign is not complete (${campaign.state}): `),
@@ -180,7 +179,6 @@
           h("ul", null, verified.disagreements.map(([many, round, first, second]) => h("li", null, h("a", { href: address(["mutant", String(many)]) }, `mutant ${many}`), `, round ${round + 1}: ${first}; afresh ${second}`))))
         : h("li", null, `${count(verified.checked, "outcome")} were run again in fresh processes, and came out the same.`));
     }
-    if (campaign.confirmation) lines.push(h("li", null, `--confirm looked at ${campaign.confirmation.checked} outcomes; ${campaign.confirmation.unstable} were unstable.`));
     for (const [name, found] of [["kills", campaign.repeats.falseKills], ["survivors", campaign.repeats.falseSurvivors]]) {
       if (found) lines.push(h("li", null, `False ${name}, by repeats: ${number(found[0], 2)} expected among ${found[3]} (95 % interval ${number(found[1], 2)} to ${number(found[2], 2)}).`));
     }

@@ -75,7 +75,7 @@ def _outcome(mutant: str, round: int, kind: int, tests: list[str]) -> Outcome:
 
 def write(path: File, *, rounds: int = 3, luck: int = 1, complete: bool = True, **meta: Any) -> File:
     """The journal of such a campaign."""
-    facts = {"families": ["robot", "classical", "text"], "every_test": True, "no_oracle": False, **meta}
+    facts = {"families": ["robot", "classical", "text"], "every_test": True, **meta}
     return samples.write_journal(
         path,
         mutants=mutants(),

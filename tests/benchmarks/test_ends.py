@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.analysis.ends import End, end_of, noticing_tests, properties_of
+from comparison.ends import End, end_of, noticing_tests, properties_of
 from mutabot.model import By, Kill, Outcome, Verdict
 
 A, B = "tests/test_a.py::test_a", "tests/test_a.py::test_b"

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from analysis import campaigns, samples
-from mutabot.analysis.ends import End, end_of
-from mutabot.analysis.families import WEAKNESSES, FamilyComparison, Share, compare_families, is_same_campaign
+from analysis import samples
+from comparison.ends import End, end_of
+from comparison.families import WEAKNESSES, FamilyComparison, Share, compare_families
 from mutabot.analysis.results import Results
 from mutabot.analysis.statistics import crossed, wilson
+
+from . import campaigns
 
 
 @pytest.fixture(scope="module")
@@ -135,22 +137,11 @@ def test_shares_carry_the_interval_of_scores_and_with_one_round_wilsons(tmp_path
 
 
 def test_the_scores_without_an_oracle_stand_beside_the_others(tmp_path: Path, results: Results) -> None:
-    other = campaigns.read(campaigns.write(tmp_path / "other.sqlite", luck=2, no_oracle=True))
+    other = campaigns.read(campaigns.write(tmp_path / "other.sqlite", luck=2))
     found = compare_families(results, other)
     for family, group in zip(found.families, other.groups, strict=True):
         assert family.without_oracle == group.scores
     assert all(family.without_oracle is None for family in compare_families(results).families)
-
-
-@pytest.mark.parametrize(
-    ("changes", "same"),
-    [({}, True), ({"seed": 8}, False), ({"families": ["robot"]}, False), ({"started": 1.0}, False)],
-)
-def test_another_campaign_counts_only_if_it_ran_the_same_and_later(
-    tmp_path: Path, results: Results, changes: dict[str, object], same: bool
-) -> None:
-    other = campaigns.read(campaigns.write(tmp_path / "other.sqlite", **changes))
-    assert is_same_campaign(results, other) is same
 
 
 def test_a_campaign_of_one_family_is_compared_with_nobody(tmp_path: Path) -> None:

@@ -10,13 +10,13 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from mutabot.analysis.results import MutantResult, Results
+from mutabot.analysis.score import RoundScores
+from mutabot.analysis.statistics import Interval, crossed, wilson
 from mutabot.journal.records import Drawing
 from mutabot.model import Outcome, Role
 
 from .ends import End, Properties, end_of, properties_of
-from .results import MutantResult, Results
-from .score import RoundScores
-from .statistics import Interval, crossed, wilson
 from .subsumption import Redundancy
 
 _BROKEN = frozenset({End.INVALID, End.BEFORE})
@@ -267,13 +267,3 @@ def _share_of_outcomes(ends: Sequence[Sequence[End | None]], those: Collection[E
     count = round(sum(cells))
     in_one_round = max((len(row) for row in table), default=0) == 1 and len(cells) > 1
     return Share(count, len(cells), interval=wilson(count, len(cells)) if in_one_round else crossed(table))
-
-
-def is_same_campaign(results: Results, other: Results) -> bool:
-    """Whether another campaign ran the same mutants in the same rounds, after this one had begun."""
-    same = ("seed", "rounds", "families")
-    return (
-        all(results.meta.get(key) == other.meta.get(key) for key in same)
-        and {one.mutant.id for one in results.mutants} == {one.mutant.id for one in other.mutants}
-        and (results.meta.get("started") or 0) <= (other.meta.get("started") or 0)
-    )

@@ -7,7 +7,7 @@ from itertools import combinations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.analysis.subsumption import Redundancy, dominators, killers_of
+from comparison.subsumption import Redundancy, dominators, killers_of
 from mutabot.model import By, Kill, Outcome, Verdict
 
 KILLERS = st.frozensets(st.tuples(st.sampled_from("abcd"), st.integers(0, 2)), max_size=6)

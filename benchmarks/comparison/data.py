@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from mutabot.analysis.ends import end_of
-from mutabot.analysis.families import Family, FamilyComparison, Share
-from mutabot.analysis.subsumption import Redundancy
+from mutabot.report.as_json import FORMAT, drawing_data, interval_data, scores_data
 
-from .as_json import FORMAT, drawing_data, interval_data, scores_data
+from .ends import end_of
+from .families import Family, FamilyComparison, Share
+from .subsumption import Redundancy
 
 #: facts of the campaign that say how the numbers came about; none names the machine
 _META = (

@@ -1,39 +1,49 @@
-"""Switching off what the tests check, to see what a score is worth that does not come from checks.
+"""A pytest plug-in that switches off what the tests check, to see how much of a score is left without them.
 
 Assertions in the tests' own files are compiled to nothing, as ``python -O`` does, so that the test goes on
-after them; so are the comparisons of unittest and numpy.testing. What is a check all the same (a monitor,
-``pytest.fail``) ends the test as it ever did, and counts as passed. Assertions of the program stay.
+after them; so are the comparisons of unittest and numpy.testing. A check that ends the test all the same (a
+monitor, ``pytest.fail``) counts as passed. Assertions of the program stay. ``ENVIRONMENT`` says which files
+are whose.
 """
 
 from __future__ import annotations
 
 import ast
+import json
 import os
 import sys
+from collections.abc import Generator
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import pytest
 import wrapt
 
 from mutabot.inside.calls.locate import Locator
+from mutabot.inside.targets.names import is_named
 from mutabot.inside.text import loading
 from mutabot.model import Role
 
+#: variable with JSON: root, program, oracle, and checks (exceptions that are verdicts of a check)
+ENVIRONMENT = "COMPARISON_WITHOUT_CHECKS"
 #: of unittest and numpy.testing: these run what they are given, and so they stay
 _RUNS_SOMETHING = ("raises", "warn", "logs", "gc_cycles")
 
 
-class NoOracle:
+class WithoutChecks:
     """The checks of one process, switched off.
 
     Args:
         root: absolute path of the project.
         locator: knows the program's and the oracle's files.
+        checks: names of exceptions that are verdicts of a check.
     """
 
-    def __init__(self, root: str, locator: Locator) -> None:
+    def __init__(self, root: str, locator: Locator, checks: tuple[str, ...]) -> None:
         self._root = os.path.realpath(root)
         self._locator = locator
+        self._checks = checks
         self._folders: set[str] = set()
 
     def install(self) -> None:
@@ -45,19 +55,52 @@ class NoOracle:
 
     def note_tests(self, path: str) -> None:
         """Tests are about to be collected here: helpers in the same folder are the tests' own."""
-        self._folders.add(os.path.dirname(os.path.realpath(path)) + os.sep)
+        self._folders.add(f"{Path(path).resolve().parent}{os.sep}")
 
     def wants(self, path: str) -> bool:
         """Whether the assertions of a file are the tests' own checks."""
         role = self._locator.role(path)
         if role is not None:
             return role is Role.ORACLE
-        real = os.path.realpath(path)
-        if os.path.basename(real) == "conftest.py":
-            if os.path.dirname(real) != self._root:  # else all of the project would be the tests' own
-                self.note_tests(real)
+        real = Path(path).resolve()
+        if real.name == "conftest.py":
+            if str(real.parent) != self._root:  # else all of the project would be the tests' own
+                self.note_tests(str(real))
             return True
-        return real.startswith(tuple(self._folders))
+        return str(real).startswith(tuple(self._folders))
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_pycollect_makemodule(self, module_path: Any) -> None:
+        """A test file is about to be imported."""
+        self.note_tests(str(module_path))
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_call(self, item: pytest.Item) -> Generator[None, None, None]:
+        """A check that ends the test counts as passed."""
+        try:
+            yield
+        except (Exception, pytest.fail.Exception) as error:
+            if not self._is_check(error):
+                raise
+
+    def _is_check(self, error: BaseException) -> bool:
+        if isinstance(error, pytest.fail.Exception) or is_named(error, self._checks):
+            return True
+        return isinstance(error, AssertionError) and not self._is_of_the_program(error)
+
+    def _is_of_the_program(self, error: BaseException) -> bool:
+        """Whether the innermost frame that is the tests' or the program's is the program's."""
+        frames = []
+        traceback = error.__traceback__
+        while traceback is not None:
+            frames.append(traceback.tb_frame.f_code.co_filename)
+            traceback = traceback.tb_next
+        for file in reversed(frames):
+            if self._locator.role(file) is Role.PROGRAM:
+                return True
+            if self.wants(file):
+                return False
+        return False
 
     def _switch_off_rewriting(self) -> None:
         """Pytest compiles test files itself; what it compiled in earlier sessions is not used."""
@@ -101,3 +144,12 @@ def _silence(owner: Any) -> None:
 
 def _nothing(*arguments: Any, **named: Any) -> None:
     """A check that is switched off."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Switch the checks off before any test file is imported."""
+    given = json.loads(os.environ[ENVIRONMENT])
+    locator = Locator(given["root"], tuple(given["program"]), tuple(given["oracle"]))
+    plugin = WithoutChecks(given["root"], locator, tuple(given["checks"]))
+    plugin.install()
+    config.pluginmanager.register(plugin)

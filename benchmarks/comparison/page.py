@@ -1,11 +1,12 @@
 """Write docs/comparison.md, with its pictures, from measured comparisons.
 
-    python tools/make_comparison_page.py paper=comparison.json …   store these, then write the page
-    python tools/make_comparison_page.py                           write it from what is stored
-    python tools/make_comparison_page.py --check                   exit with 1 if it is out of date
+    cd benchmarks
+    python -m comparison.page paper=comparison.json …   store these, then write the page
+    python -m comparison.page                           write it from what is stored
+    python -m comparison.page --check                   exit with 1 if it is out of date
 
-A file is what ``mutabot compare --json`` prints; it is stored without the single mutants. Sentences follow
-from the numbers by the rules of ``comparison_claims``. Without any stored comparison there is no page.
+A file is what ``comparison.run`` prints; it is stored without the single mutants. Sentences follow from the
+numbers by the rules of ``claims``. Without any stored comparison there is no page.
 """
 
 from __future__ import annotations
@@ -17,25 +18,29 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from comparison_claims import CLAIMS, CONVENTIONAL, Claim, Data, Stance, finding, further, percent, share_text
-from mutabot.analysis.ends import End
-from mutabot.report.picture import FamilyBar, picture_of, svg
+from mutabot.report.picture import svg
 
-DOCS = Path(__file__).parents[1] / "docs"
+from .bars import FamilyBar, picture_of
+from .claims import CLAIMS, CONVENTIONAL, Claim, Data, Stance, finding, further, percent, share_text
+from .ends import End
+
+DOCS = Path(__file__).parents[2] / "docs"
 #: the order of the page; other names follow by alphabet
 ORDER = ("paper", "pick_and_place", "scales")
 
 HEAD = """\
 # Do conventional operators suit robot programs?
 
-<!-- Written by tools/make_comparison_page.py from docs/data/*.json. Do not edit. -->
+<!-- Written by benchmarks/comparison/page.py from docs/data/*.json. Do not edit. -->
 
 The study "Mutation Testing for Industrial Robotic Systems" says that conventional mutation operators suit
 robot programs badly: too few places, commands broken as text, physically impossible motions, no difference in
-effect. It gives no figures. These are ours, from [`mutabot compare`](compare.md) on the examples of this
-repository. Every sentence follows from the numbers by a rule: a share speaks *for* the claim if the 95 %
-interval of its difference from the robot family's lies wholly above zero, *against* it if wholly below, and
-is *undecided* otherwise; for places the larger number decides. Intervals speak about other mutants and rounds
+effect. It gives no figures. These are ours, from `make comparison` on the examples of this repository;
+[Comparing families](compare.md) explains the terms.
+
+Every sentence follows from the numbers by a rule: a share speaks *for* the claim if the 95 % interval of
+its difference from the robot family's lies wholly above zero, *against* it if wholly below, and is
+*undecided* otherwise; for places the larger number decides. Intervals speak about other mutants and rounds
 like these; about these very ones the counts are exact.
 """
 TAIL = """\
@@ -111,7 +116,7 @@ def picture(data: Data, name: str) -> str:
         )
         for family in data["families"]
     ]
-    return svg(picture_of(bars, f"What became of the mutants: {name}"))
+    return svg(picture_of(bars, f"What became of the mutants: {name}"), by="make comparison")
 
 
 def _summary(comparisons: Mapping[str, Data]) -> Iterator[str]:
@@ -184,7 +189,7 @@ def _circumstances(data: Data) -> str:
         parts.append(f"{meta['seconds']:.0f} s in all")
     parts += [f"mutabot {meta['mutabot']}", f"Python {meta['python']}"]
     if data["sample"] is not None:
-        size = data["sample"]["size"] or "one per site"
+        size = data["sample"]["size"]
         parts.append(f"a sample ({size}) of {data['sample']['selected']} mutants")
     if meta.get("started"):
         parts.append(f"measured on {datetime.fromtimestamp(meta['started'], UTC):%Y-%m-%d}")
@@ -217,7 +222,7 @@ def _read(file: Path) -> dict[str, Any]:
     except (OSError, ValueError) as error:
         raise PageError(f"{file} cannot be read: {error}") from error
     if not isinstance(data, dict) or not {"families", "together", "meta"} <= set(data):
-        raise PageError(f"{file} is not what `mutabot compare --json` prints")
+        raise PageError(f"{file} is not what `python -m comparison.run` prints")
     return data
 
 

@@ -1,0 +1,62 @@
+"""Hold two records of ``witness.py`` against each other: plans, what is left out, and every outcome.
+
+    python benchmarks/same_results.py RECORDED FOLDER [--show 20]
+
+The exit code is 1 if anything differs, and if there is nothing to compare.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from witness import read
+
+
+def differences(first: Mapping[str, Any], second: Mapping[str, Any]) -> Iterator[str]:
+    """What differs between two records of a project, a line each."""
+    for part in ("plan", "left_out"):
+        before, after = dict(first[part]), dict(second[part])
+        yield from (f"{part}: {one} is gone" for one in before if one not in after)
+        yield from (f"{part}: {one} is new" for one in after if one not in before)
+        for one, text in before.items():
+            if one in after and text != after[one]:
+                yield f"{part}: {one}: {text!r} → {after[one]!r}"
+        if list(before) != list(after) and set(before) == set(after):
+            yield f"{part}: the order differs"
+    before, after = first["outcomes"], second["outcomes"]
+    yield from (f"{one}: was run and is not" for one in before if one not in after)
+    yield from (f"{one}: is run and was not" for one in after if one not in before)
+    for one, facts in before.items():
+        for key, fact in facts.items() if one in after else ():
+            if fact != after[one].get(key):
+                yield f"{one}: {key} {fact!r} → {after[one].get(key)!r}"
+
+
+def main() -> int:
+    """The command."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("recorded", type=Path)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--show", type=int, default=20, help="differences to show of each project")
+    given = parser.parse_args()
+    compared = different = 0
+    for file in sorted(given.folder.glob("*.json.gz")):
+        name = file.name.removesuffix(".json.gz")
+        first, second = read(given.recorded / file.name), read(file)
+        compared += len(second["outcomes"])
+        found = list(differences(first, second))
+        different += len(found)
+        if found:
+            print(f"{name}: {len(found)} differences", *found[: given.show], sep="\n  ")
+    print(f"{compared} outcomes compared, {different} differences")
+    return 0 if compared and not different else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,1 +1,0 @@
-"""``mutabot compare``: families of operators side by side."""
