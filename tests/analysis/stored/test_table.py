@@ -68,7 +68,7 @@ def test_without_pandas_it_says_what_to_install(
     campaign: mutabot.StoredCampaign, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(UsageError, match=r"needs pandas, .*pip install 'mutabot\[notebook\]'"):
+    with pytest.raises(UsageError, match=r"needs pandas, .*pip install 'path/to/mutabot\[notebook\]'"):
         campaign.frame()
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import mutabot
 from analysis import samples
-from mutabot.model import Outcome, Verdict
+from mutabot.model import By, Outcome, Verdict
 from mutabot.report.shaping.portable import portable
 from report.material import HOSTILE, made, stored, with_text
 
@@ -28,6 +28,11 @@ def commands(campaign: mutabot.StoredCampaign) -> list[tuple[str, dict[str, str]
         properties = {name: unquote(value) for name, _, value in pairs}
         found.append((command[1], properties, unquote(command[3])))
     return found
+
+
+def in_both_rounds(*outcomes: Outcome) -> tuple[Outcome, ...]:
+    """The outcomes of the first round, and the same in the second."""
+    return (*outcomes, *(replace(one, round=1) for one in outcomes))
 
 
 def test_survivors_are_annotations_at_their_calls_the_worst_first(tmp_path: Path) -> None:
@@ -58,8 +63,8 @@ def test_every_text_stays_in_its_command(tmp_path: Path, text: str) -> None:
 def test_a_call_over_several_lines_has_no_columns(tmp_path: Path) -> None:
     span = replace(samples.OPEN.span, end_line=3, end_column=9)
     mutant = replace(samples.SKIP, site=replace(samples.OPEN, span=span))
-    end = Outcome(mutant.id, 0, Verdict.SURVIVED)
-    ((_, where, _),) = commands(stored(tmp_path, mutants=(mutant,), outcomes=(end,)))
+    ends = in_both_rounds(Outcome(mutant.id, 0, Verdict.SURVIVED))
+    ((_, where, _),) = commands(stored(tmp_path, mutants=(mutant,), outcomes=ends))
     assert (where["line"], where["endLine"]) == ("2", "3")
     assert not {"col", "endColumn"} & set(where)
 
@@ -71,11 +76,12 @@ def test_no_more_than_github_shows_and_the_rest_is_told(
     mutants = tuple(
         samples.mutant(number, f"made-{number}", samples.MOVE, "dx", "") for number in range(1, 31)
     )
-    ends = tuple(Outcome(one.id, 0, Verdict.SURVIVED, indistinguishable=same) for one in mutants)
+    ends = in_both_rounds(*(Outcome(one.id, 0, Verdict.SURVIVED, indistinguishable=same) for one in mutants))
     found = commands(stored(tmp_path, mutants=mutants, outcomes=ends))
     assert [one for one, _, _ in found] == [level] * shown + ["notice"]
     assert found[-1][2] == f"{30 - shown} more survivors are not shown here; `mutabot results` lists them"
 
 
 def test_without_survivors_there_is_nothing_to_annotate(tmp_path: Path) -> None:
-    assert made("github", stored(tmp_path, outcomes=samples.OUTCOMES[:2])) == ""
+    killed = in_both_rounds(*(Outcome(one.id, 0, Verdict.KILLED, By.CHECK) for one in samples.MUTANTS))
+    assert made("github", stored(tmp_path, outcomes=killed)) == ""

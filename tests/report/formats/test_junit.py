@@ -68,7 +68,8 @@ def test_a_case_is_named_by_the_id_and_says_where_it_is(tmp_path: Path) -> None:
 
 def test_scores_are_properties(tmp_path: Path) -> None:
     ends = tuple(one for one in samples.OUTCOMES if one.mutant != samples.BY_TO.id)
-    root = xml(stored(tmp_path, outcomes=ends))
+    mutants = tuple(one for one in samples.MUTANTS if one.id != samples.BY_TO.id)
+    root = xml(stored(tmp_path, mutants=mutants, outcomes=ends))
     found = {one.attrib["name"]: one.attrib["value"] for one in root[0].findall("properties/property")}
     assert found["state"] == "complete"
     assert (found["score"], found["killed"], found["valid"]) == ("0.5000", "2", "4")
