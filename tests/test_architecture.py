@@ -25,7 +25,7 @@ ALLOWED = {
     "operators": {"errors", "families", "model"},
     "classical": {"errors", "families", "model", "languages", "operators"},
     "settings": {"errors", "families", "limits", "model", "border", "operators"},
-    "vocabulary": {"errors", "limits", "model", "settings"},
+    "vocabulary": {"errors", "families", "limits", "model", "settings"},
     "evidence": {"model"},
     "inside": {"errors", "model", "languages", "border", "operators", "evidence"},
     "journal": {"errors", "model", "border", "repository"},

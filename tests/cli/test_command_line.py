@@ -290,16 +290,21 @@ def test_the_limit_of_the_configuration_holds_unless_the_command_line_says_other
     assert main(["run", "--min-score", "0"]) == 0
 
 
+def in_all_rounds(verdict: Verdict) -> tuple[Outcome, ...]:
+    """Every mutant ends so in both rounds."""
+    return tuple(Outcome(one.id, round, verdict) for one in samples.MUTANTS for round in (0, 1))
+
+
 def test_a_run_in_which_everything_is_refused_is_3(
     fake: Campaign, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    fake.journal = {"outcomes": tuple(Outcome(one.id, 0, Verdict.REFUSED) for one in samples.MUTANTS)}
+    fake.journal = {"outcomes": in_all_rounds(Verdict.REFUSED)}
     assert main(["run"]) == 3
     assert "refused every mutant" in capsys.readouterr().err
 
 
 def test_time_outs_beyond_the_limit_are_5(fake: Campaign) -> None:
-    fake.journal = {"outcomes": tuple(Outcome(one.id, 0, Verdict.TIMEOUT) for one in samples.MUTANTS)}
+    fake.journal = {"outcomes": in_all_rounds(Verdict.TIMEOUT)}
     assert main(["run"]) == 0
     with (fake.project / "mutabot.toml").open("a") as file:
         file.write("timeout_limit = 0.5\n")
@@ -324,7 +329,7 @@ def test_errors_are_4_and_told_first_unless_the_limit_allows_them(
 
 def test_unstable_outcomes_beyond_the_limit_are_4(fake: Campaign, capsys: pytest.CaptureFixture[str]) -> None:
     ends = (Outcome(samples.SKIP.id, 0, Verdict.UNSTABLE), Outcome(samples.SKIP.id, 1, Verdict.SURVIVED))
-    fake.journal = {"outcomes": ends}
+    fake.journal = {"mutants": (samples.SKIP,), "outcomes": ends}
     assert main(["run"]) == 4
     assert "1 of 2 outcomes are unstable (50%); the limit is 10%" in capsys.readouterr().err
     with (fake.project / "mutabot.toml").open("a") as file:

@@ -53,7 +53,7 @@ def declared() -> Iterator[tuple[str, set[type], set[str], Any]]:
 
 def options() -> list[tuple[str, str]]:
     """Every option of every command that takes a number, or a text that is read as one."""
-    texts = {"--sample", "--shard", "--budget", "--when", "--only", "--skip", "--family", "--engine"}
+    texts = {"--sample", "--shard", "--budget", "--only", "--skip", "--family", "--engine"}
     return [
         (command, max(names, key=len))
         for command, kinds, names, _ in declared()
@@ -70,13 +70,11 @@ def test_all_numbers_of_the_command_line_are_tried_and_bounded() -> None:
         "--rounds",
         "--seed",
         "--jobs",
-        "--pairs",
         "--verify",
-        "--baseline",
         "--min-score",
         "--port",
     }
-    assert tried >= {"--seeds", "--round", "--order", "--budget", "--sample", "--shard", "--when"}
+    assert tried >= {"--seeds", "--round", "--budget", "--sample", "--shard"}
     for _, kinds, names, option in declared():
         if kinds & {int, float}:
             assert None not in (option.min, option.max), names

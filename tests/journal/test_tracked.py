@@ -32,7 +32,7 @@ TESTS = """
     def test_fetch():
         mission.fetch(Arm())
 """
-GATE = ("run", "--min-score", "80", "--no-repeats")
+GATE = ("run", "--min-score", "80", "-o", "repeats=false")
 Forge = Callable[[Path, Path], tuple[str, ...]]
 
 
@@ -145,7 +145,7 @@ def test_the_attack_would_succeed_with_a_journal_that_is_believed(
     [
         ["results"], ["show", "1"], ["thresholds"], ["check"], ["suggest"],
         ["report", "--format", "markdown"],
-        ["merge", ".mutabot"], ["run"], ["report", "--compare", ".mutabot/journal.sqlite"], ["compare"],
+        ["merge", ".mutabot"], ["run"], ["report", "--compare", ".mutabot/journal.sqlite"],
     ],
     ids=" ".join,
 )  # fmt: skip
@@ -160,7 +160,6 @@ def test_no_command_believes_it(
     clone = tmp_path / "clone"
     git(tmp_path, "clone", "-q", str(origin), str(clone))
     shutil.copytree(made, clone / ".mutabot")
-    shutil.copy(made / "journal.sqlite", clone / ".mutabot" / "compare.sqlite")
     git(clone, "add", "-f", ".mutabot")
     monkeypatch.chdir(clone)
     assert main(words) == 2

@@ -200,7 +200,7 @@ def test_the_plug_ins_examples_do_what_they_say(installed: Path) -> None:
         "assert 'creep' in names()\n"
         "for index in range(len(operator('creep').examples)):\n"
         "    test_the_example_does_what_it_says('creep', index)\n"
-        "    test_the_example_is_a_place_where_the_operator_acts('creep', index)\n"
+        "test_the_example_is_a_place_where_the_operator_acts()\n"
     )
     done = python(installed, "-c", code, str(Path(__file__).parents[1]))
     assert done.returncode == 0, done.stderr

@@ -184,7 +184,7 @@ def test_a_campaign_loses_nothing_to_a_thousand_connections_and_messages(tmp_pat
     configuration.write_text(configuration.read_text() + "private_files = false\n")
     few = f"import resource as r, runpy; r.setrlimit(r.RLIMIT_NOFILE, ({FILES}, {FILES}))"
     few += "; runpy.run_module('mutabot', run_name='__main__', alter_sys=True)"
-    words = [sys.executable, "-c", few, "run", "--serve", "--no-repeats", "-j", "1"]
+    words = [sys.executable, "-c", few, "live", "-o", "repeats=false", "-j", "1"]
     process = subprocess.Popen(words, cwd=tmp_path, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, 2 * IDLE), hard))
     try:

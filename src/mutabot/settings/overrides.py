@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from mutabot.errors import UsageError
@@ -12,7 +12,7 @@ from mutabot.errors import UsageError
 _DEPTH = 2
 
 
-def overridden(raw: dict[str, Any], texts: Iterable[str], lists: Collection[str]) -> dict[str, Any]:
+def overridden(raw: dict[str, Any], texts: Sequence[str], lists: Collection[str]) -> dict[str, Any]:
     """A table of the configuration with what ``KEY=VALUE`` says instead of its own keys.
 
     A value is written as in TOML; what is no TOML is a text, so ``-o when=once`` needs no quotation marks. A
@@ -20,7 +20,7 @@ def overridden(raw: dict[str, Any], texts: Iterable[str], lists: Collection[str]
 
     Raises UsageError for a text that is not of this form.
     """
-    found = dict(raw)
+    found = dict(raw) if texts else raw
     for text in texts:
         key, sign, value = text.partition("=")
         parts = [part.strip() for part in key.split(".")]

@@ -41,7 +41,7 @@ def test_whatever_was_seen_can_be_told(
     print_thresholds(make_console(io.StringIO(), width=80), found, steps=True)
     dumps(thresholds_data(found))
     suggested_toml(found.ladders, table="demand")
-    svg(picture_of(found))
+    svg(picture_of(found), by="a test")
 
 
 def assert_sound(one: Ladder) -> None:

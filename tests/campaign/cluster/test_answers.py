@@ -236,7 +236,7 @@ class FakeCluster:
     def __init__(self, odd: dict[int, bytes]) -> None:
         self.told: list[str] = []
         self.link = FakeLink(odd)
-        self.roster = Roster(self.link, {}, False, self.tell, Bundle("digest", "", b""))  # type: ignore[arg-type]
+        self.roster = Roster(self.link, {}, self.tell, Bundle("digest", "", b"", 0, ()))  # type: ignore[arg-type]
         self.home = self
 
     def tell(self, text: str) -> None:

@@ -82,7 +82,7 @@ def test_forged_outcomes_are_an_error_of_that_unit_alone(
     words = ["-C", str(project), "run", "--engine", "replay", "--only", "reverse", "--only", "skip"]
     with cluster(tmp_path / "dask", 0) as there, strange_worker(there, tmp_path, FORGER) as process:
         try:
-            files = ["--tls-ca", str(there.ca), "--tls-cert", str(there.cert), "--tls-key", str(there.key)]
+            files = [f"-ocluster.{name}={getattr(there, name)}" for name in ("ca", "cert", "key")]
             code = main([*words, "--rounds", "1", "--cluster", there.address, *files])
         finally:
             process.kill()

@@ -154,7 +154,7 @@ def test_no_command_line_and_no_environment_tells_the_key(opened: Opened) -> Non
 
 def test_without_cryptography_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cryptography", None)
-    with pytest.raises(ClusterError, match=r"pip install 'mutabot\[cluster\]'"):
+    with pytest.raises(ClusterError, match=r"pip install 'path/to/mutabot\[cluster\]'"):
         Certificates.make(tmp_path / "certificates")
 
 

@@ -13,6 +13,7 @@ from distributed import Security
 
 from mutabot.campaign.cluster import link
 from mutabot.campaign.cluster.bundle import Bundle
+from mutabot.campaign.cluster.environment import versions
 from mutabot.campaign.cluster.local import LocalCluster, address_in
 from mutabot.campaign.cluster.roster import Roster
 from mutabot.campaign.cluster.shipping import Shipment
@@ -59,10 +60,11 @@ def test_certificates_may_stand_in_the_configuration(tmp_path: Path) -> None:
     for name in ("ca.pem", "key.pem", "mine.pem"):
         (project / name).touch()
     mine = str(project / "mine.pem")
-    request = request_of(project, cluster={"address": "tls://host:1", "cert": mine, "key": mine})
-    assert request.cluster == ClusterSettings("tls://host:1", False, str(project / "ca.pem"), mine, mine)
+    settings = ["cluster.cert=mine.pem", "cluster.key=mine.pem"]
+    request = request_of(project, cluster="tls://host:1", settings=settings)
+    assert request.cluster == ClusterSettings("tls://host:1", str(project / "ca.pem"), mine, mine)
     assert request.executor == "cluster"
-    without = request_of(project, cluster={"address": "local:2"}).cluster
+    without = request_of(project, cluster="local:2").cluster
     assert without is not None
     assert without.files == ()
     write(tmp_path, configuration=CONFIGURATION + '    cluster = { cq = "ca.pem" }\n')
@@ -103,7 +105,7 @@ def test_a_worker_that_cannot_take_part_is_told_and_lives_on(
     with cluster(tmp_path, 0) as settings, strange_worker(settings, tmp_path, how) as process:
         try:
             there = link.Link(settings, settings.address)
-            roster = Roster(there, {}, True, lambda text: None)
+            roster = Roster(there, versions(), lambda text: None)
             if has_bundle:
                 roster.bundle = Bundle.make(Shipment.of(write(tmp_path / "project")))
             assert until(lambda: roster.update() is not None and there.workers)
@@ -153,7 +155,7 @@ def test_certificates_that_do_not_fit_are_told(tmp_path: Path, monkeypatch: pyte
         assert address.startswith("tls://")
         link.Link(cluster_settings(address, ca=ca, cert=cert, key=key), address).close()
         with pytest.raises(ClusterError, match="Do the certificate files belong to it"):
-            link.Link(ClusterSettings(address, False, *others), address)
+            link.Link(ClusterSettings(address, *others), address)
     finally:
         process.kill()
         process.wait()

@@ -25,7 +25,7 @@ MISSION = """
             raise Lost(f"at {place}")
 
     def when(arm):
-        arm.position()
+        where = arm.position()
         return time.perf_counter()
 """
 

@@ -12,7 +12,7 @@ from mutabot.errors import JournalError
 from mutabot.model import Verdict
 from tests.campaign.project import run, write_project
 
-MISSION = "def run(arm):\n    arm.move_by(0.25)\n    arm.move_by(-0.5)\n    arm.position()\n"
+MISSION = "def run(arm):\n    arm.move_by(0.25)\n    arm.move_by(-0.5)\n    where = arm.position()\n"
 TESTS = """
     import mission
     from robot import Arm

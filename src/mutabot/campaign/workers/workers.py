@@ -93,7 +93,11 @@ class Workers:
                 ignore.write_text("*\n", encoding="utf-8")
             end_abandoned(home)
             self._folder = Path(tempfile.mkdtemp(prefix="work-", dir=home))
-            claim(self._folder)
+            try:
+                claim(self._folder)
+            except BaseException:
+                remove_folder(self._folder)
+                raise
         except OSError as error:
             raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
 

@@ -39,6 +39,8 @@ _PROCESSES = {"subprocess.Popen", "os.posix_spawn", "os.system", "os.fork", "os.
 _WATCHED = {
     "open", *_ON_PATHS, *_OWN_NAMES, *_PROCESSES, "sqlite3.connect", "socket.bind", "mmap.__new__",
 }  # fmt: skip
+#: how pytest calls the folder of its cache as long as it makes it
+_NEW_CACHE = "/pytest-cache-files-"
 #: what is no file of anybody's
 _NOWHERE = ("/dev/", "/proc/", "/sys/")
 #: words kept per test; the first tell enough
@@ -124,9 +126,10 @@ class Deeds:
     def _is_nobodys(self, deed: Deed) -> bool:
         """Whether it is no file, our own, or one of the folders that pytest makes for each test.
 
-        Nobody but a test deletes or renames our own.
+        Nobody but a test deletes or renames our own, bar pytest, which makes its cache under another name.
         """
-        path, is_removal = deed.path, deed.verb in {"deletes", "renames"}
+        path = deed.path
+        is_removal = deed.verb in {"deletes", "renames"} and _NEW_CACHE not in path
         if path.startswith(_NOWHERE):
             return True
         if not is_removal and any(is_below(path, folder) for folder in self.ignored):
