@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -84,6 +85,7 @@ def test_all_numbers_of_the_command_line_are_tried_and_bounded() -> None:
 def test_an_option_that_cannot_be_meant_is_a_usage_error(
     project: Path, command: str, option: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    shutil.rmtree(project / ".mutabot", ignore_errors=True)  # as other options may have left it
     arguments = ["1"] if command in ("show", "replay") else []
     for value in (DIGITS, MORE, f"-{DIGITS}", "nan", "-1", "1e999", "inf", DEEP):
         assert main(["-C", str(project), command, *arguments, f"{option}={value}"]) == ExitCode.USAGE, value

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import os
 import shutil
-import sqlite3
 import subprocess
 from collections.abc import Callable
-from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -18,6 +16,8 @@ from mutabot.errors import JournalError
 from mutabot.journal.tracked import refuse_tracked
 from mutabot.settings.shard import Shard
 from tests.campaign.project import Quiet, request_for, write_project
+
+from .edited import edited
 
 MISSION = """
     def fetch(arm):
@@ -44,8 +44,8 @@ def git(folder: Path, *words: str) -> str:
 
 
 def forged(journal: Path) -> Path:
-    """All survivors are killed, as the journal has it now."""
-    with closing(sqlite3.connect(journal)) as connection, connection:
+    """All survivors are killed, as the journal has it now: also the digests of its rows are right."""
+    with edited(journal) as connection:
         (count,) = connection.execute("SELECT count(*) FROM outcome WHERE verdict = 'survived'").fetchone()
         assert count
         connection.execute(

@@ -89,10 +89,10 @@ def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) ->
         raise NothingToDoError(f"the journal holds no mutants ({results.state}): run `mutabot run` first")
     if not results.done:
         raise NothingToDoError("no mutant has been run yet: `mutabot run` goes on")
+    mutants = select([one.mutant for one in results.mutants], tuple(only or ()), tuple(skip or ()), None)
     by_id: Mapping[str, MutantResult] = {one.mutant.id: one for one in results.survivors}
     if not by_id:
         raise NothingToDoError("no mutant survived: there is no check to suggest")
-    mutants = select([one.mutant for one in results.mutants], tuple(only or ()), tuple(skip or ()), None)
     chosen = [by_id[mutant.id] for mutant in mutants if mutant.id in by_id]
     if not chosen:
         raise NothingToDoError("none of the mutants that were asked for survived")

@@ -13,10 +13,10 @@ from distributed import Security
 
 from mutabot.campaign.cluster import link
 from mutabot.campaign.cluster.bundle import Bundle
-from mutabot.campaign.cluster.environment import versions
 from mutabot.campaign.cluster.local import LocalCluster, address_in
 from mutabot.campaign.cluster.roster import Roster
 from mutabot.campaign.cluster.shipping import Shipment
+from mutabot.campaign.reuse.keys import versions
 from mutabot.cli.request import request_of
 from mutabot.errors import ClusterError, ConfigurationError, UsageError
 from mutabot.settings.cluster import ClusterSettings, cluster_settings
