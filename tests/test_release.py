@@ -6,9 +6,12 @@ import re
 import subprocess
 import sys
 import tarfile
+from importlib import metadata
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 import pages
 
@@ -114,3 +117,16 @@ def test_nobody_is_told_to_install_a_name_that_nobody_owns() -> None:
     assert [
         line for line in told if re.search(r"""install ['"]?mutabot\b|[\s'"]mutabot(\[|['"\s]|$)""", line)
     ] == []
+
+
+def test_what_pinned_packages_need_is_pinned_as_well() -> None:
+    """Else pip, which demands hashes of everything, installs nothing."""
+    text = (pages.ROOT / "requirements.lock").read_text(encoding="utf-8")
+    names = {canonicalize_name(name) for name in re.findall(r"^([\w.-]+)==", text, re.MULTILINE)}
+    needed = {
+        (name, canonicalize_name(one.name))
+        for name in names
+        for one in map(Requirement, metadata.requires(name) or ())
+        if one.marker is None or one.marker.evaluate({"extra": ""})
+    }
+    assert [pair for pair in sorted(needed) if pair[1] not in names] == []
