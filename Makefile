@@ -188,7 +188,7 @@ $(ROS1)/.ready: $(READY) tools/beside.py tools/see_rospy.py
 $(ROS2)/.ready: $(READY) tools/beside.py requirements-ros2.lock
 	@$(RUN) tools/beside.py $(ROS2)
 	@$(RUN) -m pip --python $(ROS2)/bin/python install --quiet --disable-pip-version-check --no-deps \
-	    --require-hashes --only-binary :all: -r requirements-ros2.lock || echo "no wheels of ROS 2 for this Python and machine: its tests skip themselves"
+	    --require-hashes --only-binary :all: --no-binary empy -r requirements-ros2.lock || echo "no wheels of ROS 2 for this Python and machine: its tests skip themselves"
 	@touch $@
 
 clean:
