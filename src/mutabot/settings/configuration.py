@@ -274,7 +274,7 @@ class Settings(BaseModel):
     cluster: dict[str, Any] = {}
     """For a [cluster](cluster.md): `files` are sent to workers beside
     [what git tracks](cluster.md#what-is-shipped); folders and patterns may be named. `ca`, `cert` and
-    `key` are files in PEM format for [TLS](cluster.md#tls). Which cluster it is says `--cluster`. Where this
+    `key` are files in PEM format for [TLS](cluster.md#tls). `--cluster` says which cluster it is. Where this
     table stands, `mutabot check` lists what is sent.
 
         cluster = { files = ["data/table.json"], ca = "ca.pem", cert = "cert.pem", key = "key.pem" }
