@@ -17,7 +17,7 @@ SITE   := $(VENV)-site
 AUDIT  := $(VENV)-audit
 LOCKS  := $(wildcard requirements*.lock)
 
-of_ros  = $(wildcard tests/*/test_ros$(1)*.py tests/*/*/test_ros$(1)*.py)
+of_ros  = $(wildcard tests/packages/ros/test_ros$(1)*.py tests/model/values/test_messages.py)
 
 .PHONY: demo test whole check format docs site pictures comparison bench stress judged shipped foreign audit sbom locks dist clean
 

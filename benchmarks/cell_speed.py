@@ -18,7 +18,7 @@ from pathlib import Path
 EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "paper"
 sys.path.insert(0, str(EXAMPLE))
 
-START = "from mutabot.cells import Cell; Cell(1)"
+START = "from mutabot_cell import Cell; Cell(1)"
 START_AND_PLAN = START + ".arm.move_by(z=0.001)"
 
 
@@ -45,7 +45,7 @@ def main(runs: int) -> None:
     import kinova  # noqa: PLC0415  (after the start-up times, so that they share nothing)
     import mission  # noqa: PLC0415
 
-    from mutabot.cells import Cell  # noqa: PLC0415
+    from mutabot_cell import Cell  # noqa: PLC0415
 
     kinova.connect(Cell(0))
     kinova.Arm().move_by(z=0.001)  # loads the planner's libraries

@@ -65,7 +65,7 @@ HEADINGS = (
 )  # fmt: skip
 MARK = "<!-- Written by `make bench` (benchmarks/engines.py) from here on. -->"
 ENGINES = ("branch", "replay", "fresh")
-#: physics steps per simulated second of mutabot.cells
+#: physics steps per simulated second of mutabot_cell
 STEPS_PER_SECOND = 500
 
 
@@ -254,7 +254,7 @@ def raw_step_rate(example: str, cores: int) -> float:
 
 def recorded_inputs(example: str) -> list[Any]:
     """Inputs of all servos at every physics step of a run of the example's program."""
-    from mutabot.cells import Cell  # noqa: PLC0415  # only this needs it
+    from mutabot_cell import Cell  # noqa: PLC0415  # only this needs it
 
     sys.path.insert(0, str(ROOT / "examples" / example))
     cell = Cell(1)
@@ -283,7 +283,7 @@ def step_bare(inputs: list[Any]) -> float:
     """Steps per second of wall clock, the best of several times."""
     import mujoco  # noqa: PLC0415  # only this needs it
 
-    from mutabot.cells import Cell  # noqa: PLC0415
+    from mutabot_cell import Cell  # noqa: PLC0415
 
     rates = []
     for _ in range(8):

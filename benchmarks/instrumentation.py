@@ -17,11 +17,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from mutabot.classical import find_texts, names
 from mutabot.inside.text.import_hook import ImportHook
 from mutabot.inside.text.instrument import instrumented
 from mutabot.inside.text.loading import compile_tree
 from mutabot.model import Instrumentation, ProgramText
+from mutabot_source import find_texts, names
 
 #: many places per line and nothing else: the worst there is
 DENSE = """

@@ -21,7 +21,7 @@ import kinova  # noqa: E402
 import mission  # noqa: E402
 import sensors  # noqa: E402
 
-from mutabot.cells import Cell, CellError, Position  # noqa: E402
+from mutabot_cell import Cell, CellError, Position  # noqa: E402
 
 
 def judge(expected: Position, reading: Position, threshold: float, deviations: list[float]) -> bool:

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from mutabot.classical import ClassicalOperator, Example, names, operator
+from mutabot_source import ClassicalOperator, Example, names, operator
 
 PAGE = Path(__file__).parents[1] / "docs" / "classical.md"
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from mutabot.cells import Cell, render
+from mutabot_cell import Cell, render
 
 ROOT = Path(__file__).parents[1]
 #: its box is red

@@ -5,7 +5,7 @@ In this example a simulated cell stands behind it. `connect` must be called befo
 
 from __future__ import annotations
 
-from mutabot.cells import Cell, Pose
+from mutabot_cell import Cell, Pose
 
 _cell: Cell | None = None
 

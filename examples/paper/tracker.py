@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mutabot.cells import Cell, Position, current
+from mutabot_cell import Cell, Position, current
 
 
 def robot_position() -> Position:

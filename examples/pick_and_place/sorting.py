@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-from mutabot.cells import Cell, Pose, Position, SensorError
+from mutabot_cell import Cell, Pose, Position, SensorError
 
 OPEN = 0
 CLOSED = 1

@@ -29,7 +29,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Float64, Header, Int32
 from std_srvs.srv import SetBool, Trigger
 
-from mutabot.cells import Cell, CellError, MotionRefused, Pose, Position
+from mutabot_cell import Cell, CellError, MotionRefused, Pose, Position
 
 #: how often `/clock` speaks while time passes, in simulated seconds
 CLOCK_PERIOD = 0.5

@@ -10,7 +10,7 @@ from analysis import samples
 from mutabot.cli.app import main
 from mutabot.evidence.recording import to_bytes
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
-from report.motion.sample import recording
+from packages.motion.sample import recording
 
 JOURNAL = Path(".mutabot", "journal.sqlite")
 SURVIVOR = samples.MUTANTS[1]

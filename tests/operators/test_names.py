@@ -10,12 +10,13 @@ from pathlib import Path
 import pytest
 
 import mutabot
-from mutabot import classical, operators
+import mutabot_source
+import operators
 from mutabot.operators.control import CONTROLS
 
 SOURCE = Path(mutabot.__file__).parent
 ROOMS = {"operators", "classical"}
-NAMES = {*operators.names(), *classical.names(), *CONTROLS}
+NAMES = {*operators.names(), *mutabot_source.names(), *CONTROLS}
 #: words that name something else as well, where they do: keys of vocabularies, an option of the command line
 OTHERWISE = {
     "opposite": {"proposal", "vocabulary"},

@@ -45,7 +45,7 @@ OFFSET = """
 ZERO = """
     import libcst as cst
 
-    from mutabot.classical.operator import ClassicalOperator, Draft, Example
+    from mutabot_source.operator import ClassicalOperator, Draft, Example
 
 
     class Zero(ClassicalOperator):

@@ -36,7 +36,7 @@ def test_a_file_of_ones_own_goes_before_a_shipped_one(names: list[str], tmp_path
 def test_the_clock_and_probes_of_ones_own_go_before_shipped_ones(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text(
         'clock = { tick = "pybullet:stepSimulation", step = 0.01 }\n'
-        '[[probe]]\ncall = "mutabot.cells:world"\ntolerance = 0.5\n'
+        '[[probe]]\ncall = "mutabot_cell:world"\ntolerance = 0.5\n'
     )
     found = load(["cell", "own.toml"], tmp_path)
     assert found.clock is not None

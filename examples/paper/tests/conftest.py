@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import kinova
 import pytest
 
-from mutabot.cells import Cell, simulated_time
+from mutabot_cell import Cell, simulated_time
 
 
 @pytest.fixture

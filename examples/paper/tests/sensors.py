@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tracker
 
-from mutabot.cells import Position
+from mutabot_cell import Position
 
 
 def robot_home_position() -> Position:

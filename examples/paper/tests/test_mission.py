@@ -11,7 +11,7 @@ from expected import HOME, ON_CONVEYOR, TARGETS, is_within
 from pytest_bdd import given, parsers, scenarios, then, when
 from sensors import box_end_position, box_start_position, robot_home_position
 
-from mutabot.cells import Cell, Position
+from mutabot_cell import Cell, Position
 
 scenarios("features/mission.feature")
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import pytest
 from monitors import watch_box, watch_gripper, watch_tilt
 
-from mutabot.cells import Box, Cell, Scene
-from mutabot.cells.fixtures import *  # noqa: F403  (new_cell; fails a test whose condition broke in silence)
+from mutabot_cell import Box, Cell, Scene
+from mutabot_cell.fixtures import *  # noqa: F403  (new_cell; fails a test whose condition broke in silence)
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from mutabot.cells import Cell, Position
+from mutabot_cell import Cell, Position
 
 CONVEYOR_TOP, CONVEYOR_EDGE = 1.0, 0.1
 """Height of the conveyor, and the x at which it begins."""

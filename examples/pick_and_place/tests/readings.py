@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mutabot.cells import Cell, Pose, Position
+from mutabot_cell import Cell, Pose, Position
 
 
 def tool_at_rest(cell: Cell) -> Pose:

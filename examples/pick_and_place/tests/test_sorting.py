@@ -10,7 +10,7 @@ from monitors import CONVEYOR_TOP, TABLE_TOP
 from readings import box_after, box_before, opening_after, tool_at_rest
 from sorting import Outcome, Report
 
-from mutabot.cells import Box, Cell, Pose
+from mutabot_cell import Box, Cell, Pose
 
 CellWith = Callable[..., Cell]
 

@@ -22,8 +22,8 @@ from geometry_msgs.msg import PointStamped, TwistStamped
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, SetBoolRequest, SetBoolResponse, Trigger, TriggerRequest, TriggerResponse
 
-from mutabot.cells import Cell, Position
-from mutabot.cells.errors import CellError, MotionRefused
+from mutabot_cell import Cell, Position
+from mutabot_cell.errors import CellError, MotionRefused
 
 FRAME = "base"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mutabot.cells import Position
+from mutabot_cell import Position
 
 HOME = Position(0.5761017, 0.0021496, 0.4340113)
 ON_CONVEYOR = Position(0.55, 0.2, 1.0)

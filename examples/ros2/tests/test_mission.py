@@ -13,7 +13,7 @@ from pytest_bdd import given, parsers, scenarios, then, when
 from rclpy.node import Node
 from sensors import box_end_position, box_start_position, robot_home_position
 
-from mutabot.cells import Position
+from mutabot_cell import Position
 
 scenarios("features/mission.feature")
 

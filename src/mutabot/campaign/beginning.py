@@ -36,7 +36,12 @@ _REMARKS = 8
 
 def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
     """What runs the tasks of a campaign."""
-    chosen = importlib.import_module(f"{executors.__name__}.{request.executor}")
+    named = (
+        "mutabot_dask.executor"
+        if request.executor == "cluster"
+        else f"{executors.__name__}.{request.executor}"
+    )
+    chosen = importlib.import_module(named)
     opened: AbstractContextManager[Executor] = chosen.executor(request, progress.note)
     return opened
 

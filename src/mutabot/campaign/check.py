@@ -7,8 +7,6 @@ from collections.abc import Collection, Iterator, Sequence
 
 from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.cluster.shipping import Shipment
-from mutabot.campaign.cluster.telling import check_lines
 from mutabot.campaign.engines.choice import try_controls
 from mutabot.campaign.engines.engine import Remainder
 from mutabot.campaign.plan.planned import Plan
@@ -19,6 +17,8 @@ from mutabot.model import Mutant, Vocabulary
 from mutabot.model.named import MAIN
 from mutabot.operators import load_all
 from mutabot.vocabulary.load import shipped
+from mutabot_dask.shipping import Shipment
+from mutabot_dask.telling import check_lines
 
 from .beginning import at_it, begin, plan_of, selected
 from .campaign import Campaign

@@ -13,10 +13,10 @@ from mutabot.campaign.workers.pause import Pause
 from mutabot.families import USUAL
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
-from mutabot.settings.cluster import ClusterSettings
 from mutabot.settings.configuration import Configuration
 from mutabot.settings.sample import Sample
 from mutabot.settings.shard import Shard
+from mutabot_dask.settings import ClusterSettings
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,6 @@ from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.program_text import family_of
 from mutabot.campaign.budget.budget import OUT_OF_TIME, run_within
-from mutabot.campaign.cluster.shipping import Shipment
-from mutabot.campaign.cluster.telling import lacking
 from mutabot.campaign.engines.choice import first_engine, run_mutants
 from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
@@ -43,6 +41,8 @@ from mutabot.journal.journal import Journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS
 from mutabot.model import LeftOut, Mutant
+from mutabot_dask.shipping import Shipment
+from mutabot_dask.telling import lacking
 
 from .beginning import at_it, begin, plan_of, selected
 from .campaign import Campaign

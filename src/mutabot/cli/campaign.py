@@ -18,7 +18,7 @@ from .request import request_of
 
 if TYPE_CHECKING:
     from mutabot.campaign.request import Progress, Request
-    from mutabot.serving.live import Live
+    from mutabot_live.live import Live
 
 
 def check(
@@ -146,7 +146,7 @@ def _run(request: Request, progress: Progress) -> Path:
 
 def _served(request: Request, port: int | None) -> Live:
     """What runs the campaign with a page. Raises UsageError if the port cannot be had."""
-    from mutabot.serving.live import Live
+    from mutabot_live.live import Live
 
     live = Live(request, port or 0, lambda text: tell([f"mutabot: {text}"]))
     tell([f"mutabot: live at {live.address}"])

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from mutabot.journal.reader import JournalReader
     from mutabot.journal.records import Replayed
     from mutabot.model import Mutant
-    from mutabot.report.motion.shown import Shown
+    from mutabot_motion.shown import Shown
 
 Test = Annotated[
     str | None,
@@ -72,9 +72,9 @@ def replay(
     from mutabot.analysis.results import find_mutant, read_results
     from mutabot.analysis.stored.evidence import StoredEvidence
     from mutabot.journal.reader import JournalReader
-    from mutabot.report.motion.choice import choose
-    from mutabot.report.motion.pictures.video import check_video
-    from mutabot.report.motion.sights import show_all, sights_of
+    from mutabot_motion.choice import choose
+    from mutabot_motion.pictures.video import check_video
+    from mutabot_motion.sights import show_all, sights_of
 
     path = find_journal(context.obj)
     sights = sights_of(path.parent, view=view, rerun=rerun, rrd=rrd, mcap=mcap)
@@ -132,7 +132,7 @@ def _film(
 ) -> list[Replayed]:
     """Run it again in the round that is shown, and film the test that is shown."""
     from mutabot.campaign.filming import choose_graphics, film
-    from mutabot.report.motion.pictures.video import show
+    from mutabot_motion.pictures.video import show
 
     takes: list[Take] = []
     with TemporaryDirectory(prefix="mutabot-film-") as folder:

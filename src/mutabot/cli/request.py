@@ -17,8 +17,8 @@ from .options import ENGINES
 if TYPE_CHECKING:
     from mutabot.campaign.request import Request
     from mutabot.model import Moment
-    from mutabot.settings.cluster import ClusterSettings
     from mutabot.settings.configuration import Configuration
+    from mutabot_dask.settings import ClusterSettings
 
 
 def request_of(
@@ -84,7 +84,7 @@ def request_of(
 
 def _cluster(configuration: Configuration, address: str) -> ClusterSettings:
     """The cluster, with the certificate files of the configuration if it may need them. Raises UsageError."""
-    from mutabot.settings.cluster import cluster_settings
+    from mutabot_dask.settings import cluster_settings
 
     if address.startswith(("tcp://", "local:")):
         return cluster_settings(address)

@@ -5,7 +5,7 @@ An operator is one class in one file, and nothing else has to be edited: the reg
 - One that acts on **calls** is a subclass of ``Operator`` (``operator.py``) in a folder below this file's,
   one to a file, which has the operator's name: ``by-to`` is ``robot/by_to.py``. So workers find an operator
   without loading the others.
-- One that acts on **program text** is a subclass of ``ClassicalOperator`` (``mutabot/classical/operator.py``)
+- One that acts on **program text** is a subclass of ``ClassicalOperator`` (``mutabot_source/operator.py``)
   in ``classical/operators/``; a file may hold several.
 
 What several share goes into a file whose name begins with ``_``. A third party names its class under the

@@ -18,8 +18,8 @@ from mutabot.limits import shortened
 from mutabot.model import Moment
 from mutabot.model.graded.demand import Demand
 from mutabot.model.moment import EVERY
+from mutabot_dask.settings import ClusterTable
 
-from .cluster import ClusterTable
 from .demands import check_demands
 from .document import Document
 from .families import need_vocabulary, why_unknown

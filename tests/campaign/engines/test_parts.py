@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.workers.workers import Workers
-from tests.campaign.cluster.clusters import ends, write
 from tests.campaign.project import Quiet, request_for, run_campaign
+from tests.packages.dask.clusters import ends, write
 
 
 def test_parts_find_what_one_trunk_finds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

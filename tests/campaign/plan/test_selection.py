@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot import classical
+import mutabot_source
 from mutabot.campaign.plan.selection import select
 from mutabot.errors import SelectionError
 from mutabot.model.selector import is_like
@@ -103,7 +103,7 @@ def test_brackets_in_ids_are_just_brackets() -> None:
 
 OPERATORS = [
     *(("robot", name) for name in registry.names()),
-    *((family, name) for family in ("classical", "text") for name in classical.names(family)),
+    *((family, name) for family in ("classical", "text") for name in mutabot_source.names(family)),
 ]
 
 

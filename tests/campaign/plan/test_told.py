@@ -8,9 +8,9 @@ from mutabot import operators
 from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.campaign import open as open_campaign
 from mutabot.campaign.run import run_campaign
-from mutabot.classical import registry
 from mutabot.families import CLASSICAL, ROBOT
 from mutabot.report.as_json import results_data
+from mutabot_source import registry
 from tests.campaign.project import Quiet, request_for, write_project
 
 MISSION = """

@@ -18,7 +18,7 @@ from mutabot.inside.watching.watch import Watch
 from mutabot.inside.watching.watched_text import METHOD, NAME, READ
 from mutabot.inside.watching.watched_text import watch as watch_tree
 
-ORDINARY = Path(__file__).parents[2] / "classical" / "ordinary.py"
+ORDINARY = Path(__file__).parents[2] / "packages" / "source" / "ordinary.py"
 
 
 def run(source: str, name: str, monkeypatch: pytest.MonkeyPatch) -> tuple[ModuleType, Watch]:

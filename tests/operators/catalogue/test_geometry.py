@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mutabot.cells.geometry import rotation_from_euler
 from mutabot.model import Call, Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.operators import Subject, operator
 from mutabot.operators.passage import rehearse
+from mutabot_cell.geometry import rotation_from_euler
 
 AXES = "xyz"
 RANDOM = Random(1)

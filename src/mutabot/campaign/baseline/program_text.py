@@ -8,8 +8,6 @@ from functools import cache
 from pathlib import Path
 
 from mutabot.campaign.workers.task import Result
-from mutabot.classical import Planted, find_texts, merge, names, plant, program_files, refine
-from mutabot.classical.mutants import LeftOutText
 from mutabot.families import CONTROL, OF_TEXT, ROBOT
 from mutabot.model import (
     FATAL,
@@ -24,6 +22,8 @@ from mutabot.model import (
 )
 from mutabot.operators import load_all
 from mutabot.operators.control import Identity
+from mutabot_source import Planted, find_texts, merge, names, plant, program_files, refine
+from mutabot_source.mutants import LeftOutText
 
 from .places import Place
 

@@ -6,9 +6,9 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from mutabot import operators
-from mutabot.classical.registry import load_all as load_classical
 from mutabot.families import OF_CALLS, OF_TEXT
 from mutabot.operators.rule import Rule, in_order
+from mutabot_source.registry import load_all as load_classical
 
 
 @dataclass(frozen=True, slots=True)

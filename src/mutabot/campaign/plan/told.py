@@ -6,11 +6,11 @@ from collections.abc import Iterable
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.places import Place
-from mutabot.classical.registry import load_all
 from mutabot.families import OF_TEXT
 from mutabot.journal.records import Reaching
 from mutabot.model import Mutant
 from mutabot.operators import operator
+from mutabot_source.registry import load_all
 
 
 def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:

@@ -7,7 +7,7 @@ from functools import cached_property
 from itertools import chain
 from pathlib import Path
 
-from mutabot import classical
+import mutabot_source
 from mutabot.campaign.request import Request
 from mutabot.errors import SelectionError
 from mutabot.model.selector import line_of, means_numbers
@@ -63,11 +63,11 @@ class _Known:
 
     @cached_property
     def _names(self) -> tuple[str, ...]:
-        return (*registry.names(), *classical.names(), *known_families(), *(role.value for role in Role))
+        return (*registry.names(), *mutabot_source.names(), *known_families(), *(role.value for role in Role))
 
     @cached_property
     def _files(self) -> list[str]:
-        return classical.program_files(self._root, self._sources)
+        return mutabot_source.program_files(self._root, self._sources)
 
     def _lines(self, file: str) -> int:
         try:

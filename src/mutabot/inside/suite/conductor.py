@@ -29,12 +29,12 @@ from mutabot.inside.pipe import Held, Pipe
 from mutabot.inside.processes.host import Host
 from mutabot.inside.processes.member import watch_forks
 from mutabot.inside.processes.members import Members
-from mutabot.inside.ros._environment import prepare
 from mutabot.inside.session import Session
 from mutabot.inside.stacks import say_where_on_signal
 from mutabot.inside.text.returns import Returns
 from mutabot.model import Role
 from mutabot.operators.registry import preload
+from mutabot_ros._environment import prepare
 
 from .classify import classify
 from .running import Running, is_no_program

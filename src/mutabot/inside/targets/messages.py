@@ -1,8 +1,8 @@
 """Targets that have a name on a middleware: topics, services, actions, parameters.
 
 Which name something has is known only when it is used, after remapping and namespaces. So the hooks of a
-middleware (``inside.ros``, one file each) ask here at each use, and let the handler they get stand around it.
-They are put in place as soon as the program imports the middleware.
+middleware (``mutabot_ros``, one file each) ask here at each use, and let the handler they get stand around
+it. They are put in place as soon as the program imports the middleware.
 
 What hooks keep to, so that all operators mean the same in every middleware:
 
@@ -38,7 +38,7 @@ from .target import Finding, Handler, Targets, Tell
 from .unused import unheard, unused
 
 #: the rooms in which middlewares are: each file says in ``MODULE`` which module it is about, and has ``hook``
-_MIDDLEWARES = "mutabot.inside.ros"
+_MIDDLEWARES = "mutabot_ros"
 
 
 class Messages(Targets):

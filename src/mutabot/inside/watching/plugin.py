@@ -15,8 +15,8 @@ from typing import Any
 import pytest
 
 from mutabot.border.watch import WATCH_VARIABLE
-from mutabot.inside.ros._environment import prepare_unknown
-from mutabot.inside.ros._master import MasterError
+from mutabot_ros._environment import prepare_unknown
+from mutabot_ros._master import MasterError
 
 from .elsewhere import seen_elsewhere, watch_elsewhere
 from .watch import Watch

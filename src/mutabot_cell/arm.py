@@ -1,0 +1,272 @@
+"""The arm as its user knows it: joint moves and straight-line moves, refused or stopped when they must be."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+from mutabot_cell.models import kinova
+from mutabot_cell.models.model import PHYSICS_STEP
+from mutabot_cell.motion.kinematics import Kinematics, Line
+from mutabot_cell.motion.trajectory import Motion, joint_motion, line_motion
+
+from .errors import BadArgument, MotionRefused, ProtectiveStop
+from .geometry import Array, Pose, pose_of, rotation_from_euler
+from .simulation import STEPS_PER_TICK, Simulation
+
+EXTERNAL_TORQUE_LIMIT = (20.0, 20.0, 20.0, 20.0, 6.0, 6.0, 6.0)
+"""External torque on a joint that stops the arm when it lasts two ticks, Nm."""
+FOLLOWING_ERROR_LIMIT = 0.03
+"""Distance between setpoint and joint that stops the arm, rad."""
+
+_RELAXING_TICKS = 20
+_SETTLED = 0.001
+_SETTLING_TICKS = 50
+
+
+class Arm:
+    """Kinova Gen3 with a servo per joint.
+
+    Poses are in the base frame: m, and Euler angles x, y, z in degrees (R = Rz·Ry·Rx). Joint angles are in
+    degrees.
+    Every move returns when it has been carried out.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._kinematics = Kinematics()
+        self._setpoint: Array = np.array(kinova.HOME)
+        self._stream: Array | None = None
+        self._streamed = 0
+        self._pressed_ticks = 0
+        self._first_contact = ("", "", 0.0)
+        self._stop: ProtectiveStop | None = None
+        self._lag = np.array(kinova.SERVO_LAG)
+        self._torque_limit = np.array(EXTERNAL_TORQUE_LIMIT)
+        # views of the physics' own memory
+        self._joints = simulation.data.qpos[: kinova.JOINT_COUNT]
+        self._external = simulation.data.qfrc_constraint[: kinova.JOINT_COUNT]
+        simulation.before_tick.append(self._drive)
+        simulation.after_tick.append(self._guard)
+
+    def commanded_joints(self) -> tuple[float, ...]:
+        """Setpoints of the joints, degrees, not wrapped."""
+        return tuple(np.degrees(self._setpoint).tolist())
+
+    def commanded_pose(self) -> Pose:
+        """Tool pose that the setpoints stand for: relative moves start here."""
+        position, rotation = self._kinematics.tool(self._setpoint)
+        return pose_of(position, rotation)
+
+    def home(self) -> None:
+        """Joint move to the home position; continuous joints turn the shorter way.
+
+        Raises:
+            ProtectiveStop: something was in the way.
+        """
+        self.move_joints(kinova.HOME_DEGREES)
+
+    def move_joints(self, angles: Sequence[float], *, speed: float = 1.0) -> None:
+        """Move all joints to `angles` (7 values, degrees) at once, arriving together.
+
+        Args:
+            speed: part of the joints' speed limits, 0..1.
+
+        Raises:
+            BadArgument: not seven finite numbers.
+            MotionRefused: an angle is beyond its joint's limit.
+            ProtectiveStop: something was in the way.
+        """
+        _check_numbers("angles", angles, kinova.JOINT_COUNT)
+        _check_speed(speed)
+        self._check_ready()
+        target = np.radians(np.array(angles, dtype=float))
+        for index, joint in enumerate(kinova.JOINTS):
+            if math.isinf(joint.limit):
+                turns = round((self._setpoint[index] - target[index]) / (2 * math.pi))
+                target[index] += turns * 2 * math.pi
+            elif abs(target[index]) > joint.limit:
+                excess = math.degrees(abs(target[index]) - joint.limit)
+                raise MotionRefused(
+                    f"motion refused: joint {index + 1} would go to {angles[index]:.1f} deg, "
+                    f"{excess:.1f} deg beyond its limit of {math.degrees(joint.limit):.1f} deg",
+                    limit=f"joint {index + 1}",
+                    value=float(angles[index]),
+                    allowed=math.copysign(math.degrees(joint.limit), target[index]),
+                    excess=excess,
+                    unit="deg",
+                )
+        self._run(joint_motion(self._setpoint, target, PHYSICS_STEP, speed))
+
+    def move_to(self, pose: Pose, *, speed: float = 1.0) -> None:
+        """Move the tool in a straight line to `pose`, turning evenly on the way.
+
+        Args:
+            speed: part of the tool's speed limits, 0..1. Joint limits can make the motion slower.
+
+        Raises:
+            BadArgument: a value is not a finite number.
+            MotionRefused: some point of the line is out of reach or limits; nothing has moved.
+            ProtectiveStop: something was in the way.
+        """
+        values = (pose.x, pose.y, pose.z, pose.theta_x, pose.theta_y, pose.theta_z)
+        _check_numbers("pose", values, 6)
+        _check_speed(speed)
+        self._check_ready()
+        start, rotation = self._kinematics.tool(self._setpoint)
+        end_rotation = rotation_from_euler(*values[3:])
+        line = Line.between(start, rotation, np.array(values[:3]), end_rotation)
+        if line.length < 1e-7 and line.angle < 1e-7:
+            return
+        knots = self._kinematics.follow(self._setpoint, line)
+        self._run(line_motion(knots, line.length, line.angle, PHYSICS_STEP, speed))
+
+    def move_by(
+        self,
+        x: float = 0.0,
+        y: float = 0.0,
+        z: float = 0.0,
+        theta_x: float = 0.0,
+        theta_y: float = 0.0,
+        theta_z: float = 0.0,
+        *,
+        speed: float = 1.0,
+    ) -> None:
+        """Like `move_to`, relative: m (base frame) and degrees are added to the commanded pose's values."""
+        _check_numbers("amounts", (x, y, z, theta_x, theta_y, theta_z), 6)
+        now = self.commanded_pose()
+        self.move_to(
+            Pose(
+                now.x + x,
+                now.y + y,
+                now.z + z,
+                now.theta_x + theta_x,
+                now.theta_y + theta_y,
+                now.theta_z + theta_z,
+            ),
+            speed=speed,
+        )
+
+    def acknowledge_stop(self) -> None:
+        """Allow motions again after a protective stop; takes a moment in which the joints stop pressing."""
+        if self._stop is None:
+            return
+        for _ in range(_RELAXING_TICKS):
+            self._setpoint = self._simulation.data.qpos[: kinova.JOINT_COUNT].copy()
+            self._simulation.tick()
+        self._stop = None
+        self._pressed_ticks = 0
+
+    def _check_ready(self) -> None:
+        if self._stop is not None:
+            raise MotionRefused(
+                f"motion refused: not acknowledged: {self._stop}", limit="protective stop"
+            ) from self._stop
+
+    def _run(self, motion: Motion) -> None:
+        steps = len(motion.joints)
+        if steps == 0:
+            return
+        stream = motion.joints + self._lag * motion.speeds
+        rest = -steps % STEPS_PER_TICK
+        self._stream = np.concatenate((stream, np.repeat(motion.joints[-1:], rest, axis=0)))
+        self._streamed = 0
+        self._motion_joints = np.concatenate((motion.joints, np.repeat(motion.joints[-1:], rest, axis=0)))
+        while self._stream is not None:
+            self._simulation.tick()
+        for _ in range(_SETTLING_TICKS):
+            if float(np.abs(self._following_error()).max()) < _SETTLED:
+                break
+            self._simulation.tick()
+
+    def _drive(self) -> None:
+        setpoints = self._simulation.setpoints
+        if self._stream is None:
+            setpoints[:, : kinova.JOINT_COUNT] = self._setpoint
+            return
+        end = self._streamed + STEPS_PER_TICK
+        setpoints[:, : kinova.JOINT_COUNT] = self._stream[self._streamed : end]
+        self._setpoint = self._motion_joints[end - 1]
+        self._streamed = end
+        if end >= len(self._stream):
+            self._stream = None
+
+    def _following_error(self) -> Array:
+        error: Array = self._setpoint - self._joints
+        return error
+
+    def _guard(self) -> None:
+        """Protective stop: the check that the arm's controller makes at every tick."""
+        if self._stop is not None:
+            return
+        external = self._external
+        # seven numbers: plain Python is quicker than numpy here, and this runs at every tick
+        pressed = any(map(operator.gt, map(abs, external.tolist()), EXTERNAL_TORQUE_LIMIT))
+        self._pressed_ticks = self._pressed_ticks + 1 if pressed else 0
+        if pressed and self._pressed_ticks == 1:
+            self._first_contact = strongest_contact(self._simulation)
+        error = self._following_error()
+        lagging = max(map(abs, error.tolist())) > FOLLOWING_ERROR_LIMIT
+        if self._pressed_ticks < 2 and not lagging:
+            return
+        joint = int(np.argmax(np.abs(external) / self._torque_limit if pressed else np.abs(error)))
+        contacts = [strongest_contact(self._simulation)]
+        if pressed:
+            contacts.append(self._first_contact)
+        first, second, force = max(contacts, key=lambda contact: contact[2])
+        self._stop = ProtectiveStop(
+            time=self._simulation.time,
+            first=first,
+            second=second,
+            force=force,
+            joint=joint + 1,
+            torque=float(external[joint]),
+            following_error=float(error[joint]),
+        )
+        self._stream = None
+        self._setpoint = self._simulation.data.qpos[: kinova.JOINT_COUNT].copy()
+        raise self._stop
+
+
+def strongest_contact(simulation: Simulation) -> tuple[str, str, float]:
+    """The robot's part, what it touches, and the normal force (N) of the robot's strongest contact.
+
+    A box between the fingers counts as the robot's part; ("", "", 0.0) without a contact.
+    """
+    cell_model, data = simulation.model, simulation.data
+    robot = cell_model.body("robot").id
+    found: tuple[str, str, float] = ("", "", 0.0)
+    wrench = np.zeros(6)
+    for index in range(data.ncon):
+        geoms = [int(geom) for geom in data.contact[index].geom]
+        roots = [int(cell_model.body_rootid[cell_model.geom_bodyid[geom]]) for geom in geoms]
+        if robot not in roots:
+            continue
+        if roots[1] == robot and roots[0] != robot:
+            geoms.reverse()
+        mujoco.mj_contactForce(cell_model, data, index, wrench)
+        if abs(wrench[0]) > found[2]:
+            found = (
+                cell_model.geom(geoms[0]).name or "robot",
+                cell_model.geom(geoms[1]).name or "something",
+                abs(float(wrench[0])),
+            )
+    return found
+
+
+def _check_numbers(name: str, values: Sequence[float], count: int) -> None:
+    fine = len(values) == count and all(
+        isinstance(value, (int, float, np.floating)) and not isinstance(value, bool) and math.isfinite(value)
+        for value in values
+    )
+    if not fine:
+        raise BadArgument(f"Expected {count} finite numbers but got {name}={values!r}")
+
+
+def _check_speed(speed: float) -> None:
+    if not (isinstance(speed, (int, float)) and 0.0 < speed <= 1.0):
+        raise BadArgument(f"Expected 0 < speed <= 1 but got speed={speed!r}")

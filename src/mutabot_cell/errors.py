@@ -1,0 +1,142 @@
+"""Everything a work cell can raise.
+
+    CellError
+    ├── SimulatorMissing (ImportError)     mujoco or a planner library is not installed
+    ├── BadArgument (ValueError)           a value of the wrong type, or not finite, at the border
+    ├── MotionRefused                      target out of reach or limits; nothing has moved
+    ├── ProtectiveStop                     the arm hit something hard; the motion has ended
+    ├── SensorError                        nothing to read (no box in the cell)
+    ├── ConditionBroken (AssertionError)   an `always` condition was false at some tick
+    └── SimulationDiverged                 the physics gave NaN or nonsense: the tool failed, not the robot
+
+Each error carries its data as attributes too, so that reports need not parse messages.
+"""
+
+# ruff: noqa: N818  (the names say what happened, as robot controllers do: "motion refused", "protective stop")
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+
+class CellError(Exception):
+    """Base of all errors of a work cell."""
+
+
+class SimulatorMissing(CellError, ImportError):
+    """A library of the extra `cells` is not installed."""
+
+    def __init__(self, library: str) -> None:
+        super().__init__(f"mutabot_cell needs '{library}': install mutabot with its extra 'cells'")
+        self.library = library
+
+
+class BadArgument(CellError, ValueError):
+    """An argument has a wrong type or value."""
+
+
+class MotionRefused(CellError):
+    """The controller refused a motion before anything moved.
+
+    Attributes:
+        limit: what would be exceeded: "reach", "joint 1" to "joint 7", "singularity"; or "protective stop"
+            when an earlier one has not been acknowledged.
+        value: the value that the motion would need, in `unit`; None where there is none.
+        allowed: the nearest allowed value, in `unit`; None where there is none.
+        excess: by how much the limit would be exceeded (>= 0), in `unit`.
+        unit: "m" or "deg".
+        fraction: part of the path that could be travelled, 0..1.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        limit: str,
+        value: float | None = None,
+        allowed: float | None = None,
+        excess: float = 0.0,
+        unit: str = "",
+        fraction: float = 0.0,
+    ) -> None:
+        super().__init__(message)
+        self.limit = limit
+        self.value = value
+        self.allowed = allowed
+        self.excess = excess
+        self.unit = unit
+        self.fraction = fraction
+
+
+class ProtectiveStop(CellError):
+    """The arm met a resistance it should not have, and stopped.
+
+    Attributes:
+        time: simulated time of the stop, s.
+        first: name of the touching part on the robot's side; "" when nothing touches.
+        second: name of the part it touched; "" when nothing touches.
+        force: normal force of the strongest contact, N.
+        joint: joint that noticed, 1..7.
+        torque: external torque on that joint, Nm.
+        following_error: commanded minus actual angle of that joint, rad.
+    """
+
+    def __init__(
+        self,
+        *,
+        time: float,
+        first: str,
+        second: str,
+        force: float,
+        joint: int,
+        torque: float,
+        following_error: float,
+    ) -> None:
+        what = f"{first} touched {second} with {force:.0f} N" if first else "resistance without a contact"
+        super().__init__(
+            f"protective stop at t={time:.2f} s: {what} "
+            f"(joint {joint}: external torque {torque:.1f} Nm, following error {following_error:.4f} rad)"
+        )
+        self.time = time
+        self.first = first
+        self.second = second
+        self.force = force
+        self.joint = joint
+        self.torque = torque
+        self.following_error = following_error
+
+
+class SensorError(CellError):
+    """A sensor has nothing to read."""
+
+
+class ConditionBroken(CellError, AssertionError):
+    """An `always` condition did not hold.
+
+    Attributes:
+        name: the condition's name.
+        time: simulated time at which it broke, s.
+        values: what was measured at that moment, as given by the condition.
+    """
+
+    def __init__(self, *, name: str, time: float, values: Mapping[str, object]) -> None:
+        shown = ", ".join(
+            f"{key}={value:.4g}" if isinstance(value, float) else f"{key}={value}"
+            for key, value in values.items()
+        )
+        super().__init__(f"'{name}' broke at t={time:.2f} s" + (f": {shown}" if shown else ""))
+        self.name = name
+        self.time = time
+        self.values = dict(values)
+
+
+class SimulationDiverged(CellError):
+    """The physics produced NaN or absurd values.
+
+    Attributes:
+        time: simulated time at which it was noticed, s.
+    """
+
+    def __init__(self, *, time: float, reason: str) -> None:
+        super().__init__(f"simulation diverged at t={time:.3f} s: {reason}")
+        self.time = time
+        self.reason = reason

@@ -1,0 +1,106 @@
+"""The gripper as its user knows it: a command, a force, and what it reports of itself."""
+
+from __future__ import annotations
+
+import math
+
+from mutabot_cell.models import robotiq
+from mutabot_cell.models.noise import Noise
+
+from .errors import BadArgument
+from .simulation import TICK, Simulation
+
+_BLOCKED = 0.003
+_STANDING = 0.004
+_SERVO = "fingers"
+_LONGEST_TICKS = 600
+
+
+class Gripper:
+    """Robotiq 2F-85. Position 0 is open (85 mm), 1 is closed."""
+
+    def __init__(self, simulation: Simulation, noise: Noise, force: float, speed: float) -> None:
+        self._simulation = simulation
+        self._noise = noise
+        self._servo = simulation.model.actuator(_SERVO).id
+        self._tendon = simulation.model.tendon("closing").id
+        self._target = 0.0
+        self._setpoint = 0.0
+        self.set_force(force)
+        self.set_speed(speed)
+        simulation.before_tick.append(self._drive)
+
+    def set_force(self, newtons: float) -> None:
+        """Grip force at each pad, 20..235 N.
+
+        Raises:
+            BadArgument: outside that range.
+        """
+        low, high = robotiq.FORCE_RANGE
+        if not low <= newtons <= high:
+            raise BadArgument(f"Expected {low} <= force <= {high} N but got force={newtons!r}")
+        self._force = float(newtons)
+        self._simulation.model.actuator_forcerange[self._servo] = (-self._force, self._force)
+
+    def set_speed(self, metres_per_second: float) -> None:
+        """Speed at which the opening changes, 0.020..0.150 m/s.
+
+        Raises:
+            BadArgument: outside that range.
+        """
+        low, high = robotiq.SPEED_RANGE
+        if not low <= metres_per_second <= high:
+            raise BadArgument(f"Expected {low} <= speed <= {high} m/s but got speed={metres_per_second!r}")
+        self._speed = float(metres_per_second)
+
+    def command(self, position: float, *, wait: bool = False) -> None:
+        """Start moving the fingers to `position` (0 open .. 1 closed).
+
+        The command returns at once, as the real gripper's does; the fingers move while time passes.
+
+        Args:
+            wait: let time pass until the fingers have arrived or are blocked.
+
+        Raises:
+            BadArgument: not a number in 0..1.
+        """
+        if not isinstance(position, (int, float)) or isinstance(position, bool) or not 0.0 <= position <= 1.0:
+            raise BadArgument(f"Expected 0 <= position <= 1 but got position={position!r}")
+        target = position * robotiq.STROKE
+        if target != self._target:
+            self._target = target
+            # blocked fingers start from where they are, not from where they wanted to be
+            self._setpoint = self._closed()
+        if wait:
+            for _ in range(_LONGEST_TICKS):
+                self._simulation.tick()
+                if self._setpoint == self._target and self._stands():
+                    break
+
+    def commanded(self) -> float:
+        """The last command, 0..1."""
+        return self._target / robotiq.STROKE
+
+    def opening(self) -> float:
+        """Measured distance between the pads, m, with noise."""
+        return self._noise.add("opening", robotiq.STROKE - self._closed())
+
+    def holding(self) -> bool:
+        """Whether the fingers press and are blocked before the commanded opening: something is between them.
+
+        Like the real gripper's object detection, it knows only its own position, speed and motor current.
+        """
+        blocked = abs(self._target - self._closed()) > _BLOCKED
+        pressing = abs(float(self._simulation.data.actuator_force[self._servo])) > 0.9 * self._force
+        return blocked and pressing and self._stands()
+
+    def _closed(self) -> float:
+        return float(self._simulation.data.ten_length[self._tendon])
+
+    def _stands(self) -> bool:
+        return abs(float(self._simulation.data.ten_velocity[self._tendon])) < _STANDING
+
+    def _drive(self) -> None:
+        missing = self._target - self._setpoint
+        self._setpoint += math.copysign(min(self._speed * TICK, abs(missing)), missing)
+        self._simulation.setpoints[:, self._servo] = self._setpoint

@@ -1,0 +1,147 @@
+"""The cell as a MuJoCo model: MJCF text, written here and compiled once per process."""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+
+from mutabot_cell.scene import BASE_POSITION, BLUE_RGBA, RED_RGBA, Box, Fixture, Mark, Scene
+
+from . import kinova, robotiq
+
+PHYSICS_STEP = 0.002
+"""Length of one physics step, s."""
+
+# Collision classes: fixtures (1), arm (2), gripper (4), boxes (8).
+_DEFAULTS = """
+<default>
+  <default class="fixture"><geom contype="1" conaffinity="14" friction="1 0.005 0.0001"/></default>
+  <default class="arm"><geom contype="2" conaffinity="13"/></default>
+  <default class="gripper"><geom contype="4" conaffinity="11"/></default>
+  <default class="box"><geom contype="8" conaffinity="15"/></default>
+  <default class="looks"><geom contype="0" conaffinity="0" mass="0" group="1"/></default>
+</default>
+"""
+
+# The dense Jacobian is right for this size; it also avoids a fault of MuJoCo 4.0.0's sparse factorisation
+# (its issue 3767: wrong accelerations; repaired in 4.0.1).
+_OPTIONS = f"""
+<option timestep="{PHYSICS_STEP}" integrator="implicitfast" cone="elliptic" impratio="100" jacobian="dense"
+        solver="Newton" iterations="20" tolerance="1e-8">
+  <flag autoreset="disable" island="disable"/>
+</option>
+<compiler angle="radian" autolimits="false" inertiafromgeom="true"/>
+"""
+
+_LOOKS = """
+<visual>
+  <headlight ambient="0.35 0.35 0.35" diffuse="0.35 0.35 0.35" specular="0.1 0.1 0.1"/>
+  <global offwidth="1280" offheight="960"/>
+  <quality shadowsize="4096" offsamples="8"/>
+  <map znear="0.02" zfar="30"/>
+</visual>
+<asset>
+  <texture type="skybox" builtin="gradient" rgb1="0.93 0.95 0.97" rgb2="0.70 0.76 0.82" width="64"
+           height="384"/>
+  <texture name="floor" type="2d" builtin="checker" rgb1="0.80 0.81 0.82" rgb2="0.75 0.76 0.78" width="128"
+           height="128"/>
+  <material name="floor" texture="floor" texrepeat="8 8" reflectance="0.04"/>
+</asset>
+"""
+
+
+def _numbers(values: tuple[float, ...]) -> str:
+    return " ".join(f"{value:.17g}" for value in values)
+
+
+def _halves(values: tuple[float, ...]) -> str:
+    return _numbers(tuple(value / 2 for value in values))
+
+
+def _fixture_xml(fixture: Fixture) -> str:
+    return (
+        f'<geom name="{fixture.name}" class="fixture" type="box" size="{_halves(fixture.size)}" '
+        f'pos="{_numbers(fixture.centre)}" rgba="{_numbers(fixture.rgba)}"/>'
+    )
+
+
+def _legs_xml(fixture: Fixture) -> str:
+    """Four legs to look at; nothing touches them."""
+    (width, depth, height), (x, y, z) = fixture.size, fixture.centre
+    half = (z - height / 2) / 2
+    if half <= 0.05:
+        return ""
+    return "".join(
+        f'<geom class="looks" type="box" size="0.025 0.025 {half}" rgba="0.42 0.43 0.45 1" '
+        f'pos="{x + side * (width / 2 - 0.06)} {y + end * (depth / 2 - 0.06)} {half}"/>'
+        for side in (-1, 1)
+        for end in (-1, 1)
+    )
+
+
+def _mark_xml(mark: Mark) -> str:
+    x, y, z = mark.centre
+    return (
+        f'<geom name="{mark.name}" class="looks" type="box" size="{_halves(mark.size)} 0.0005" '
+        f'pos="{_numbers((x, y, z + 0.0002))}" rgba="{_numbers(mark.rgba)}"/>'
+    )
+
+
+def _box_xml(box: Box) -> str:
+    x, y, z = box.position
+    half = box.edge / 2
+    yaw = math.radians(box.yaw) / 2
+    rgba = RED_RGBA if box.colour == "red" else BLUE_RGBA
+    return (
+        f'<body name="{box.name}" pos="{_numbers((x, y, z + half))}" '
+        f'quat="{math.cos(yaw)} 0 0 {math.sin(yaw)}">'
+        f'<freejoint name="{box.name}"/>'
+        f'<geom name="{box.name}" class="box" type="box" size="{half} {half} {half}" mass="{box.mass}" '
+        f'priority="1" solref="0.015 1" solimp="0.95 0.99 0.001" '
+        f'friction="{box.friction} 0.005 0.0001" rgba="{_numbers(rgba)}"/></body>'
+    )
+
+
+def _grip_xml(box: Box) -> str:
+    # Stiffer than other contacts: what is gripped must turn with the fingers. As stiff as this, a falling box
+    # would bounce, for numerical reasons.
+    return "".join(
+        f'<pair geom1="{pad}" geom2="{box.name}" condim="3" solref="0.004 1" solimp="0.95 0.99 0.001" '
+        f'friction="{box.friction} {box.friction} 0.005 0.0001 0.0001"/>'
+        for pad in ("left pad", "right pad")
+    )
+
+
+def cell_xml(scene: Scene, grip_force: float) -> str:
+    """MJCF of the whole cell. `grip_force` in N."""
+    things = "".join(_fixture_xml(fixture) + _legs_xml(fixture) for fixture in scene.fixtures)
+    things += "".join(_mark_xml(mark) for mark in scene.marks)
+    things += "".join(_box_xml(box) for box in scene.boxes)
+    height = BASE_POSITION[2]
+    return f"""<mujoco model="cell">{_OPTIONS}{_DEFAULTS}{_LOOKS}
+<worldbody>
+  <light pos="1.5 -1.5 4" dir="-0.3 0.35 -1" diffuse="0.55 0.55 0.55" castshadow="true"/>
+  <geom name="floor" class="fixture" type="plane" size="4 4 0.1" material="floor"/>
+  <geom name="pedestal" class="fixture" type="cylinder" size="0.09 {height / 2}" pos="0 0 {height / 2}"
+        rgba="0.33 0.35 0.38 1"/>
+  <body name="robot" pos="{_numbers(BASE_POSITION)}">{kinova.arm_xml(robotiq.gripper_xml())}</body>
+  {things}
+</worldbody>
+<tendon>{robotiq.tendon_xml()}</tendon>
+<contact>{"".join(_grip_xml(box) for box in scene.boxes)}</contact>
+<equality>{robotiq.coupling_xml()}</equality>
+<actuator>{kinova.actuators_xml()}{robotiq.actuator_xml(grip_force)}</actuator>
+</mujoco>"""
+
+
+def build_cell(scene: Scene, grip_force: float) -> mujoco.MjModel:
+    """Compile the whole cell."""
+    return mujoco.MjModel.from_xml_string(cell_xml(scene, grip_force))
+
+
+def build_arm() -> mujoco.MjModel:
+    """Compile the arm alone (base frame = world frame), for kinematics and planning."""
+    return mujoco.MjModel.from_xml_string(
+        f'<mujoco model="arm">{_OPTIONS}{_DEFAULTS}<worldbody>{kinova.arm_xml()}</worldbody></mujoco>'
+    )

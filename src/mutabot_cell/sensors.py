@@ -1,0 +1,122 @@
+"""What the robot program can read, each with its own noise."""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+import numpy as np
+
+from mutabot_cell.models import kinova
+from mutabot_cell.models.noise import Noise
+
+from .errors import SensorError
+from .geometry import Pose, Position, pose_of
+from .scene import BASE_POSITION, Box
+from .simulation import Simulation
+
+DISTANCE_RANGE = (0.02, 2.0)
+"""Range of the distance sensor, m; further away it reads its upper end."""
+_DISTANCE_START = 0.085
+_BASE = np.array(BASE_POSITION)
+"""The distance sensor sits in the gripper's palm, this far beyond the interface, m."""
+
+
+class Sensors:
+    """Readings of the cell. World frame unless said otherwise."""
+
+    def __init__(
+        self, simulation: Simulation, noise: Noise, boxes: tuple[Box, ...], numbers: dict[str, int]
+    ) -> None:
+        self._simulation = simulation
+        self._noise = noise
+        self._boxes = {box.name: box for box in boxes}
+        self._numbers = numbers
+        self._tool = simulation.model.site("tool").id
+        self._geom = np.zeros(1, dtype=np.int32)
+
+    def tool_pose(self) -> Pose:
+        """Measured tool pose in the base frame, from the joint encoders."""
+        exact = true_tool_pose(self._simulation)
+        add = self._noise.add
+        return Pose(
+            *(add("tool position", value) for value in (exact.x, exact.y, exact.z)),
+            *(add("tool orientation", value) for value in (exact.theta_x, exact.theta_y, exact.theta_z)),
+        )
+
+    def joint_angles(self) -> tuple[float, ...]:
+        """Measured joint angles, degrees, each in (-180, 180]."""
+        angles = np.degrees(self._simulation.data.qpos[: kinova.JOINT_COUNT]).tolist()
+        return tuple(180.0 - (180.0 - self._noise.add("joint angle", angle)) % 360.0 for angle in angles)
+
+    def box_position(self, name: str | None = None) -> Position:
+        """Measured middle of the bottom face of a box; without a name, of the first box.
+
+        Raises:
+            SensorError: there is no such box.
+        """
+        exact = true_box_position(self._simulation, self._box(name))
+        return Position(*(self._noise.add("box position", value) for value in (exact.x, exact.y, exact.z)))
+
+    def colour_number(self, name: str | None = None) -> int:
+        """Colour as a whole number 1..10: even is red, odd is blue. Drawn once per round.
+
+        Raises:
+            SensorError: there is no such box.
+        """
+        return self._numbers[self._box(name).name]
+
+    def colour(self, name: str | None = None) -> str:
+        """Colour as a label, "red" or "blue".
+
+        Raises:
+            SensorError: there is no such box.
+        """
+        return "red" if self.colour_number(name) % 2 == 0 else "blue"
+
+    def distance(self) -> float:
+        """Distance from the gripper's palm to the nearest surface along the tool's axis, m."""
+        data = self._simulation.data
+        axis = data.site_xmat[self._tool].reshape(3, 3)[:, 2].copy()
+        start = data.site_xpos[self._tool] - (kinova.TOOL_LENGTH - _DISTANCE_START) * axis
+        group = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
+        own_body = self._simulation.model.body("gripper").id
+        found = mujoco.mj_ray(self._simulation.model, data, start, axis, group, 1, own_body, self._geom)
+        low, high = DISTANCE_RANGE
+        exact = high if found < 0 else float(found)
+        return min(max(self._noise.add("distance", exact), low), high)
+
+    def _box(self, name: str | None) -> Box:
+        if name is None and self._boxes:
+            return next(iter(self._boxes.values()))
+        if name not in self._boxes:
+            known = ", ".join(self._boxes) or "none"
+            raise SensorError(f"no box named {name!r} in the cell; there are: {known}")
+        return self._boxes[name]
+
+
+def true_tool_pose(simulation: Simulation) -> Pose:
+    """Exact tool pose in the base frame."""
+    site = simulation.id_of("site", "tool")
+    position = simulation.data.site_xpos[site] - _BASE
+    return pose_of(position, simulation.data.site_xmat[site].reshape(3, 3))
+
+
+def true_tool_position(simulation: Simulation) -> Position:
+    """Exact tool position in the base frame; quicker than the whole pose, for checks at every tick."""
+    place = simulation.data.site_xpos[simulation.id_of("site", "tool")] - _BASE
+    return Position(*place.tolist())
+
+
+def true_box_position(simulation: Simulation, box: Box) -> Position:
+    """Exact middle of the box's bottom face (the face that was below at the start), world frame."""
+    body = simulation.id_of("body", box.name)
+    centre = simulation.data.xpos[body]
+    up = simulation.data.xmat[body][2::3]
+    return Position(*(centre - 0.5 * box.edge * up).tolist())
+
+
+def true_box_tilt(simulation: Simulation, box: Box) -> float:
+    """Exact angle between the box's own up and the world's up, degrees."""
+    body = simulation.id_of("body", box.name)
+    return math.degrees(math.acos(min(1.0, max(-1.0, float(simulation.data.xmat[body][8])))))

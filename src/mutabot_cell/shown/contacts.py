@@ -1,0 +1,42 @@
+"""What touches what in the cell, by names that a person would use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import mujoco
+
+from mutabot_cell.simulation import Simulation
+
+#: what bodies are parts of, by the first body up the tree that says so
+_PARTS = {"gripper": "gripper", "robot": "arm"}
+
+
+class Contacts:
+    """The contacts of a simulation."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._data = simulation.data
+        model = simulation.model
+        self._names = [self._name(model, geom) for geom in range(model.ngeom)]
+
+    def read(self) -> Iterator[tuple[str, str]]:
+        """The pairs that touch now; parts of the arm among themselves do not count."""
+        count = self._data.ncon
+        if not count:
+            return
+        for one, other in set(map(tuple, self._data.contact.geom[:count].tolist())):
+            pair = self._names[one], self._names[other]
+            if pair[0] != pair[1]:
+                yield pair
+
+    def _name(self, model: mujoco.MjModel, geom: int) -> str:
+        body = int(model.geom_bodyid[geom])
+        while body:
+            name = model.body(body).name
+            if name in _PARTS:
+                return _PARTS[name]
+            if int(model.body_parentid[body]) == 0:
+                return str(name)
+            body = int(model.body_parentid[body])
+        return str(model.geom(geom).name) or "world"

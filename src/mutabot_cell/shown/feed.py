@@ -1,0 +1,47 @@
+"""The feed of a cell: tool, boxes, fingers, contacts, and what stands around."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import mujoco
+import numpy as np
+
+from mutabot.evidence import Feed
+from mutabot_cell.scene import Scene
+from mutabot_cell.simulation import Simulation
+
+from .camera import Camera, View
+from .contacts import Contacts
+
+#: of a film: from where robot, conveyor and table are seen, pixels, pictures per simulated second
+_VIEW = View(azimuth=90.0, elevation=-33.0, distance=2.05, look_at=(0.0, 0.1, 0.96))
+_HEIGHT, _WIDTH, _RATE = 450, 600, 12.5
+
+
+def tell_of(simulation: Simulation, scene: Scene) -> Feed:
+    """A feed of this cell; it tells something only while a test is recorded."""
+    feed, data = Feed(lambda: simulation.time), simulation.data
+    site = simulation.id_of("site", "tool")
+    turned = np.zeros(4)
+
+    def tool() -> list[float]:
+        mujoco.mju_mat2Quat(turned, data.site_xmat[site])
+        return [*data.site_xpos[site].tolist(), *turned.tolist()]
+
+    feed.pose("tool", tool)
+    for box in scene.boxes:
+        body = simulation.id_of("body", box.name)
+        feed.pose(box.name, _pose(data, body), size=(box.edge, box.edge, box.edge))
+    closed = data.ten_length
+    feed.value("fingers closed", lambda: closed[0], unit="m")
+    feed.contacts(Contacts(simulation).read)
+    for fixture in scene.fixtures:
+        feed.block(fixture.name, fixture.centre, fixture.size, fixture.rgba)
+    feed.camera(Camera(simulation, _HEIGHT, _WIDTH, _VIEW, is_quick=True).picture, rate=_RATE)
+    simulation.after_tick.append(feed.tick)
+    return feed
+
+
+def _pose(data: mujoco.MjData, body: int) -> Callable[[], list[float]]:
+    return lambda: [*data.xpos[body].tolist(), *data.xquat[body].tolist()]

@@ -1,0 +1,95 @@
+"""The clock and the physics. Every advance of simulated time goes through `Simulation.tick`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Literal
+
+import mujoco
+import numpy as np
+
+from mutabot_cell.models import kinova, model
+
+from .errors import SimulationDiverged
+from .geometry import Array
+from .scene import Scene
+
+STEPS_PER_TICK = 5
+TICK = STEPS_PER_TICK * model.PHYSICS_STEP
+"""Length of one control tick, s."""
+
+_ABSURD_SPEED = 1e4
+
+
+def _ignore_warning(message: str) -> None:
+    """MuJoCo would write warnings into a file in the working directory; `tick` finds what matters itself."""
+
+
+class Simulation:
+    """Model and state of the cell, and its time.
+
+    Attributes:
+        setpoints: wanted inputs of all servos for the coming tick, shape (STEPS_PER_TICK, servos): joints in
+            rad, then the fingers' closed path in m. Drivers fill it before each tick.
+        before_tick: called before each tick, in order; they write `setpoints`.
+        after_tick: called after each tick, in order; they may raise.
+    """
+
+    def __init__(self, scene: Scene, grip_force: float) -> None:
+        mujoco.set_mju_user_warning(_ignore_warning)
+        self.model = model.build_cell(scene, grip_force)
+        self.data = mujoco.MjData(self.model)
+        self.data.qpos[: kinova.JOINT_COUNT] = kinova.HOME
+        self.data.ctrl[: kinova.JOINT_COUNT] = kinova.HOME
+        mujoco.mj_forward(self.model, self.data)
+        self.setpoints: Array = np.tile(self.data.ctrl, (STEPS_PER_TICK, 1))
+        self.before_tick: list[Callable[[], None]] = []
+        self.after_tick: list[Callable[[], None]] = []
+        self._ticks = 0
+        self._ids: dict[tuple[str, str], int] = {}
+        self._speeds, self._places = self.data.qvel, self.data.qpos  # views of the physics' own memory
+
+    @property
+    def time(self) -> float:
+        """Simulated time since the cell was made, s."""
+        return self._ticks * TICK
+
+    def id_of(self, kind: Literal["body", "site"], name: str) -> int:
+        """Number of a body or site of the model; looked up once, since checks ask for it at every tick."""
+        found = self._ids.get((kind, name))
+        if found is None:
+            found = self._ids[kind, name] = int(getattr(self.model, kind)(name).id)
+        return found
+
+    def tick(self) -> float:
+        """Advance by one control tick (`TICK` s) and return the simulated time, s.
+
+        Raises:
+            SimulationDiverged: the physics gave NaN or absurd speeds.
+            ProtectiveStop, ConditionBroken: from the safety check and the monitors.
+        """
+        for drive in self.before_tick:
+            drive()
+        data, cell_model, step = self.data, self.model, mujoco.mj_step
+        ctrl = data.ctrl
+        for row in self.setpoints:
+            ctrl[:] = row
+            step(cell_model, data)
+        self._ticks += 1
+        # one number tells of all: not below the limit also if a value is NaN
+        if not (self._speeds.dot(self._speeds) < _ABSURD_SPEED**2 and math.isfinite(self._places.sum())):
+            self._check_speeds()
+        for check in self.after_tick:
+            check()
+        return self.time
+
+    def _check_speeds(self) -> None:
+        fastest = float(np.abs(self._speeds).max())
+        if not fastest <= _ABSURD_SPEED or not math.isfinite(float(self._places.sum())):
+            raise SimulationDiverged(time=self.time, reason=f"largest speed {fastest:.3g}")
+
+    def advance(self, seconds: float) -> None:
+        """Run whole ticks until at least `seconds` have passed (rounded to the nearest tick)."""
+        for _ in range(round(seconds / TICK)):
+            self.tick()

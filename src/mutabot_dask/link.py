@@ -1,0 +1,241 @@
+"""The controller's connection to a Dask scheduler: who is there, and what is asked of whom.
+
+Dask only ships functions and bytes here, and tells who is connected: which worker runs what is decided by
+the controller, and so is what the loss of one means.
+"""
+
+from __future__ import annotations
+
+import logging
+import queue
+import socket
+import threading
+import time
+import warnings
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from dataclasses import dataclass
+from ipaddress import ip_address
+from itertools import count
+from typing import Any
+from urllib.parse import urlsplit
+
+from mutabot.errors import ClusterError
+from mutabot_dask.settings import ClusterSettings
+
+try:
+    import distributed
+except ImportError as error:  # said in words a user can act on
+    raise ClusterError(
+        "--cluster needs the library distributed, which is not installed here: "
+        f"pip install 'path/to/mutabot[cluster]' ({error})"
+    ) from error
+
+from . import guard
+
+#: seconds that a scheduler may take to answer
+PATIENCE = 10.0
+#: seconds between two looks at who is connected; without an answer for so many, the scheduler is gone
+_PERIOD, _SILENCE = 0.5, 45.0
+#: threads that fetch answers
+_FETCHERS = 4
+#: how a function of ours is called: one that went as itself would end a worker that cannot import it
+_CALL = "exec(code, names := {'given': given}) or names['answer']"
+_RAISED = b"!"
+#: by which the scheduler tells that there is nobody to run something
+_LOSSES = {"KilledWorker", "NoValidWorkerError"}
+#: characters of what a worker says that are shown
+_WORDS = 1000
+#: answers with what was raised as data: nothing that a worker sends is unpickled here
+_CODE = """
+try:
+    from importlib import import_module
+    answer = import_module({!r}).{}(*given)
+except BaseException as error:
+    said = (str(error).strip().splitlines() or [""])[0][:1000]
+    answer = b"!" + (type(error).__name__ + ": " + said).encode("utf-8", "replace")
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class News:
+    """An answer to what was asked.
+
+    Attributes:
+        asked: the number of what was asked.
+        data: the answer; None if there is none.
+        why: why not, in words.
+        is_foreign: whether it is nothing that our functions answer.
+    """
+
+    asked: int
+    data: bytes | None
+    why: str = ""
+    is_foreign: bool = False
+
+
+class Link:
+    """A connection to a scheduler.
+
+    Args:
+        settings: the cluster.
+        address: of its scheduler.
+
+    Attributes:
+        news: answers, as they come.
+
+    Raises ClusterError if nobody answers there.
+    """
+
+    _numbers = count(1)
+
+    def __init__(self, settings: ClusterSettings, address: str) -> None:
+        guard.install()
+        self.address = address
+        self.news: queue.SimpleQueue[News] = queue.SimpleQueue()
+        _be_quiet()
+        self._client = _client(settings, address)
+        self._asked: dict[int, Any] = {}
+        self._fetching = ThreadPoolExecutor(_FETCHERS, thread_name_prefix="mutabot-fetch")
+        self._there: Mapping[str, int] = {}
+        self._heard = time.monotonic()
+        self._is_closed = threading.Event()
+        self._calling = threading.Thread(target=self._call_roll, name="mutabot-roll", daemon=True)
+        try:
+            self._call_once()
+        except Exception as error:
+            self.close()
+            raise ClusterError(_why_not(settings, address, error)) from error
+        self._calling.start()
+
+    @property
+    def workers(self) -> Mapping[str, int]:
+        """The workers that are connected, with how many threads each has."""
+        return self._there
+
+    @property
+    def is_lost(self) -> bool:
+        """Whether the scheduler is gone, or cannot be reached."""
+        return self._client.status != "running" or time.monotonic() - self._heard > _SILENCE
+
+    def ask(self, worker: str, function: Callable[..., bytes], *arguments: Any) -> int:
+        """Let a worker run a function; returns the number by which its answer comes."""
+        number = next(self._numbers)
+        code = _CODE.format(function.__module__, function.__name__)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # large messages are meant
+            future = self._client.submit(
+                eval, _CALL, {"given": arguments, "code": code},
+                key=f"mutabot-{self._client.id}-{number}", pure=False, workers=[worker],
+                allow_other_workers=False,
+            )  # fmt: skip
+        self._asked[number] = future
+        future.add_done_callback(lambda done: self._fetch(number, done))
+        return number
+
+    def forget(self, *numbers: int) -> None:
+        """Take back what was asked: it ends where it runs."""
+        futures = [self._asked.pop(number) for number in numbers if number in self._asked]
+        if futures and not self.is_lost:
+            with suppress(Exception):
+                self._client.cancel(futures, force=True)
+
+    def close(self) -> None:
+        """Take back all, and let go."""
+        self.forget(*self._asked)
+        self._is_closed.set()
+        self._fetching.shutdown(wait=False, cancel_futures=True)
+        with suppress(Exception):
+            self._client.close(timeout=2)
+        if self._calling.is_alive():
+            self._calling.join(2)
+
+    def _fetch(self, number: int, future: Any) -> None:
+        with suppress(RuntimeError):  # it is closed
+            self._fetching.submit(self._fetched, number, future)
+
+    def _fetched(self, number: int, future: Any) -> None:
+        try:
+            news = _news(number, future.result(timeout=_SILENCE))
+        except Exception as error:  # whatever a worker raises is only told
+            news = News(number, None, shown(guard.words(error)), _is_foreign(error))
+        if self._asked.pop(number, None) is not None:
+            self.news.put(news)
+
+    def _call_roll(self) -> None:
+        while not self._is_closed.wait(_PERIOD):
+            with suppress(Exception):
+                self._call_once()
+
+    def _call_once(self) -> None:
+        found = self._client.nthreads()
+        self._there = {str(address): count for address, count in found.items() if type(count) is int}
+        self._heard = time.monotonic()
+
+
+def _news(number: int, found: Any) -> News:
+    if type(found) is not bytes:
+        return News(number, None, f"it answered with {guard.words(found)}", is_foreign=True)
+    if found.startswith(_RAISED):
+        return News(number, None, shown(found[1:_WORDS].decode("utf-8", "replace")))
+    return News(number, found)
+
+
+def _is_foreign(error: Exception) -> bool:
+    """Whether a worker raised that: what our functions raise comes as data, and losses are nobody's fault."""
+    return isinstance(error, guard.Unreadable) and error.kind not in _LOSSES
+
+
+def shown(text: str) -> str:
+    """What a worker says, as one line that does nothing to a terminal."""
+    return "".join(one if one.isprintable() else "�" for one in text[:_WORDS])
+
+
+def _client(settings: ClusterSettings, address: str) -> Any:
+    try:
+        security = _security(settings, address)
+        open_client: Any = distributed.Client
+        return open_client(address, security=security, timeout=PATIENCE, set_as_default=False, name="mutabot")
+    except (OSError, ValueError, TypeError, RuntimeError) as error:
+        raise ClusterError(_why_not(settings, address, error)) from error
+
+
+def _security(settings: ClusterSettings, address: str) -> Any:
+    if not address.startswith("tls://"):
+        if settings.files:
+            raise ValueError("it is not encrypted, though there are certificate files")
+        return None
+    security: Any = distributed.Security
+    return security(
+        tls_ca_file=settings.ca, tls_client_cert=settings.cert, tls_client_key=settings.key,
+        require_encryption=True,
+    )  # fmt: skip
+
+
+def is_private(address: str) -> bool:
+    """Whether a connection to this address is encrypted, or does not leave this machine."""
+    if address.startswith("tls://"):
+        return True
+    try:
+        places = socket.getaddrinfo(urlsplit(address).hostname, None, type=socket.SOCK_STREAM)
+    except (OSError, ValueError):
+        return False
+    return all(ip_address(str(place[0]).partition("%")[0]).is_loopback for *_, place in places)
+
+
+def _why_not(settings: ClusterSettings, address: str, error: Exception) -> str:
+    text = str(error).splitlines()[0] if str(error) else type(error).__name__
+    hint = "is `dask scheduler` running there, and is the port right?"
+    if address.startswith("tls://") or settings.files:
+        hint = f"{hint} Do the certificate files belong to it ({', '.join(settings.files) or 'none given'})?"
+    return f"no scheduler answers at {address}: {text}; {hint}"
+
+
+def _be_quiet() -> None:
+    """What Dask would log is told in our own words."""
+    for name in (
+        "distributed",
+        *(name for name in logging.root.manager.loggerDict if name.startswith(("distributed.", "tornado"))),
+    ):
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)

@@ -1,0 +1,189 @@
+"""A recording drawn: from above and from the side, where a simulator draws nothing itself."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import product
+from math import isnan
+from typing import TYPE_CHECKING
+
+from mutabot.evidence.path import Point
+from mutabot.evidence.recording import Kind, Recording
+from mutabot.evidence.tracks import Path, paths_of
+from mutabot_motion.shown import end_of
+
+from .lettering import letters
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+    from PIL.ImageDraw import ImageDraw
+
+_WIDTH, _HEIGHT = 600, 600
+_EDGE, _LABEL = 16, 20
+_GROUND, _BLOCK, _OUTLINE, _TEXT = "#f7f8fa", "#dfe3e8", "#aab2bc", "#343a42"
+#: of things that move, told apart by people with any kind of sight
+_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#5a5a5a")
+#: corners of the views: which axis goes to the right, and which goes up
+_VIEWS = (("from above", 0, 1), ("from the side", 0, 2))
+
+
+@dataclass(frozen=True, slots=True)
+class _View:
+    """One view: what it shows goes to pixels."""
+
+    right: int
+    up: int
+    scale: float
+    middle: tuple[float, float]
+    centre: tuple[float, float]
+
+    def pixel(self, point: Sequence[float]) -> tuple[float, float]:
+        x, y = (point[axis] - middle for axis, middle in zip((self.right, self.up), self.middle, strict=True))
+        return self.centre[0] + x * self.scale, self.centre[1] - y * self.scale
+
+
+class Drawn:
+    """The paths of a recording, drawn in two views.
+
+    Args:
+        recording: what is drawn.
+        others: recordings for whose paths there is to be room as well, so that sides beside each other have
+            one scale.
+    """
+
+    def __init__(self, recording: Recording, others: Iterable[Recording] = ()) -> None:
+        from PIL import Image, ImageDraw  # noqa: PLC0415  # an extra
+
+        self.end = end_of(recording)
+        self._paths = {
+            name: path for name, path in paths_of(recording).items() if path.track.kind is not Kind.VALUE
+        }
+        self._views = _views(_room([recording, *others]))
+        self._empty = Image.new("RGB", (_WIDTH, _HEIGHT), _GROUND)
+        draw = ImageDraw.Draw(self._empty)
+        for (name, _, up), view in zip(_VIEWS, self._views, strict=True):
+            for block in sorted(recording.blocks, key=lambda one: one.centre[3 - view.right - up]):
+                _draw_block(draw, view, block.centre, block.size)
+            bottom = view.centre[1] + _HEIGHT / 4
+            letters(14).draw(draw, (_EDGE, bottom - 8), name, _TEXT, "lb")
+        draw.line((0, _HEIGHT / 2, _WIDTH, _HEIGHT / 2), fill=_OUTLINE)
+        for number, name in enumerate(self._paths):
+            letters(14).draw(draw, (_WIDTH - _EDGE, 6 + 18 * number), name, _colour(number), "ra")
+
+    def at(self, time: float) -> Image:
+        """How it was at a time, s: paths until then, and where things were."""
+        from PIL import ImageDraw  # noqa: PLC0415  # as above
+
+        image = self._empty.copy()
+        draw = ImageDraw.Draw(image)
+        for number, path in enumerate(self._paths.values()):
+            until = bisect_right(path.when, time + 1e-6)
+            for view in self._views:
+                trail = [view.pixel(point) for point in path.points[:until]]
+                if len(trail) > 1:
+                    draw.line(trail, fill=_colour(number), width=2, joint="curve")
+                if trail:
+                    _draw_thing(draw, view, path, until - 1, _colour(number))
+        return image
+
+
+def _colour(number: int) -> str:
+    return _COLOURS[number % len(_COLOURS)]
+
+
+def _room(recordings: Sequence[Recording]) -> list[tuple[float, float]]:
+    """Along each axis, between which coordinates anything is, m; blocks only beside what moves."""
+    points = [
+        point
+        for recording in recordings
+        for path in paths_of(recording).values()
+        if path.track.kind is not Kind.VALUE
+        for point in path.points
+        if not any(map(isnan, point))
+    ]
+    if not points:
+        return [(-0.5, 0.5)] * 3
+    margin = 0.15
+    return [(min(axis) - margin, max(axis) + margin) for axis in zip(*points, strict=True)]
+
+
+def _views(room: Sequence[tuple[float, float]]) -> list[_View]:
+    """Both views in one scale."""
+    spans = [most - least for least, most in room]
+    wide, high = _WIDTH - 2 * _EDGE, _HEIGHT / 2 - _EDGE - _LABEL
+    scale = min(wide / spans[0], high / spans[1], high / spans[2])
+    middles = [(least + most) / 2 for least, most in room]
+    return [
+        _View(right, up, scale, (middles[right], middles[up]), (_WIDTH / 2, _HEIGHT / 4 * (1 + 2 * row)))
+        for row, (_, right, up) in enumerate(_VIEWS)
+    ]
+
+
+def _draw_block(draw: ImageDraw, view: _View, centre: Sequence[float], size: Sequence[float]) -> None:
+    low = view.pixel([c - s / 2 for c, s in zip(centre, size, strict=True)])
+    high = view.pixel([c + s / 2 for c, s in zip(centre, size, strict=True)])
+    half = view.centre[1] - _HEIGHT / 4, view.centre[1] + _HEIGHT / 4
+    top, bottom = max(high[1], half[0]), min(low[1], half[1])
+    if top < bottom:
+        draw.rectangle((low[0], top, high[0], bottom), fill=_BLOCK, outline=_OUTLINE)
+
+
+def _draw_thing(draw: ImageDraw, view: _View, path: Path, row: int, colour: str) -> None:
+    """A box as its outline, as it is turned; anything else as a dot."""
+    place, size = path.points[row], path.track.size
+    if size is None:
+        x, y = view.pixel(place)
+        draw.ellipse((x - 5, y - 5, x + 5, y + 5), fill=colour)
+        return
+    turn = path.rows[row][3:7] if path.track.kind is Kind.POSE else (1.0, 0.0, 0.0, 0.0)
+    corners = [
+        view.pixel(
+            [
+                p + t
+                for p, t in zip(
+                    place, _turned([s * c for s, c in zip(signs, size, strict=True)], turn), strict=True
+                )
+            ]
+        )
+        for signs in product((-0.5, 0.5), repeat=3)
+    ]
+    draw.polygon(_hull(corners), outline=colour, fill=None, width=3)
+
+
+def _turned(v: Sequence[float], q: Sequence[float]) -> Point:
+    """A vector turned by a quaternion w, x, y, z."""
+    w, x, y, z = q
+    tx, ty, tz = 2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])
+    return (
+        v[0] + w * tx + y * tz - z * ty,
+        v[1] + w * ty + z * tx - x * tz,
+        v[2] + w * tz + x * ty - y * tx,
+    )
+
+
+def _hull(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """The corners around points (Andrew's monotone chain).
+
+    Source: A. M. Andrew: Another efficient algorithm for convex hulls in two dimensions. Information
+    Processing Letters 9 (1979), pp. 216-219.
+    """
+    ordered = sorted(set(points))
+    if len(ordered) < 3:
+        return list(ordered)
+    halves = [_half(ordered), _half(ordered[::-1])]
+    return halves[0][:-1] + halves[1][:-1]
+
+
+def _half(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    kept: list[tuple[float, float]] = []
+    for point in points:
+        while len(kept) > 1 and _cross(kept[-2], kept[-1], point) <= 0:
+            kept.pop()
+        kept.append(point)
+    return kept
+
+
+def _cross(o: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
+    return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])

@@ -1,0 +1,154 @@
+"""A frame of a video: both sides beside each other, what each is, the time, and the moment of the fault."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mutabot_motion.shown import Shown
+
+from .lettering import letters
+from .shots import Shots
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+    from PIL.ImageDraw import ImageDraw
+
+_GROUND, _TEXT, _DIM, _RAIL = "#14171c", "#e8ebf0", "#98a1ad", "#3a414b"
+#: of colours that people with any kind of sight tell apart
+_SIDES = ("#56b4e9", "#e69f00")
+_FAULT, _APART = "#ff6b45", "#f0e442"
+_MARGIN, _TITLE, _FOOT = 14, 74, 112
+#: a video takes at least and at most so long, s, if it need not be slower than this
+_SHORTEST, _LONGEST, _SLOWEST = 3.0, 120.0, 1 / 8
+#: a picture is shown at least and at most this wide, pixels
+_LEAST, _MOST = 480, 960
+
+
+def _speed(end: float) -> float:
+    speed = 1.0
+    while speed > _SLOWEST and end / speed < _SHORTEST:
+        speed /= 2.0
+    while end / speed > _LONGEST:
+        speed *= 2.0
+    return speed
+
+
+class Frames:
+    """The frames of a video.
+
+    Args:
+        sides: the pictures of the original and of the mutant.
+
+    Attributes:
+        end: the last moment, s.
+        speed: seconds that pass in one of the video: fewer where there are few, more where there are many.
+        size: width and height, even numbers of pixels, as H.264 wants them.
+    """
+
+    def __init__(self, shown: Shown, sides: tuple[Shots, Shots]) -> None:
+        from PIL import Image, ImageDraw  # noqa: PLC0415  # an extra
+
+        self._shown, self._sides = shown, sides
+        self.end = max(side.end for side in sides)
+        self.speed = _speed(self.end)
+        width, height = sides[0].at(0.0).size
+        self._width: int = min(_MOST, max(_LEAST, width)) & ~1
+        self._height: int = max(2, round(height * self._width / width) & ~1)
+        self.size = 3 * _MARGIN + 2 * self._width, _TITLE + self._height + _FOOT
+        self._rail = _MARGIN + 160, self.size[0] - _MARGIN, _TITLE + self._height + 22
+        story = f"{shown.story[:1].upper()}{shown.story[1:]}"
+        self._story = letters(15).lines(story, self.size[0] - 2 * _MARGIN, 2)
+        self._empty = Image.new("RGB", self.size, _GROUND)
+        self._draw_titles(ImageDraw.Draw(self._empty))
+        self._draw_rail(ImageDraw.Draw(self._empty))
+
+    def at(self, time: float) -> Image:
+        """The frame of a moment, s; from call to call the same or a later one."""
+        from PIL import ImageDraw  # noqa: PLC0415  # as above
+
+        frame = self._empty.copy()
+        for number, side in enumerate(self._sides):
+            frame.paste(self._fitted(side.at(time)), (self._left(number), _TITLE))
+        draw = ImageDraw.Draw(frame)
+        for number, side in enumerate(self._sides):
+            if time >= side.end:
+                ended = self._shown.ended[number].partition(":")[0]
+                self._badge(draw, number, f"ended at {side.end:.1f} s{f', {ended}' if ended else ''}", _DIM)
+        self._draw_fault(draw, time)
+        self._draw_time(draw, time)
+        return frame
+
+    def _left(self, number: int) -> int:
+        return _MARGIN + number * (self._width + _MARGIN)
+
+    def _fitted(self, image: Image) -> Image:
+        """A picture of another size is shown as large as it can be."""
+        from PIL import Image, ImageOps  # noqa: PLC0415  # as above
+
+        size = self._width, self._height
+        return image if image.size == size else ImageOps.pad(image, size, Image.Resampling.BILINEAR, _GROUND)
+
+    def _draw_titles(self, draw: ImageDraw) -> None:
+        shown = self._shown
+        where = f"{shown.test.rpartition('::')[2]}, round {shown.round + 1}"
+        texts = ("original", where), (f"mutant {shown.number}", f"{shown.place} · {shown.what}")
+        for number, (name, more) in enumerate(texts):
+            left, big, small = self._left(number), letters(18), letters(14)
+            big.draw(draw, (left, 8), name, _SIDES[number])
+            for line, text in enumerate(small.lines(more, self._width - 4, 2)):
+                small.draw(draw, (left, 34 + 18 * line), text, _TEXT)
+
+    def _draw_rail(self, draw: ImageDraw) -> None:
+        left, right, y = self._rail
+        draw.rectangle((left, y - 3, right, y + 3), fill=_RAIL)
+        small = letters(13)
+        marks = [(self._shown.fault, "fault", _FAULT), (self._shown.apart, "apart", _APART)]
+        taken = 0.0
+        for time, name, colour in sorted(
+            (one for one in marks if one[0] is not None), key=lambda one: one[0] or 0
+        ):
+            assert time is not None
+            x = self._x(time)
+            draw.rectangle((x - 1, y - 8, x + 1, y + 8), fill=colour)
+            label = f"{name} {time:.1f} s"
+            place = min(max(x - small.width(label) / 2, left, taken), right - small.width(label) - 60)
+            small.draw(draw, (place, y + 11), label, colour)
+            taken = place + small.width(label) + 10
+        small.draw(draw, (right, y + 11), f"{self.end:.1f} s", _DIM, "ra")
+
+    def _draw_time(self, draw: ImageDraw, time: float) -> None:
+        left, _, y = self._rail
+        draw.rectangle((left, y - 3, self._x(time), y + 3), fill=_TEXT)
+        for moment, colour in ((self._shown.fault, _FAULT), (self._shown.apart, _APART)):
+            if moment is not None:
+                x = self._x(moment)
+                draw.rectangle((x - 1, y - 8, x + 1, y + 8), fill=colour)
+        letters(18).draw(draw, (_MARGIN, y), f"{time:.2f} s", _TEXT, "lm")
+        clock = self._shown.clock if self.speed == 1.0 else f"{self._shown.clock} ×{self.speed:g}"
+        letters(13).draw(draw, (_MARGIN, y + 11), clock, _DIM)
+        apart = self._shown.apart
+        if apart is None or time >= apart:
+            for number, text in enumerate(self._story):
+                letters(15).draw(draw, (_MARGIN, y + 38 + 20 * number), text, _TEXT)
+
+    def _draw_fault(self, draw: ImageDraw, time: float) -> None:
+        fault = self._shown.fault
+        if fault is None or time < fault:
+            return
+        left = self._left(1)
+        box = left - 4, _TITLE - 4, left + self._width + 3, _TITLE + self._height + 3
+        draw.rectangle(box, outline=_FAULT, width=4)
+        text, font = f"fault since {fault:.1f} s", letters(15)
+        draw.rectangle((left, _TITLE, left + font.width(text) + 16, _TITLE + 26), fill=_FAULT)
+        font.draw(draw, (left + 8, _TITLE + 13), text, _GROUND, "lm")
+
+    def _badge(self, draw: ImageDraw, number: int, text: str, colour: str) -> None:
+        left, bottom, font = self._left(number), _TITLE + self._height, letters(15)
+        draw.rectangle((left, bottom - 26, left + font.width(text) + 16, bottom), fill=_GROUND)
+        font.draw(draw, (left + 8, bottom - 13), text, colour, "lm")
+
+    def _x(self, time: float) -> float:
+        left, right, _ = self._rail
+        share = min(1.0, time / self.end) if self.end > 0 else 1.0
+        found: float = left + (right - left) * share
+        return found

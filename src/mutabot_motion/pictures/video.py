@@ -1,0 +1,101 @@
+"""Videos that browsers play: H.264 in MP4. Needs PyAV and Pillow: ``mutabot[video]``.
+
+PyAV rather than a program beside Python: it encodes in this process, so nothing is left running, and it is
+a quarter of the size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from mutabot.errors import UsageError
+from mutabot.evidence.film import Film
+from mutabot_motion.shown import Shown
+from mutabot_motion.target import check, missing, written_whole
+
+from .drawn import Drawn
+from .frame import Frames
+from .shots import Filmed, Shots
+
+#: frames per second, at which simulated seconds become those of the video
+RATE = 25
+#: how long the last frame stays, s
+_HELD = 1.5
+
+
+def check_video(file: Path) -> None:
+    """Raise UsageError if a video cannot be written there, or what makes it is not installed."""
+    check(file, "video", ".mp4", b"ftyp", at=4)
+    for name, library in (("av", "PyAV"), ("PIL", "Pillow")):
+        try:
+            __import__(name)
+        except ImportError as error:
+            raise missing(library, "--video", "video") from error
+
+
+def show(file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[str]) -> list[str]:
+    """Write a video of both films; where pictures are missing, of both paths, drawn.
+
+    Args:
+        films: of the original and of the mutant.
+        problems: why pictures are missing, as far as it is known.
+
+    Returns what is to be said about it, one line each. Raises UsageError if there is nothing to show.
+    """
+    notes = []
+    if all(film.times for film in films):
+        sides: tuple[Shots, Shots] = Filmed(films[0]), Filmed(films[1])
+    else:
+        notes = [_why_no_pictures(problems)]
+        sides = _drawn(shown, notes[0])
+        notes[0] += "; the paths are drawn instead"
+    count = write_video(file, Frames(shown, sides))
+    size = file.stat().st_size
+    return [*notes, f"{file}: {count / RATE:.1f} s, {size / 1e6:.1f} MB"]
+
+
+def _drawn(shown: Shown, why: str) -> tuple[Shots, Shots]:
+    original = shown.original
+    # a mutant in which nothing that was recorded differs has no recording of its own
+    mutant = shown.mutant if shown.mutant is not None or shown.story else original
+    if original is None or mutant is None or not (original.tracks and mutant.tracks):
+        raise UsageError(
+            f"there is nothing to make a video of: {why}; and no simulator tells where things are "
+            "(mutabot.evidence.Feed, see docs/replay.md)"
+        )
+    return Drawn(original, [mutant]), Drawn(mutant, [original])
+
+
+def _why_no_pictures(problems: Sequence[str]) -> str:
+    if not problems:
+        return "no simulator gives pictures: name one by `feed.camera`, see docs/replay.md"
+    return (
+        f"{problems[0]} (without a screen, MuJoCo draws if Debian's libegl1 or libosmesa6 is installed; what "
+        "else may help says docs/replay.md)"
+    )
+
+
+def write_video(file: Path, frames: Frames) -> int:
+    """Write a video; of one that is not finished nothing is left. Returns how many frames it has."""
+    import av  # noqa: PLC0415  # an extra
+
+    count = 0
+    frame: Any = av.VideoFrame
+    with written_whole(file) as part, av.open(str(part), "w", options={"movflags": "+faststart"}) as video:
+        stream = video.add_stream("libx264", rate=RATE, options={"crf": "21", "preset": "veryfast"})
+        stream.width, stream.height = frames.size
+        stream.pix_fmt = "yuv420p"
+        for time in _moments(frames.end, frames.speed):
+            video.mux(stream.encode(frame.from_image(frames.at(time))))
+            count += 1
+        video.mux(stream.encode(None))
+    return count
+
+
+def _moments(end: float, speed: float) -> Iterator[float]:
+    """The moment that each frame shows, s."""
+    shown = int(end / speed * RATE) + 1
+    yield from (number * speed / RATE for number in range(shown))
+    yield from (end for _ in range(int(_HELD * RATE)))

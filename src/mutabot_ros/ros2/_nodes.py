@@ -1,0 +1,120 @@
+"""Nodes of ROS 2: which of them has what, and where a call of one of them is."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from types import CodeType
+from typing import Any
+
+from mutabot.inside.processes.member import note_node
+from mutabot.inside.targets.means import Means
+from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.target import Where
+from mutabot_ros._patches import Patches
+
+from . import _clock
+
+#: what we keep on nodes and on what belongs to them
+_NAME, _NODE = "_mutabot_name", "_mutabot_node"
+
+
+class _Now(threading.local):
+    """What this thread is doing: making something of rclpy's own, or something of a node."""
+
+    making = 0
+    node: Any = None
+
+
+_now = _Now()
+
+
+def hook(patches: Patches, messages: Messages) -> None:
+    """Note nodes as they come."""
+    patches.put(import_module("rclpy.node").Node, "__init__", _made)
+
+
+def _made(original: Any, node: Any, *args: Any, **kwargs: Any) -> None:
+    with own():
+        original(node, *args, **kwargs)
+    note_node(node.get_fully_qualified_name())
+
+
+@contextmanager
+def own() -> Iterator[None]:
+    """What is made in the block is rclpy's own."""
+    _now.making += 1
+    try:
+        yield
+    finally:
+        _now.making -= 1
+
+
+def is_own() -> bool:
+    """Whether what is made now is rclpy's own: parts of a node, or of a wait."""
+    return _now.making > 0
+
+
+@contextmanager
+def of(node: Any) -> Iterator[None]:
+    """What is made in the block belongs to a node."""
+    before, _now.node = _now.node, node
+    try:
+        yield
+    finally:
+        _now.node = before
+
+
+def claim(thing: Any, node: Any = None) -> None:
+    """Note to which node something belongs: this one, or the one that makes it now."""
+    found = node if node is not None else _now.node
+    if found is not None:
+        setattr(thing, _NODE, found)
+
+
+def node_of(thing: Any) -> Any:
+    """The node that something belongs to; None if that is not known."""
+    return getattr(thing, _NODE, None)
+
+
+def name_of(node: Any) -> str | None:
+    """The resolved name of a node; None without one."""
+    if node is None:
+        return None
+    found: str | None = getattr(node, _NAME, None)
+    if found is None:
+        found = node.get_fully_qualified_name()
+        setattr(node, _NAME, found)
+    return found
+
+
+def topic_of(thing: Any, ask: Callable[[], str]) -> str:
+    """The resolved name of a publisher, subscription or client; asked once."""
+    found: str | None = getattr(thing, _NAME, None)
+    if found is None:
+        found = ask()
+        setattr(thing, _NAME, found)
+    return found
+
+
+def where(
+    node: Any,
+    code: CodeType | None = None,
+    *,
+    is_async: bool = False,
+    lost: Callable[[], Awaitable[Any]] | None = None,
+    cancel: Callable[[Any], Awaitable[None]] | None = None,
+) -> Where:
+    """Where a call of a node is, and what can befall it.
+
+    Args:
+        node: the node; None if it is not known.
+        code: the function that is called back.
+        is_async: whether the call is a coroutine's.
+        lost, cancel: as in ``Means``.
+    """
+    sleep = _clock.pause(node) if is_async else _clock.sleep(node)
+    means = Means(sleep, _clock.later(node), lost, cancel, _clock.jump, _clock.goes_out(node))
+    return Where(code, name_of(node), means)

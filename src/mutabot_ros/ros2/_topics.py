@@ -1,0 +1,215 @@
+"""Topics of ROS 2: publishers and subscriptions, with their quality of service."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import time
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+from mutabot.inside.targets.delivery import anew, deliver, wait_for
+from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.target import Handler
+from mutabot.model.named import Form
+from mutabot_ros._patches import Patches, code_of
+
+from . import _nodes
+from ._qualities import changed, qualities
+from ._types import TYPES
+
+_WRAPPED = "_mutabot_wrapped"
+
+
+def hook(patches: Patches, messages: Messages) -> None:
+    """Stand around publishers and subscriptions."""
+    node: Any = import_module("rclpy.node").Node
+    topics = _Topics(messages)
+    patches.put(node, "create_publisher", topics.advertise)
+    patches.put(node, "create_subscription", topics.subscribe)
+    patches.put(import_module("rclpy.publisher").Publisher, "publish", topics.publish)
+    patches.put(import_module("rclpy.wait_for_message"), "wait_for_message", topics.wait)
+    _hook_callback(patches, import_module("rclpy.subscription").Subscription, topics)
+
+
+def _hook_callback(patches: Patches, kind: Any, topics: _Topics) -> None:
+    """Callbacks are kept as the program gave them, and an executor gets ours."""
+    original = kind.callback
+
+    def set_callback(subscription: Any, callback: Any) -> None:
+        _nodes.claim(subscription)
+        original.fset(subscription, callback)
+
+    def get_callback(subscription: Any) -> Any:
+        return topics.around(subscription, original.fget(subscription))
+
+    kind.callback = property(get_callback, set_callback, doc=original.__doc__)
+    patches.then(lambda: setattr(kind, "callback", original))
+
+
+class _Topics:
+    def __init__(self, messages: Messages) -> None:
+        self._messages = messages
+
+    def advertise(
+        self, original: Any, node: Any, msg_type: Any, topic: Any, qos_profile: Any, **kwargs: Any
+    ) -> Any:
+        if _nodes.is_own():
+            return original(node, msg_type, topic, qos_profile, **kwargs)
+        handler = self._set_up(Form.ADVERTISE, Form.PUBLISH, node, msg_type, topic)
+
+        def made(name: Any, profile: Any) -> Any:
+            publisher = original(node, msg_type, name, profile, **kwargs)
+            _nodes.claim(publisher, node)
+            return publisher
+
+        return _made(handler, made, node, topic, qos_profile)
+
+    def subscribe(
+        self,
+        original: Any,
+        node: Any,
+        msg_type: Any,
+        topic: Any,
+        callback: Any,
+        qos_profile: Any,
+        **kwargs: Any,
+    ) -> Any:
+        if _nodes.is_own():
+            return original(node, msg_type, topic, callback, qos_profile, **kwargs)
+        handler = self._set_up(Form.SUBSCRIBE, Form.RECEIVE, node, msg_type, topic)
+
+        def made(name: Any, profile: Any) -> Any:
+            with _nodes.of(node):
+                return original(node, msg_type, name, callback, profile, **kwargs)
+
+        return _made(handler, made, node, topic, qos_profile)
+
+    def _set_up(self, form: Form, use: Form, node: Any, kind: Any, topic: Any) -> Handler | None:
+        try:
+            name = node.resolve_topic_name(topic)
+        except Exception:  # rclpy says what is wrong with it, in its own way
+            return None
+        TYPES.note(use, name, kind)
+        return self._messages.find(form, name, _nodes.name_of(node))
+
+    def publish(self, original: Any, publisher: Any, msg: Any) -> Any:
+        node = _nodes.node_of(publisher)
+        if node is None or not isinstance(msg, publisher.msg_type):  # rclpy's own, bytes, or a mistake
+            return original(publisher, msg)
+        name = _nodes.topic_of(publisher, lambda: publisher.topic_name)
+        handler = self._messages.find(Form.PUBLISH, name, _nodes.name_of(node))
+
+        def publish(message: Any) -> Any:
+            result = original(publisher, message)
+            self._messages.heard(name, message)
+            return result
+
+        if handler is None:
+            return publish(msg)
+        return handler(publish, None, (msg,), {}, _nodes.where(node))
+
+    def around(self, subscription: Any, callback: Any) -> Any:
+        """What an executor calls in the place of a subscription's callback."""
+        node = _nodes.node_of(subscription)
+        if node is None or subscription.raw:
+            return callback
+        known = getattr(subscription, _WRAPPED, None)
+        if known is None or known[0] is not callback:
+            known = (callback, self._around(subscription, callback, node))
+            setattr(subscription, _WRAPPED, known)
+        return known[1]
+
+    def _around(self, subscription: Any, callback: Any, node: Any) -> Any:
+        code, node_name = code_of(callback), _nodes.name_of(node)
+
+        def received(message: Any, *more: Any) -> Any:
+            name = _nodes.topic_of(subscription, lambda: subscription.topic_name)
+            self._messages.heard(name, message)
+            handler = self._messages.find(Form.RECEIVE, name, node_name)
+            if handler is None:
+                return callback(message, *more)
+            return deliver(handler, message, lambda one: callback(one, *more), _nodes.where(node, code))
+
+        return as_called(callback, received)
+
+    def wait(self, original: Any, msg_type: Any, node: Any, topic: Any, **kwargs: Any) -> Any:
+        name = node.resolve_topic_name(topic)
+        TYPES.note(Form.RECEIVE, name, msg_type)
+        node_name = _nodes.name_of(node)
+        handler = self._messages.find(Form.RECEIVE, name, node_name)
+        limit = kwargs.pop("time_to_wait", -1)
+        end = time.monotonic() + limit if limit >= 0 else None
+
+        def waited() -> Any:
+            left = -1 if end is None else max(0.0, end - time.monotonic())
+            with _nodes.own():
+                found, message = original(msg_type, node, topic, **kwargs, time_to_wait=left)
+            if not found:
+                raise _Nothing
+            self._messages.heard(name, message)
+            return message
+
+        try:
+            if handler is None:
+                return True, waited()
+            another = anew(waited, lambda message: _is_kept(kwargs.get("qos_profile")))
+            return True, wait_for(handler, _first(another(), another), _nodes.where(node))
+        except _Nothing:
+            return False, None
+
+
+class _Nothing(Exception):  # noqa: N818  (no error: there is no message)
+    """No message came in time."""
+
+
+def _is_kept(qos_profile: Any) -> bool:
+    """Whether what is received may be what the publisher keeps for late subscribers."""
+    durability = getattr(qos_profile, "durability", None)
+    return getattr(durability, "name", None) == "TRANSIENT_LOCAL"
+
+
+def _first(message: Any, otherwise: Callable[[], Any]) -> Callable[[], Any]:
+    """A message that is there already, and then others."""
+    there = [message]
+
+    def wait() -> Any:
+        return there.pop() if there else otherwise()
+
+    return wait
+
+
+def as_called(callback: Any, ours: Callable[..., Any]) -> Any:
+    """``ours`` in the form of a callback of the program's: a coroutine function if that is one."""
+    if not inspect.iscoroutinefunction(callback):
+        return _named_like(callback, ours)
+
+    async def called(*args: Any, **kwargs: Any) -> Any:
+        result = ours(*args, **kwargs)
+        return await result if inspect.isawaitable(result) else result
+
+    return _named_like(callback, called)
+
+
+def _named_like(callback: Any, ours: Any) -> Any:
+    try:
+        return functools.wraps(callback)(ours)
+    except (AttributeError, TypeError):
+        return ours
+
+
+def _made(
+    handler: Handler | None, make: Callable[[Any, Any], Any], node: Any, topic: Any, qos_profile: Any
+) -> Any:
+    given = qualities(qos_profile) if handler is not None else None
+    if handler is None or given is None:
+        return make(topic, qos_profile)
+
+    def set_up(name: Any, depth: Any, reliability: Any, durability: Any, deadline: Any) -> Any:
+        wanted = {"depth": depth, "reliability": reliability, "durability": durability, "deadline": deadline}
+        return make(
+            name, changed(qos_profile, {key: value for key, value in wanted.items() if value != given[key]})
+        )
+
+    return handler(set_up, None, (), {"name": topic, **given}, _nodes.where(node))

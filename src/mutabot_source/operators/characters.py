@@ -1,0 +1,117 @@
+"""Family ``text``: single characters of a text argument go wrong.
+
+The naive operator: it knows nothing of the command that the text is. Made to be compared with.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterable, Iterator
+from hashlib import sha256
+from itertools import pairwise
+from random import Random
+from typing import ClassVar
+
+import libcst as cst
+
+from mutabot.families import TEXT
+from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings
+
+#: alternatives per text and operator
+LIMIT = 4
+_LETTERS = "abcdefghijklmnopqrstuvwxyz"
+_DIGITS = "0123456789"
+
+
+class _Characters(ClassicalOperator):
+    """Changes single characters of texts that are arguments of calls."""
+
+    family = TEXT
+
+    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+        if not isinstance(node, cst.SimpleString) or not around.is_argument:
+            return
+        text = node.evaluated_value
+        if not isinstance(text, str):
+            return
+        random = Random(int.from_bytes(sha256(f"{self.name}:{text}".encode()).digest()[:8]))
+        made = list(self._changed(text, random))
+        chosen = sorted(random.sample(range(len(made)), min(LIMIT, len(made))))
+        taken = {text}
+        for index in chosen:
+            variant, changed = made[index]
+            if changed not in taken:
+                taken.add(changed)
+                yield Draft(variant, (repr(changed),))
+
+    @abstractmethod
+    def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:
+        """Variants, and the texts they make."""
+
+
+class DropCharacter(_Characters):
+    """Leaves a character out."""
+
+    name = "drop-character"
+    rank = 120
+    summary = "A character of a text argument is left out."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("send('up')\n", ("send('p')\n", "send('u')\n")),
+        Example("send(up)\n", note="only texts that stand in the call"),
+        Example("x = 'up'\n"),
+    )
+
+    def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:
+        for index in range(len(text)):
+            yield str(index + 1), text[:index] + text[index + 1 :]
+
+
+class DoubleCharacter(_Characters):
+    """Writes a character twice."""
+
+    name = "double-character"
+    rank = 130
+    summary = "A character of a text argument is there twice."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("send('up')\n", ("send('uup')\n", "send('upp')\n")),
+        Example("send(f'up/{x}')\n", note="not in formatted texts"),
+    )
+
+    def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:
+        for index in range(len(text)):
+            yield str(index + 1), text[: index + 1] + text[index:]
+
+
+class ReplaceCharacter(_Characters):
+    """Writes another character of the same sort."""
+
+    name = "replace-character"
+    rank = 140
+    summary = "A character of a text argument is another one: a digit for a digit, a letter for a letter."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("send('up5')\n", ("send('np5')\n", "send('ul5')\n", "send('up8')\n")),
+        Example("send('')\n", note="an empty text has no characters"),
+    )
+
+    def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:
+        for index, old in enumerate(text):
+            letters = _LETTERS.upper() if old.isupper() else _LETTERS
+            new = random.choice((_DIGITS if old.isdigit() else letters).replace(old, ""))
+            yield str(index + 1), text[:index] + new + text[index + 1 :]
+
+
+class SwapCharacters(_Characters):
+    """Swaps two neighbours."""
+
+    name = "swap-characters"
+    rank = 150
+    summary = "Two neighbouring characters of a text argument change places."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("send('up')\n", ("send('pu')\n",)),
+        Example("send('aa')\n", note="equal neighbours"),
+    )
+
+    def _changed(self, text: str, random: Random) -> Iterator[tuple[str, str]]:
+        for index, (first, second) in enumerate(pairwise(text)):
+            if first != second:
+                yield str(index + 1), text[:index] + second + first + text[index + 2 :]

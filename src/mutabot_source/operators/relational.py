@@ -1,0 +1,107 @@
+"""ROR: a comparison asks something else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import ClassVar
+
+import libcst as cst
+
+from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings
+
+_Signs = dict[type[cst.CSTNode], tuple[str, str]]
+_ORDERS: _Signs = {
+    cst.LessThan: ("lt", "<"),
+    cst.LessThanEqual: ("le", "<="),
+    cst.GreaterThan: ("gt", ">"),
+    cst.GreaterThanEqual: ("ge", ">="),
+    cst.Equal: ("eq", "=="),
+    cst.NotEqual: ("ne", "!="),
+}
+_EQUALITIES: _Signs = {kind: _ORDERS[kind] for kind in (cst.Equal, cst.NotEqual)}
+_IDENTITIES: _Signs = {
+    cst.Is: ("is", "is"),
+    cst.IsNot: ("isNot", "is not"),
+}
+_MEMBERSHIPS: _Signs = {
+    cst.In: ("in", "in"),
+    cst.NotIn: ("notIn", "not in"),
+}
+_SIGNS = _ORDERS | _IDENTITIES | _MEMBERSHIPS
+_WITHOUT_ORDER = ("None", "True", "False")
+
+
+class RelationalReplacement(ClassicalOperator):
+    """Replaces each operator of a comparison, and the comparison by a truth value."""
+
+    name = "ROR"
+    rank = 30
+    summary = "A comparison becomes each of the others, or always true, or always false."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(
+            "z = x < y\n",
+            (
+                "z = x <= y\n",
+                "z = x > y\n",
+                "z = x >= y\n",
+                "z = x == y\n",
+                "z = x != y\n",
+                "z = False\n",
+                "z = True\n",
+            ),
+        ),
+        Example(
+            "z = a < b in c\n",
+            (
+                "z = a <= b in c\n",
+                "z = a > b in c\n",
+                "z = a >= b in c\n",
+                "z = a == b in c\n",
+                "z = a != b in c\n",
+                "z = a < b not in c\n",
+                "z = False\n",
+                "z = True\n",
+            ),
+            note="a chain stays a chain: each value is computed once, and only if it is needed",
+        ),
+        Example("z = x is None\n", ("z = x is not None\n", "z = False\n", "z = True\n")),
+        Example(
+            "z = x == None\n", ("z = x != None\n", "z = False\n", "z = True\n"), note="None has no order"
+        ),
+        Example("if __name__ == '__main__': main()\n", note="what is not run by a test is no place"),
+    )
+
+    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+        if not isinstance(node, cst.Comparison):
+            return
+        values = [node.left, *(target.comparator for target in node.comparisons)]
+        signs = [type(target.operator) for target in node.comparisons]
+        for index, kind in enumerate(signs):
+            group = _group(kind, values[index : index + 2])
+            for other, (variant, _) in group.items():
+                if other is not kind:
+                    number = str(index + 1) if len(signs) > 1 else ""
+                    changed = [*signs[:index], other, *signs[index + 1 :]]
+                    yield Draft(f"{variant}{number}", _chain(values, changed))
+        yield Draft("falseOp", ("False",))
+        yield Draft("trueOp", ("True",))
+
+
+def _group(kind: type[cst.CSTNode], operands: list[cst.BaseExpression]) -> _Signs:
+    for group in (_IDENTITIES, _MEMBERSHIPS):
+        if kind in group:
+            return group
+    return _EQUALITIES if any(_has_no_order(operand) for operand in operands) else _ORDERS
+
+
+def _has_no_order(operand: cst.BaseExpression) -> bool:
+    return isinstance(operand, cst.Dict) or (
+        isinstance(operand, cst.Name) and operand.value in _WITHOUT_ORDER
+    )
+
+
+def _chain(values: list[cst.BaseExpression], signs: list[type[cst.CSTNode]]) -> tuple[str | cst.CSTNode, ...]:
+    parts: list[str | cst.CSTNode] = [values[0]]
+    for sign, value in zip(signs, values[1:], strict=True):
+        parts += [f" {_SIGNS[sign][1]} ", value]
+    return tuple(parts)

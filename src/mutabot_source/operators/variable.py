@@ -1,0 +1,42 @@
+"""SVR: another variable of the same type.
+
+Which variables there are, and of what type, only the baseline can tell; so this operator is asked once more
+after it, with what was seen (``with_variables``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import ClassVar
+
+import libcst as cst
+
+from mutabot.model.alternative import Alternative
+from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings
+
+
+class VariableReplacement(ClassicalOperator):
+    """Replaces a variable by each other one of the same type that is in scope."""
+
+    name = "SVR"
+    rank = 100
+    asks_variables = True
+    summary = "A variable becomes another one in scope that had a value of the same type."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("move(x)\n", ("move(y)\n", "move(z)\n"), variables={"x": ("y", "z")}),
+        Example(
+            "box.lift()\n",
+            ("lid.lift()\n",),
+            variables={"box": ("lid",)},
+            kinds={"box": "cell:Part"},
+            note="objects of the same class as well",
+        ),
+        Example("move(x)\n", note="no other variable had its type"),
+        Example("x = 1\n", variables={"x": ("y",)}, note="only where a variable is read"),
+    )
+
+    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+        return ()
+
+    def with_variables(self, names: Iterable[str]) -> Iterable[Alternative]:
+        return [Alternative(self.name, name, name, name) for name in names]

@@ -1,0 +1,279 @@
+"""Whatever a worker answers: its unit has a result, and so has every other."""
+
+from __future__ import annotations
+
+import copy
+import json
+import queue
+import random
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mutabot.border.codec import to_data
+from mutabot.border.job import Branching, Job
+from mutabot.border.lines import (
+    Acted,
+    BranchEnd,
+    CalledAtImport,
+    CopyEnded,
+    SessionEnd,
+    SiteSeen,
+    TestStart,
+    line_to_data,
+)
+from mutabot.border.test_end import TestEnd
+from mutabot.campaign.baseline.observed import observation
+from mutabot.campaign.baseline.places import Place
+from mutabot.campaign.comparing.observation import compare
+from mutabot.campaign.workers.task import Result, Task
+from mutabot.model import Mutant, Role, Site, Span, Vocabulary
+from mutabot_dask.bundle import Bundle
+from mutabot_dask.checked import MOST_BYTES, Misfit
+from mutabot_dask.dispatch import Dispatch
+from mutabot_dask.link import News
+from mutabot_dask.roster import Roster
+from mutabot_dask.session import Session
+from mutabot_dask.unit import Answer, Ground, Introduction, Unit
+
+from .hostile import ODD
+
+SPAN = Span("mission.py", 2, 4, 2, 20, "run")
+SITE = Site(SPAN, "arm.move_by", 1, Role.PROGRAM)
+TEST = "tests/test_mission.py::test_run"
+END = TestEnd(
+    TEST, "passed", message="no — none", hits=2, acted=1, away={"outside range": 1}, example=(0.5, -0.5),
+    operations=2, commands=1, wall=0.2, cpu=0.1, simulated=2.0, probes={"robot:Arm.x": 0.25}, prepared=1,
+    trace=([0, [0.5], None, None], [0, {"dx": -0.5}, [0.25], None]),
+    returned=(["arm", [1.5]], ["run", {"raised": "no way"}]), moments=([1, {"robot:Arm.x": 0.5}, True],),
+)  # fmt: skip
+SITE_LINE, END_LINE = 0, 4
+GROUND = Ground("digest", "/of/the/controller", "", (), {})
+
+
+def mutant(number: int) -> Mutant:
+    return Mutant(number, "robot", "reverse", SITE, "robot:Arm.move_by", None, f"dx{number}", "", "")
+
+
+def task(number: int) -> Task:
+    job = Job(GROUND.root, ("mission.py",), (), Vocabulary(()), 1, 0, tests=(TEST,), mutant=mutant(number))
+    return Task(number, job)
+
+
+def unit(ticket: str = "ticket") -> Unit:
+    return Unit(GROUND, task(1), ticket)
+
+
+def trunk(ticket: str = "ticket") -> Unit:
+    job = replace(unit().task.job, mutant=None, branching=Branching((mutant(1),), {mutant(1).id: (TEST,)}))
+    return Unit(GROUND, Task(None, job, is_trunk=True), ticket)
+
+
+def good(ticket: str = "ticket") -> dict[str, Any]:
+    """The data of an answer that fits."""
+    lines = (
+        SiteSeen(0, SPAN, "robot:Arm.move_by", None, False),
+        CalledAtImport(([0, [0.25], None, None],)),
+        Acted(""),
+        TestStart(TEST),
+        END,
+        SessionEnd(0, (TEST,)),
+    )
+    data: dict[str, Any] = to_data(Answer.of_result(lines, Result(task(1), wall=0.5)))
+    return {**data, "ticket": ticket}
+
+
+def packed(data: Any) -> bytes:
+    return json.dumps(data).encode()
+
+
+def changed(change: Callable[[dict[str, Any]], Any]) -> bytes:
+    data = good()
+    change(data)
+    return packed(data)
+
+
+def test_what_a_worker_saw_arrives() -> None:
+    answer, lines = Answer.of(packed(good()), unit())
+    found = answer.result(unit().task, lines)
+    assert [to_data(end) for end in found.ends] == [to_data(END)]
+    assert found.end == SessionEnd(0, (TEST,))
+
+
+_WRONG: dict[str, bytes] = {
+    "no JSON": b"{",
+    "no UTF-8": b'{"log": "\xff"}',
+    "another form of Unicode": json.dumps({"ticket": "ticket"}).encode("utf-16"),
+    "no object": b"[]",
+    "deep": b'{"lines":' + b"[" * 100_000 + b"]" * 100_000 + b"}",
+    "a number of 5,000 digits": b'{"exit_code":' + b"9" * 5000 + b"}",
+    "a number that is no fraction": changed(
+        lambda a: a["lines"][END_LINE]["trace"].append([0, [10**400], None, None])
+    ),
+    "an answer to something else": packed(good("another")),
+    "an unknown field": changed(lambda a: a.update(verdict="killed")),
+    "a time that is none": changed(lambda a: a.update(wall=float("nan"))),
+    "a time before its beginning": changed(lambda a: a["lines"][END_LINE].update(wall=-1.0)),
+    "true for a number": changed(lambda a: a.update(exit_code=True)),
+    "a huge count": changed(lambda a: a["lines"][END_LINE].update(hits=2**70)),
+    "a text for a list": changed(lambda a: a.update(lines="abc")),
+    "a line of no kind": changed(lambda a: a["lines"].append({"type": "Verdict"})),
+    "a line that is no object": changed(lambda a: a["lines"].append(7)),
+    "a kind that is no text": changed(lambda a: a["lines"].append({"type": ["TestEnd"]})),
+    "a line without its test": changed(lambda a: a["lines"][END_LINE].pop("test")),
+    "a line of fork servers": changed(lambda a: a["lines"].append(line_to_data(CopyEnded(1, 1)))),
+    "an outcome of a mutant of others": changed(
+        lambda a: a["lines"].append(line_to_data(BranchEnd(mutant(2).id, END)))
+    ),
+    "a test of others": changed(lambda a: a["lines"][END_LINE].update(test="tests/test_other.py::test")),
+    "an outcome that there is not": changed(lambda a: a["lines"][END_LINE].update(outcome="great")),
+    "a file of others": changed(lambda a: a["lines"][SITE_LINE]["span"].update(file="/etc/passwd")),
+    "a file above": changed(lambda a: a["lines"][SITE_LINE]["span"].update(file="../secret.py")),
+    "a call at no site": changed(lambda a: a["lines"][END_LINE]["trace"].append([5, None, None, None])),
+    "a call that is none": changed(lambda a: a["lines"][END_LINE]["trace"].append(5)),
+    "a moment that is none": changed(lambda a: a["lines"][END_LINE].update(moments=[[1]])),
+    "a value that was not returned": changed(lambda a: a["lines"][END_LINE].update(returned=[["run", []]])),
+    "a recording that is none": changed(lambda a: a["lines"][END_LINE].update(recording="AAAA")),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("data", _WRONG.values(), ids=_WRONG.keys())
+def test_what_is_no_answer_to_a_unit_is_told(data: bytes) -> None:
+    with pytest.raises(Misfit, match=r".{4}"):
+        Answer.of(data, unit())
+
+
+def test_an_answer_of_absurd_size_is_not_read() -> None:
+    with pytest.raises(Misfit, match=f"more than {MOST_BYTES}"):
+        Answer.of(b" " * (MOST_BYTES + 1), unit())
+
+
+def test_a_trunk_tells_of_its_own_mutants_only() -> None:
+    data = good()
+    data["lines"].append(line_to_data(BranchEnd(mutant(1).id, replace(END, trace=()))))
+    _, lines = Answer.of(packed(data), trunk())
+    assert sum(isinstance(line, BranchEnd) for line in lines) == 1
+    data["lines"].append(line_to_data(BranchEnd(mutant(2).id, replace(END, trace=()))))
+    with pytest.raises(Misfit, match="is no mutant of this unit"):
+        Answer.of(packed(data), trunk())
+
+
+def test_texts_can_be_stored() -> None:
+    data = changed(lambda a: a["lines"][END_LINE].update(message="half \ud83d a sign", exception="\x00"))
+    (found,) = (line for line in Answer.of(data, unit())[1] if isinstance(line, TestEnd))
+    assert found.message == "half \\ud83d a sign"
+
+
+def test_a_worker_does_not_send_what_would_not_be_taken(tmp_path: Path) -> None:
+    """What its process reports is the mutant's doing, not the worker's: it is not left out for it."""
+    session = Session(tmp_path, GROUND)
+    data = session._fitting(changed(lambda a: a["lines"][END_LINE].update(hits="many")), unit())
+    answer, _ = Answer.of(data, unit())
+    assert answer.lost is not None
+    assert "lines[4].hits" in answer.lost
+
+
+def odd_bytes(random: random.Random) -> bytes:
+    """Bytes at random, or an answer with something at random in it."""
+    if random.random() < 0.3:
+        return random.randbytes(random.randrange(300))
+    data = packed(good("*"))
+    if random.random() < 0.4:
+        place = random.randrange(len(data))
+        return data[:place] + random.randbytes(random.randrange(1, 4)) + data[place + random.randrange(4) :]
+    tree = good("*")
+    for _ in range(random.randrange(1, 4)):
+        holder, key = random.choice(list(_places(tree)))
+        holder[key] = copy.deepcopy(random.choice(ODD))
+    return packed(tree)
+
+
+def _places(tree: Any) -> Iterator[tuple[Any, Any]]:
+    items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
+    for key, value in list(items):
+        yield tree, key
+        yield from _places(value)
+
+
+class FakeLink:
+    """Workers that answer at once: every second unit rightly, the others with something odd."""
+
+    is_lost = False
+    address = "tls://nowhere:1"
+
+    def __init__(self, odd: dict[int, bytes]) -> None:
+        self.news: queue.SimpleQueue[News] = queue.SimpleQueue()
+        self.workers = {f"tls://worker{number}:1": 1 for number in range(len(odd) + 5)}
+        self._odd, self._numbers = odd, count(1)
+
+    def ask(self, worker: str, function: Callable[..., bytes], *given: Any) -> int:
+        number = next(self._numbers)
+        answer = Introduction("host", {}, has=True).data()
+        if function.__name__ == "run_unit":
+            asked = Unit.of(given[0])
+            data = packed(good(asked.ticket))
+            assert asked.task.job.mutant is not None
+            if asked.task.job.mutant.number in self._odd:
+                odd = self._odd[asked.task.job.mutant.number]
+                data = odd.replace(b'"ticket": "*"', b'"ticket": "' + asked.ticket.encode() + b'"')
+            answer = data
+        self.news.put(News(number, answer))
+        return number
+
+    def forget(self, *numbers: int) -> None:
+        pass
+
+
+class FakeCluster:
+    """A cluster that is only asked."""
+
+    pause, done, home = None, 0, None
+
+    def __init__(self, odd: dict[int, bytes]) -> None:
+        self.told: list[str] = []
+        self.link = FakeLink(odd)
+        self.roster = Roster(self.link, {}, self.tell, Bundle("digest", "", b"", 0, ()))  # type: ignore[arg-type]
+        self.home = self
+
+    def tell(self, text: str) -> None:
+        self.told.append(text)
+
+    def events(self, tasks: Any) -> Iterator[Any]:
+        assert not list(tasks), "nothing is left for this machine"
+        yield from ()
+
+    def look_after(self) -> None:
+        pass
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_thousand_odd_answers_cost_no_other_outcome(seed: int) -> None:
+    chance = random.Random(seed)
+    odd = {2 * number: odd_bytes(chance) for number in range(1, 501)}
+    there = FakeCluster(odd)
+    dispatch = Dispatch(there, GROUND, iter([task(number) for number in range(1, 1001)]))  # type: ignore[arg-type]
+    results = {event.task.key: event for event in dispatch.events() if isinstance(event, Result)}
+    assert set(results) == set(range(1, 1001))
+    for number, found in results.items():
+        if number not in odd:
+            assert [to_data(end) for end in found.ends] == [to_data(END)]
+            continue
+        if found.lost is not None:
+            assert not found.ends
+            continue
+        # it is an answer of a worker that may say so: whatever is made of it raises nothing
+        place = Place(SITE, "robot:Arm.move_by", None)
+        original = observation(END, {0: place})
+        for end in found.ends:
+            compare(original, observation(end, {site.index: place for site in found.sites}))
+            json.dumps(to_data(end)).encode()
+    lost = [found for found in results.values() if found.lost is not None]
+    assert len(lost) > 300
+    assert len(there.roster.refusals) == len(lost)
+    assert all("does not fit" in str(found.lost) for found in lost)
+    assert all(text.isprintable() for text in there.told)
+    assert len(there.told) <= 11

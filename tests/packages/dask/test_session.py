@@ -1,0 +1,21 @@
+"""One unit on a worker."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from mutabot.border.job import Job
+from mutabot.campaign.workers.task import Task
+from mutabot.model import Vocabulary
+from mutabot_dask.session import Session
+from mutabot_dask.unit import Answer, Ground, Unit
+
+
+def test_what_is_wrong_with_a_workers_folder_names_it_as_it_is_there(tmp_path: Path) -> None:
+    ground = Ground("digest", "/of/the/controller", "", (), {})
+    session = Session(tmp_path / "gone", ground)
+    job = Job(ground.root, ("mission.py",), (), Vocabulary(()), seed=1, round=0)
+    unit = Unit(ground, Task(None, job), "ticket")
+    answer, _ = Answer.of(session.answer(unit, lambda: None), unit)
+    assert answer.is_unfit
+    assert answer.fault == f"cannot write to {tmp_path}/gone/.mutabot: No such file or directory"

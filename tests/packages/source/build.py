@@ -1,0 +1,90 @@
+"""Program texts with chosen alternatives, built as files and run as modules."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from hashlib import sha256
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from mutabot.inside.text.import_hook import ImportHook
+from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
+from mutabot_source import Example, find_texts, names, refine
+from mutabot_source.rendering import same_program
+
+
+def text_of(folder: Path, source: str, *operators: str) -> ProgramText:
+    """The places of a source; all operators if none is named."""
+    name = f"program_{sha256(source.encode()).hexdigest()[:8]}.py"
+    (folder / name).write_text(source, encoding="utf-8")
+    (text,) = find_texts(folder, [name], operators or names())
+    return text
+
+
+def refined(text: ProgramText, example: Example) -> ProgramText:
+    """The text after a baseline that saw what the example says."""
+    seen = {}
+    for place in text.places:
+        kinds = (example.kinds.get(place.text, "number"),)
+        seen[place.number] = Sighting(place.number, 1, kinds, example.variables.get(place.text, ()))
+    (text,), _ = refine([text], seen)
+    return text
+
+
+def spliced(source: str, place: TextPlace, alternative: Alternative) -> str:
+    """The source with the alternative in its place, in parentheses where it needs them."""
+    lines = source.encode().splitlines(keepends=True)
+    first, start, last, end = place.extent
+    before = b"".join(lines[: first - 1]) + lines[first - 1][:start]
+    after = lines[last - 1][end:] + b"".join(lines[last:])
+    if place.statement:
+        return (before + alternative.text.encode() + after).decode()
+    bare = (before + alternative.text.encode() + after).decode()
+    wrapped = (before + f"({alternative.text})".encode() + after).decode()
+    return bare if same_program(bare, wrapped) else wrapped
+
+
+@contextmanager
+def imported(
+    folder: Path, text: ProgramText, *active: Choice, record: bool = False
+) -> Iterator[tuple[ModuleType, ImportHook]]:
+    """The module of a text, instrumented, and the hook."""
+    hook = ImportHook(str(folder), Instrumentation((text,), record, active))
+    hook.install()
+    try:
+        yield load(folder / text.file), hook
+        assert not hook.problems
+    finally:
+        hook.remove()
+        sys.modules.pop(Path(text.file).stem, None)
+
+
+def load(path: Path) -> ModuleType:
+    """A fresh module of a file."""
+    spec = spec_from_file_location(path.stem, path, loader=SourceFileLoader(path.stem, str(path)))
+    assert spec is not None
+    assert spec.loader is not None
+    module = sys.modules[path.stem] = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def choices(text: ProgramText) -> list[tuple[Choice, TextPlace, Alternative]]:
+    """All alternatives of a text."""
+    return [
+        (Choice(place.number, index), place, alternative)
+        for place in text.places
+        for index, alternative in enumerate(place.alternatives)
+    ]
+
+
+def run_plainly(source: str, names: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """What a source leaves behind when it is run as it stands."""
+    space: dict[str, Any] = dict(names or {})
+    exec(compile(source, "<plain>", "exec"), space)
+    return space
