@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import mutabot_source
-import operators
+from mutabot import operators
 from mutabot.cli.app import main
 
 

@@ -11,7 +11,7 @@ import pytest
 
 import mutabot
 import mutabot_source
-import operators
+from mutabot import operators
 from mutabot.operators.control import CONTROLS
 
 SOURCE = Path(mutabot.__file__).parent
