@@ -17,6 +17,7 @@ ALLOWED = {
     "exit_codes": set(),
     "limits": set(),
     "errors": {"exit_codes", "limits"},
+    "extensions": {"errors"},
     "families": set(),
     "repository": set(),
     "model": {"errors", "families", "limits"},

@@ -14,7 +14,8 @@
     ├── UnstableError               more tests are flaky than the configuration allows         (exit 4)
     ├── JournalError                the journal is missing, foreign or cannot be written       (exit 2)
     ├── PathError                   a path into an argument or result that does not fit
-    └── OperatorError               an operator plug-in that breaks the contract               (exit 2)
+    ├── ExtensionError              a package beside the core that cannot be used              (exit 2)
+    └── OperatorError               an operator of a package that breaks the contract          (exit 2)
 
 Every message names the thing, the value, where it stands and what would have been right; the same
 facts are attributes.
@@ -193,8 +194,14 @@ class PathError(MutabotError):
         self.path, self.step, self.found, self.known = path, step, found, tuple(known)
 
 
+class ExtensionError(MutabotError):
+    """A package beside the core cannot be loaded, or what it brings is not what it should be."""
+
+    exit_code = ExitCode.USAGE
+
+
 class OperatorError(MutabotError):
-    """An operator plug-in does not keep the operator contract.
+    """An operator of a package does not keep the operator contract.
 
     Attributes:
         operator: the operator's name.
