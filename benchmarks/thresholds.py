@@ -22,12 +22,14 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
+from contextlib import nullcontext
 from dataclasses import replace
 from itertools import pairwise
 from math import comb
 from pathlib import Path
 from statistics import median
 from typing import Any
+from unittest.mock import patch
 
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
@@ -72,10 +74,14 @@ def copy_of(example: str, place: Path) -> Path:
     return Path(shutil.copytree(ROOT / "examples" / example, place / example, ignore=ignored))
 
 
-def rows_of(request: Request) -> tuple[Rows, float]:
-    """What was seen at each magnitude, by ladder and round, and the seconds that it took."""
+def rows_of(request: Request, *, whole: bool = False) -> tuple[Rows, float]:
+    """What was seen at each magnitude, by ladder and round, and the seconds that it took.
+
+    ``whole``: run every magnitude of a ladder in every round, instead of searching.
+    """
     began = time.monotonic()
-    path = run_campaign(request, Silent())
+    with patch("mutabot.campaign.run.apart", lambda mutants: (mutants, [])) if whole else nullcontext():
+        path = run_campaign(request, Silent())
     seconds = time.monotonic() - began
     rows: Rows = {}
     with Journal.open(path) as journal:
@@ -95,7 +101,7 @@ def search(given: argparse.Namespace, place: Path) -> bool:
     """By the search, and by whole ladders."""
     folder = copy_of("pick_and_place", place)
     found, quick = rows_of(request_of(folder, given))
-    whole, slow = rows_of(request_of(folder, given, whole_ladders=True))
+    whole, slow = rows_of(request_of(folder, given), whole=True)
     runs, all_runs = (sum(map(len, rows.values())) for rows in (found, whole))
     same = sum(ends_of(bracket_of(found[key])) == ends_of(bracket_of(row)) for key, row in whole.items())
     print(f"search: {runs} runs, {quick:.0f} s; whole ladders: {all_runs} runs, {slow:.0f} s")

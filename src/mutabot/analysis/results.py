@@ -34,7 +34,6 @@ from mutabot.journal.records import (
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
 from mutabot.model.selector import fits
 
-from .budgeted import Estimate, estimates_of
 from .divergence import explain, is_indistinguishable, quantity_of, rank, worst_of
 from .score import Group, KillRate, RoundScores, groups_of
 
@@ -130,7 +129,6 @@ class Results:
             faults, and most of them need not be run: no score and no list of survivors knows of them.
         since: what was run of what has changed since a revision; None if that was not asked for.
         budget: how limited time was used; None if it was not limited.
-        estimates: what the scores of all mutants would be, where the time was not enough for them.
         shard: which part of its plan the campaign has run; None for all of it.
         set_aside: what the journal holds that Mutabot has not written or that cannot be, in words. Nothing
             of it is believed: its outcomes count as not run.
@@ -154,7 +152,6 @@ class Results:
     graded: tuple[MutantResult, ...] = ()
     since: Since | None = None
     budget: Budgeted | None = None
-    estimates: tuple[Estimate, ...] = ()
     shard: ShardOf | None = None
     set_aside: tuple[str, ...] = ()
 
@@ -254,8 +251,6 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     is_whole = _is_whole(mutants, outcomes, rounds)
     drawn = groups if drawing is not None else ()
     budget = from_data(Budgeted, meta[BUDGET]) if BUDGET in meta else None
-    is_cut = budget is not None and not budget.is_whole
-    estimates = estimates_of(budget, mutants, outcomes) if budget is not None and is_cut else ()
     old = _Earlier.of(journal, mutants, outcomes, rounds) if earlier else _Earlier()
     if old.outcomes:
         mutants = sorted([*mutants, *old.mutants], key=lambda mutant: mutant.number)
@@ -293,7 +288,6 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         attempt=_attempt(journal),
         since=from_data(Since, meta[SINCE]) if SINCE in meta else None,
         budget=budget,
-        estimates=estimates,
         shard=shard,
     )
     # what rows hold is known now that they are read

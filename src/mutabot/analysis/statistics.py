@@ -3,9 +3,8 @@
 ``wilson`` is for one mutant: its rounds are independent draws. ``crossed`` is for a score: every cell of the
 table mutants × rounds shares its mutant with a row and its round with a column, so cells are not independent
 and a plain binomial interval would be far too narrow (rounds of one mutant mostly agree). ``sampled`` is for
-the score of a finite list of mutants of which only a random sample was run, in these very rounds, and
-``stratified`` where more was run of some than of others. ``mean_of`` is ``crossed`` for numbers that are no
-shares.
+the score of a finite list of mutants of which only a random sample was run, in these very rounds.
+``mean_of`` is ``crossed`` for numbers that are no shares.
 
 All are tested by simulation, see ``benchmarks/interval_coverage.py`` and docs/statistics.md.
 """
@@ -127,78 +126,6 @@ def sampled(table: Sequence[Sequence[float | None]], population: int) -> Interva
     independent = cells.smoothed * (1 - cells.smoothed) / variance
     independent *= (_NORMAL / student(cells.mutants - 1)) ** 2
     return _wilson(cells.score, min(independent, cells.mutants / left))
-
-
-def stratified(strata: Sequence[tuple[Sequence[float | None], int]]) -> tuple[float, Interval] | None:
-    """The score of several strata together, from a random sample of each, and its interval.
-
-    Every stratum is drawn from without replacement and weighs as much as it holds. The score is the ratio of
-    the estimated numbers of killed and valid ones. Strata that are known as a whole count as they are; of the
-    others together, the linearised score has the variance
-
-        V = Σ N² (1 − n/N) s² / n / (valid ones)²
-
-    (Cochran, "Sampling Techniques", 1977, chapters 5A and 6), and the interval is Wilson's, with Student's t
-    of Satterthwaite's degrees of freedom. It is never narrower than if all strata were alike, for a few that
-    are alike have often missed those that are not.
-
-    Args:
-        strata: for each the cells that were drawn, as for ``crossed``, and how many there are.
-
-    Returns:
-        The score with its interval, or None where no valid one was drawn.
-    """
-    drawn = [(cells, size) for cells, size in strata if cells]
-    whole = _Part.of([one for one in drawn if len(one[0]) == one[1]])
-    part = _Part.of([one for one in drawn if len(one[0]) < one[1]])
-    valid = whole.valid + part.valid
-    if not valid or (part.strata and not part.valid):
-        return None
-    score, share = (whole.killed + part.killed) / valid, part.valid / valid
-    if not share:
-        return score, Interval(score, score)
-    interval = part.interval()
-    known = whole.killed / valid
-    return score, Interval(known + share * interval.low, known + share * interval.high)
-
-
-@dataclass(frozen=True, slots=True)
-class _Part:
-    """Strata, and the estimated numbers of killed and valid ones in them."""
-
-    strata: Sequence[tuple[Sequence[float | None], int]]
-    killed: float
-    valid: float
-
-    @classmethod
-    def of(cls, strata: Sequence[tuple[Sequence[float | None], int]]) -> _Part:
-        sums = [
-            (sum(one or 0.0 for one in cells), sum(one is not None for one in cells)) for cells, _ in strata
-        ]
-        weights = [size / len(cells) for cells, size in strata]
-        killed = math.fsum(weight * count for weight, (count, _) in zip(weights, sums, strict=True))
-        valid = math.fsum(weight * count for weight, (_, count) in zip(weights, sums, strict=True))
-        return cls(strata, killed, valid)
-
-    def interval(self) -> Interval:
-        """Of the score of all in these strata, of which none is known as a whole."""
-        score = self.killed / self.valid
-        variance = spread = alike = 0.0
-        for cells, size in self.strata:
-            left, count = 1 - len(cells) / size, sum(one is not None for one in cells)
-            apart = [0.0 if one is None else one - score for one in cells]
-            mean = math.fsum(apart) / len(cells)
-            squares = math.fsum((one - mean) ** 2 for one in apart)
-            squares += _IMAGINED * ((1 - score) ** 2 + score**2)
-            free = len(cells) + 2 * _IMAGINED - 1
-            own = size**2 * left * squares / free / len(cells) / self.valid**2
-            variance, spread = variance + own, spread + own**2 / max(len(cells) - 1, 1)
-            weight = size / len(cells) * max(count, 1) / self.valid
-            alike += weight**2 * left / max(count, 1)
-        smoothed = (self.killed + _IMAGINED) / (self.valid + 2 * _IMAGINED)
-        independent = smoothed * (1 - smoothed) / variance
-        independent *= (_NORMAL / student(max(1.0, variance**2 / spread))) ** 2
-        return _wilson(score, min(independent, 1 / alike))
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,7 +43,6 @@ class Request:
         pairs: how many mutants of the second order to plant.
         journal: name of the journal's file in mutabot's folder.
         moments: at which of their calls mutants act, a mutant each; None for every call.
-        whole_ladders: whether every magnitude of a ladder is run in every round.
         shard: the part of the plan to run; None for all of it.
         evidence: whether to record what the world does while tests run.
         since: the revision of git from which on changes are looked at; None for no such comparison.
@@ -74,7 +73,6 @@ class Request:
     pairs: int = 200
     journal: str = JOURNAL
     moments: tuple[Moment | None, ...] = (None,)
-    whole_ladders: bool = False
     shard: Shard | None = None
     evidence: bool = False
     since: str | None = None

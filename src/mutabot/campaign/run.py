@@ -199,8 +199,6 @@ def _run_all(campaign: Campaign, plan: Plan, sink: Sink, found: Reused, started:
 def _run_mutants(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tuple[str, int]] = ()) -> None:
     """Every mutant in all rounds, but of ladders what it takes to find their thresholds."""
     alone, ladders = apart(plan.mutants)
-    if campaign.request.whole_ladders:
-        alone, ladders = plan.mutants, []
     run_mutants(campaign, alone, sink, done)
     request = campaign.request
     always = demanded_of(ladders, request.configuration.demands, request.vocabulary)

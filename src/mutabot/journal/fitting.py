@@ -115,7 +115,9 @@ def fact(key: str, value: Any) -> Any:
         0 <= index < len(found.tests) for indexes in found.sites.values() for index in indexes
     ):
         raise ValueError
-    if isinstance(found, Budgeted) and not all(0 <= one.round < MOST_ROUNDS for one in found.classes):
+    if isinstance(found, Budgeted) and not (
+        min(found.run, found.cut_off) >= 0 and found.run + found.cut_off <= found.planned
+    ):
         raise ValueError
     if key in ("started", "seconds") and not 0 <= value <= _LATEST:
         raise ValueError

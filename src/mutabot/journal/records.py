@@ -170,37 +170,21 @@ class Since:
 
 
 @dataclass(frozen=True, slots=True)
-class BudgetedClass:
-    """Outcomes that a campaign in limited time takes to tell alike much.
-
-    Attributes:
-        name: what they have in common.
-        round: 0-based round.
-        mutants: numbers of the mutants, in the random order in which they were to be run.
-        counted: how many of these, from the first on, were run in batches that ended in time. Others may
-            have ended as well, but rather the quick ones.
-    """
-
-    name: str
-    round: int
-    mutants: tuple[int, ...]
-    counted: int = 0
-
-
-@dataclass(frozen=True, slots=True)
 class Budgeted:
     """How a campaign used its limited time.
 
     Attributes:
         seconds: the time it was given.
-        done: number of the mutant and round of outcomes that were known before.
-        classes: all others, in the order in which they were to be run.
+        planned: how many outcomes were to be found in it.
+        run: how many of these were found in batches that ended in time.
+        cut_off: how many were found in the batch that was cut off, in which kills end before survivors.
         is_whole: whether everything was run; None while that is not known.
     """
 
     seconds: float
-    done: tuple[tuple[int, int], ...] = ()
-    classes: tuple[BudgetedClass, ...] = ()
+    planned: int
+    run: int = 0
+    cut_off: int = 0
     is_whole: bool | None = None
 
 

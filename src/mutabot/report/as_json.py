@@ -91,29 +91,13 @@ def results_data(results: Results) -> dict[str, Any]:
         ],
         "sample": drawing_data(results.drawing),
         "since": to_data(results.since),
-        "budget": budget_data(results),
+        "budget": to_data(results.budget),
         "flaky": list(results.flaky.tests),
         "verification": _verification(results.verification),
         "repeats": repeats_data(results.repeats),
         "shard": _shard(results.shard),
         "set_aside": list(results.set_aside),
         "altered": list(results.altered),
-    }
-
-
-def budget_data(results: Results) -> dict[str, Any] | None:
-    """How limited time was used, and what that says about all mutants."""
-    budget = results.budget
-    if budget is None:
-        return None
-    return {
-        "seconds": budget.seconds,
-        "is_whole": budget.is_whole,
-        "classes": [
-            {"name": one.name, "round": one.round + 1, "population": len(one.mutants), "counted": one.counted}
-            for one in budget.classes
-        ],
-        "estimates": [to_data(one) for one in results.estimates],
     }
 
 

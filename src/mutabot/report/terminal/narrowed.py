@@ -7,10 +7,9 @@ from collections.abc import Iterator
 from rich.console import RenderableType
 from rich.text import Text
 
-from mutabot.analysis.budgeted import Estimate
 from mutabot.analysis.results import Results
 
-from .console import between, heading, percent, plain, plural
+from .console import heading, plain, plural
 
 
 def since_lines(results: Results) -> Iterator[RenderableType]:
@@ -30,25 +29,13 @@ def since_lines(results: Results) -> Iterator[RenderableType]:
 
 
 def budget_lines(results: Results) -> Iterator[RenderableType]:
-    """What the time was enough for, and what that says about all mutants."""
+    """What the time was enough for, and what the scores are of."""
     budget = results.budget
     if budget is None or budget.is_whole:
         return
-    counted = sum(one.counted for one in budget.classes)
-    planned = sum(len(one.mutants) for one in budget.classes)
-    yield heading(f"Time for {counted} of {plural(planned, 'outcome')}, what tells most first")
-    for one in budget.classes:
-        if one.counted:
-            yield Text(f"round {one.round + 1}, {one.name}: {one.counted} of {len(one.mutants)}")
-    for estimate in results.estimates:
-        yield Text(_estimate_text(estimate), overflow="fold")
-
-
-def _estimate_text(one: Estimate) -> str:
-    name = f"{one.family} · {one.role}"
-    unknown = f"; of {one.unknown} in classes that were not begun nothing is known" if one.unknown else ""
-    if one.score is None or one.interval is None or one.check_interval is None:
-        return f"{name}: too few to say anything{unknown}"
-    rests = f"from {one.counted} of {one.population} outcomes"
-    scores = f"score {percent(one.score)} ({between(one.interval)}), check score {percent(one.check_score)}"
-    return f"{name}: estimated {scores} ({between(one.check_interval)}), {rests}{unknown}"
+    run = budget.run + budget.cut_off
+    yield heading(f"Time for {run} of {plural(budget.planned, 'outcome')}; {budget.planned - run} not run")
+    yield Text("Scores are of those that were run, survivors of earlier runs first.", overflow="fold")
+    if budget.cut_off:
+        text = f"{budget.cut_off} are from the batch that was cut off, in which kills end before survivors."
+        yield Text(text, overflow="fold")
