@@ -24,26 +24,23 @@ ALLOWED = {
     "languages": {"model"},
     "border": {"errors", "model"},
     "operators": {"errors", "families", "model"},
-    "classical": {"errors", "families", "model", "languages", "operators"},
     "settings": {"errors", "families", "limits", "model", "border", "operators"},
-    "vocabulary": {"errors", "families", "limits", "model", "settings"},
+    "vocabulary": {"errors", "extensions", "families", "limits", "model", "settings"},
     "evidence": {"model"},
     "inside": {"errors", "model", "languages", "border", "operators", "evidence"},
     "journal": {"errors", "model", "border", "repository"},
     "campaign": {
-        "errors", "families", "model", "languages", "border", "settings", "operators", "vocabulary",
-        "classical", "journal", "evidence", "repository",
+        "errors", "extensions", "families", "model", "languages", "border", "settings", "operators",
+        "vocabulary", "journal", "evidence", "repository",
     },
     "proposal": {"errors", "model", "border", "settings", "vocabulary", "campaign"},
     "suggestion": {"errors", "model", "border", "journal", "campaign", "analysis"},
     "analysis": {"exit_codes", "errors", "families", "model", "border", "vocabulary", "journal", "evidence"},
     "report": {"errors", "model", "border", "vocabulary", "journal", "analysis", "evidence"},
-    "serving": {"errors", "campaign", "analysis", "report"},
-    "cells": {"evidence"},
     "__main__": {"cli"},
     "cli": {
         "exit_codes", "errors", "families", "limits", "model", "border", "settings", "vocabulary", "journal",
-        "campaign", "proposal", "suggestion", "analysis", "report", "serving",
+        "campaign", "proposal", "suggestion", "analysis", "report",
     },
 }  # fmt: skip
 FILES = files()
@@ -63,6 +60,27 @@ def test_imports_go_one_way() -> None:
         if own != "__init__":
             wrong += [f"{file} imports {module}" for module in imports(file) if part(module) not in allowed]
     assert wrong == []
+
+
+def test_packages_beside_the_core_import_the_core_and_none_of_each_other() -> None:
+    """That the core imports none of them is a rule of the linter (``banned-api`` in pyproject.toml)."""
+    packages = [one.parent for one in SOURCE.parent.glob("mutabot_*/__init__.py")]
+    assert len(packages) == 6
+    wrong = [
+        f"{file.relative_to(SOURCE.parent)} imports {name}"
+        for package in packages
+        for file in package.rglob("*.py")
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        for name in _imported(node)
+        if name.startswith("mutabot_") and name.partition(".")[0] != package.name
+    ]
+    assert wrong == []
+
+
+def _imported(node: ast.AST) -> list[str]:
+    if isinstance(node, ast.Import):
+        return [alias.name for alias in node.names]
+    return [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
 
 
 def test_no_module_imports_itself_in_a_circle() -> None:

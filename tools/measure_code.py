@@ -1,8 +1,8 @@
 """Measure the code: lines without docstrings, comments and blank lines, modules, chains of imports.
 
-    python tools/measure_code.py [FOLDER …]      src/mutabot if none is named
+    python tools/measure_code.py [FOLDER …]      every package in src if none is named
 
-Prints a line for each top folder, and of the whole: modules, lines of code, lines that import, the longest
+Prints a line for each top folder, and of each package: modules, lines of code, lines that import, the longest
 chain of imports.
 """
 
@@ -101,6 +101,7 @@ def longest_chain(graph: dict[Path, set[Path]]) -> int:
 
 def main(folders: list[Path]) -> None:
     """Print the measures."""
+    total = 0
     for folder in folders:
         texts = {file: file.read_text(encoding="utf-8") for file in sorted(folder.rglob("*.py"))}
         by_part: Counter[str] = Counter()
@@ -110,10 +111,16 @@ def main(folders: list[Path]) -> None:
             print(f"{count:8,}  {folder.name}/{part}")
         modules = [file for file in texts if file.name != "__init__.py"]
         print(f"{len(modules):8,}  modules beside {len(texts) - len(modules)} __init__.py")
-        print(f"{by_part.total():8,}  lines of code")
+        total += by_part.total()
+        print(f"{by_part.total():8,}  lines of code in {folder.name}")
         print(f"{sum(map(import_lines, texts.values())):8,}  lines that import")
         print(f"{longest_chain(imported(folder)):8,}  files in the longest chain of imports")
+    if len(folders) > 1:
+        print(f"{total:8,}  lines of code in all")
 
 
 if __name__ == "__main__":
-    main([Path(name) for name in sys.argv[1:]] or [ROOT / "src" / "mutabot"])
+    main(
+        [Path(name) for name in sys.argv[1:]]
+        or sorted(one.parent for one in (ROOT / "src").glob("*/__init__.py"))
+    )

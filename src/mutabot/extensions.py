@@ -12,6 +12,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .errors import ExtensionError
@@ -34,11 +36,15 @@ class Extension:
         interface: the version of this interface that the package was written for.
         operators: subclasses of ``mutabot.Operator``, by the operators' names.
         middlewares: modules with hooks, by the name of the module whose import puts them in place.
+        vocabularies: files ``package:file.toml``, by the names that projects use for them.
+        versions: distributions whose versions decide how tests end; a campaign's journal notes them.
     """
 
     interface: int
     operators: Mapping[str, str] = field(default_factory=dict)
     middlewares: Mapping[str, str] = field(default_factory=dict)
+    vocabularies: Mapping[str, str] = field(default_factory=dict)
+    versions: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +53,7 @@ class Part:
 
     Attributes:
         name: its name among those of its kind.
-        reference: ``module:attribute`` or ``module``.
+        reference: ``module:attribute`` or ``module``; of a file ``package:file``.
         owner: the distribution that brings it.
     """
 
@@ -66,6 +72,16 @@ class Part:
             text = f"{self.name!r} of package {self.owner!r} ({self.reference}) cannot be loaded: {error!r}"
             raise ExtensionError(text) from error
         return found
+
+    @property
+    def file(self) -> Path:
+        """The file that the reference names; the package is not imported. Raises ExtensionError."""
+        package, _, name = self.reference.partition(":")
+        spec = find_spec(package)
+        for folder in (spec.submodule_search_locations or ()) if spec is not None else ():
+            if (found := Path(folder, name)).is_file():
+                return found
+        raise ExtensionError(f"{self.name!r} of package {self.owner!r}: there is no file {self.reference}")
 
 
 class _Told:
@@ -90,6 +106,11 @@ def brought(kind: str) -> dict[str, Part]:
                 raise ExtensionError(text)
             found[name] = Part(name, reference, owner)
     return found
+
+
+def versions() -> tuple[str, ...]:
+    """Distributions whose versions decide how tests end, by the packages that say so."""
+    return tuple(dict.fromkeys(name for _, extension in _declared() for name in extension.versions))
 
 
 def told_to_processes() -> dict[str, dict[str, str]]:

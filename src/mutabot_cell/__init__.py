@@ -57,10 +57,6 @@ if TYPE_CHECKING:
     from .geometry import Position as Position
     from .rendering import render as render
 
-if "numpy" not in sys.modules:
-    # A cell has no use for a pool of linear-algebra threads, and a process with threads is not safe to fork.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
 _LIBRARIES = ("mujoco", "numpy", "mink", "ruckig")
 _LAZY = {
     "Cell": "cell",
@@ -93,6 +89,9 @@ __all__ = [  # noqa: PLE0604  (the lazy names come from the table above)
 def __getattr__(name: str) -> object:
     if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if "numpy" not in sys.modules:
+        # A cell has no use for a pool of linear-algebra threads: a process with threads is not safe to fork.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         module = importlib.import_module(f".{_LAZY[name]}", __name__)
     except ModuleNotFoundError as error:

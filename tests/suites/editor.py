@@ -20,7 +20,7 @@ from .graded_editor import edit as graded_edit
 ROOT = Path(__file__).resolve().parents[2]
 #: what the judge must know of the examples; a project of the corpus brings its own ``judge.toml``
 EXAMPLES = Path(__file__).resolve().parent / "examples"
-SHIPPED = ROOT / "src" / "mutabot" / "vocabulary" / "shipped"
+SHIPPED = (ROOT / "src" / "mutabot" / "vocabulary" / "shipped", ROOT / "src" / "mutabot_cell")
 PLANTED = '__import__("_planted")'
 DEVIATIONS = {"position": (0.02, "m"), "distance": (0.02, "m"), "orientation": (0.05, "rad"),
               "angle": (0.05, "rad")}  # fmt: skip
@@ -62,7 +62,7 @@ class Facts:
         own = folder / "mutabot.toml"
         settings = _toml(own) if own.exists() else _toml(folder / "pyproject.toml")["tool"]["mutabot"]
         files = [folder / name for name in settings["vocabulary"]]
-        files = [file if file.is_file() else SHIPPED / f"{file.name}.toml" for file in files]
+        files = [file if file.is_file() else _shipped(file.name) for file in files]
         hints = folder / "judge.toml"
         hints = hints if hints.exists() else EXAMPLES / f"{folder.name}.toml"
         return cls(folder, settings, [_toml(file) for file in files], _toml(hints) if hints.exists() else {})
@@ -94,6 +94,10 @@ class Facts:
             if file.is_file():
                 return _definition(ast.parse(file.read_bytes()), name.split("."))
         return None
+
+
+def _shipped(name: str) -> Path:
+    return next(file for folder in SHIPPED if (file := folder / f"{name}.toml").is_file())
 
 
 def _toml(path: Path) -> dict[str, Any]:

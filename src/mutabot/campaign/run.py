@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from mutabot import __version__
+from mutabot import __version__, extensions
 from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.program_text import family_of
@@ -53,7 +53,7 @@ from .sink import Sink
 #: rows that could not be stored, as far as they are told one by one
 _UNSTORED = 5
 #: what else decides how a campaign ends, beside the user's own files
-_VERSIONS = ("pytest", "wrapt", "mujoco", "mink", "ruckig", "numpy", "pytest-bdd")
+_VERSIONS = ("pytest", "wrapt", "pytest-bdd")
 
 
 def run_campaign(request: Request, progress: Progress) -> Path:
@@ -341,7 +341,7 @@ def _meta(request: Request) -> dict[str, Any]:
 
 def _versions() -> dict[str, str]:
     found = {}
-    for name in _VERSIONS:
+    for name in (*_VERSIONS, *extensions.versions()):
         try:
             found[name] = version(name)
         except PackageNotFoundError:

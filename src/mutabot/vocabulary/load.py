@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mutabot.errors import ConfigurationError, UnknownNameError
+from mutabot.extensions import brought
 from mutabot.families import OF_CALLS
 from mutabot.model import Clock, Operation, Probe, Vocabulary, Wait
 from mutabot.settings.document import Document
@@ -50,8 +51,13 @@ def load(names: Sequence[str], root: Path, families: Iterable[str] = OF_CALLS) -
 
 
 def shipped() -> tuple[str, ...]:
-    """Names of the vocabularies that mutabot ships."""
-    return tuple(sorted(path.stem for path in _SHIPPED.glob("*.toml")))
+    """Names of the vocabularies that mutabot and the packages beside it ship."""
+    return tuple(sorted(_shipped_files()))
+
+
+def _shipped_files() -> dict[str, Path]:
+    own = {path.stem: path for path in _SHIPPED.glob("*.toml")}
+    return {name: part.file for name, part in brought("vocabularies").items()} | own
 
 
 @dataclass
@@ -148,8 +154,9 @@ def _find(name: str, root: Path) -> tuple[Document, bool]:
     """The document of this name, and whether mutabot ships it."""
     if (root / name).is_file():
         return Document.read(root / name, name), False
-    if name in shipped():
-        return Document.read(_SHIPPED / f"{name}.toml", name), True
+    file = _shipped_files().get(name)
+    if file is not None:
+        return Document.read(file, name), True
     raise UnknownNameError("vocabulary", name, _known_names(root))
 
 
