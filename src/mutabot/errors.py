@@ -170,13 +170,15 @@ class JournalError(MutabotError):
 
     Attributes:
         path: the journal's path.
+        version: the journal's own version, if it was written by another version of mutabot.
     """
 
     exit_code = ExitCode.USAGE
 
-    def __init__(self, message: str, *, path: str) -> None:
+    def __init__(self, message: str, *, path: str, version: int | None = None) -> None:
         super().__init__(message)
         self.path = path
+        self.version = version
 
 
 class PathError(MutabotError):

@@ -470,3 +470,13 @@ def test_help_is_quick() -> None:
     began = time.perf_counter()
     subprocess.run([sys.executable, "-m", "mutabot.cli.app", "--help"], capture_output=True, check=True)
     assert time.perf_counter() - began < 2.0  # 0.1 s alone; leave room for a busy machine
+
+
+def test_another_system_than_linux_is_told_in_one_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "platform", "darwin")
+    assert main(["results"]) == 2
+    assert capsys.readouterr().err == (
+        "mutabot: mutabot runs on Linux only; this is darwin: use a container or a virtual machine\n"
+    )

@@ -219,7 +219,9 @@ def test_what_is_no_journal_of_this_version_is_moved_aside(path: Path, content: 
     before = path.read_bytes()
     with Journal.create(path, meta={}) as journal:
         assert journal.kept() == {}
-    assert previous_of(path).read_bytes() == before
+        moved = path.with_name("journal.version-1.sqlite") if content == "version" else previous_of(path)
+        assert journal.moved == moved
+    assert moved.read_bytes() == before
 
 
 def test_readers_see_each_outcome_soon_while_the_writer_is_active(path: Path) -> None:
@@ -424,7 +426,7 @@ def test_a_journal_of_another_schema_version_is_refused(path: Path) -> None:
     with connection:
         connection.execute("UPDATE meta SET value = '99' WHERE key = 'journal:version'")
     connection.close()
-    with pytest.raises(JournalError, match="version 99, this one reads 3"):
+    with pytest.raises(JournalError, match="version 99, this one reads 4"):
         Journal.open(path)
 
 

@@ -279,6 +279,11 @@ def _write_beginning(
 ) -> None:
     """From here on the journal is that of this campaign."""
     journal.begin(_meta(request))
+    if journal.moved is not None:
+        progress.note(
+            "the journal of before was damaged or written by another version of mutabot: it is kept as "
+            f"{journal.moved.name}, and every mutant is run again"
+        )
     if journal.set_aside:
         count = len(journal.set_aside)
         progress.note(

@@ -14,7 +14,7 @@ from typing import Annotated
 
 import typer
 
-from mutabot.errors import MutabotError
+from mutabot.errors import MutabotError, UsageError
 from mutabot.exit_codes import ExitCode
 from mutabot.limits import shortened
 
@@ -46,6 +46,10 @@ def options(
     version: Version = False,
 ) -> None:
     """Mutation testing for robot programs: would your tests notice?"""
+    if not sys.platform.startswith("linux"):
+        raise UsageError(
+            f"mutabot runs on Linux only; this is {sys.platform}: use a container or a virtual machine"
+        )
     context.obj = project
 
 

@@ -45,7 +45,12 @@ class Journal(JournalReader):
     """The record of one campaign, to be written; use as a context manager.
 
     Every method raises JournalError when the file cannot be read or written.
+
+    Attributes:
+        moved: where what lay in its place was moved to, if that was no journal of this version.
     """
+
+    moved: Path | None = None
 
     def __init__(self, store: Store, *, waits: bool) -> None:
         super().__init__(store)
@@ -74,13 +79,14 @@ class Journal(JournalReader):
             path.parent.mkdir(parents=True, exist_ok=True)
             lock = WriterLock.take(path)
             try:
-                is_journal = make_way(path)
-                journal = cls(Store.to_write(path, lock), waits=is_journal)
+                found = make_way(path)
+                journal = cls(Store.to_write(path, lock), waits=found.is_journal)
+                journal.moved = found.moved
             except BaseException:
                 lock.release()
                 raise
             with journal._store.closed_on_error():
-                if is_journal:
+                if found.is_journal:
                     journal._store.mark_rows()
                     journal._wait()
                 else:

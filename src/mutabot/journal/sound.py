@@ -48,6 +48,7 @@ def check_schema(path: Path, connection: sqlite3.Connection) -> None:
                 f"{path} was written by another version of mutabot (journal version {version or '?'}, "
                 f"this one reads {SCHEMA_VERSION}); run the campaign again",
                 path=str(path),
+                version=version,
             )
     if strange or _made() - found:
         what = f"holds what no journal has ({', '.join(strange[:3])})" if strange else "lacks a table"

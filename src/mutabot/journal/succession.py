@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from contextlib import closing, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from mutabot.errors import JournalError
@@ -14,29 +15,50 @@ from .sound import check_schema
 from .store import Store
 
 
-def make_way(path: Path) -> bool:
-    """Whether a journal of this version lies there; anything else that mutabot may replace is moved aside.
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What lay where a journal is to be written.
+
+    Attributes:
+        is_journal: whether that was a journal of this version.
+        moved: where anything else was moved to; None if there was nothing.
+    """
+
+    is_journal: bool
+    moved: Path | None = None
+
+
+def make_way(path: Path) -> Found:
+    """Take what lies there over if it is a journal of this version; move anything else aside.
+
+    A journal of another version gets that as part of its name, so that no later campaign overwrites it;
+    a damaged one takes the place of the previous one.
 
     Raises JournalError for a file that is not ours.
     """
     _remove(_half_a_copy_of(path))
     if not path.exists():
-        return False
+        return Found(is_journal=False)
     with path.open("rb") as file:
         start = file.read(16)
     if start and not start.startswith(b"SQLite format 3"):
         raise JournalError(f"{path} is in the way: it is not a journal of mutabot", path=str(path))
-    if _is_journal(path):
-        return True
-    if _is_empty(path):  # of a campaign that was killed before it had begun
-        return False
     kept = previous_of(path)
+    try:
+        if _is_journal(path):
+            return Found(is_journal=True)
+    except JournalError as error:
+        if error.version is None:
+            raise
+        kept = path.with_name(f"{path.stem}.version-{error.version}{path.suffix}")
+    if _is_empty(path):  # of a campaign that was killed before it had begun
+        return Found(is_journal=False)
     _remove(kept)
     for suffix in ("", "-wal", "-shm"):
         old = path.with_name(path.name + suffix)
         if old.exists():
             old.replace(kept.with_name(kept.name + suffix))
-    return False
+    return Found(is_journal=False, moved=kept)
 
 
 def keep_copy(store: Store) -> None:
@@ -64,6 +86,7 @@ def _is_empty(path: Path) -> bool:
 
 
 def _is_journal(path: Path) -> bool:
+    """Whether it is a sound journal of this version. Raises JournalError for one of another version."""
     try:
         with closing(connect(path)) as connection:
             check_schema(path, connection)
@@ -72,6 +95,8 @@ def _is_journal(path: Path) -> bool:
         cause = error.__cause__ if isinstance(error, JournalError) else error
         if isinstance(cause, sqlite3.OperationalError):
             raise  # it is not the content that is wrong: a full disk, a folder that cannot be written
+        if isinstance(error, JournalError) and error.version is not None:
+            raise
         return False
     return bool(sound == "ok")
 
