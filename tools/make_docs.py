@@ -83,12 +83,17 @@ and nothing else has to be edited. What it needs it declares on the class:
 | `magnitudes(quantity)` | how big the fault is to be: a mutant each, with `subject.magnitude` |
 | `family = "…"` | a family of its own: its mutants are planted where `--family` or `families` names it |
 
-Name the class under the entry point `mutabot.operators` of any installed package, and every campaign of its
-family uses it:
+Say in any installed package that it brings the class, and every campaign of its family uses it:
+
+```python
+from mutabot.extensions import Extension
+
+EXTENSION = Extension(interface=1, operators={"creep": "mutabot_creep.creep:Creep"})
+```
 
 ```toml
-[project.entry-points."mutabot.operators"]
-creep = "mutabot_creep:Creep"
+[project.entry-points.mutabot]
+creep = "mutabot_creep:EXTENSION"
 ```
 
 The whole package stands in `tests/plugins/package`.

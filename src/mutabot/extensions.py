@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 INTERFACE = 1
 GROUP = "mutabot"
 #: kinds of parts that processes of the tests need
-_OF_PROCESSES = ("operators", "middlewares")
+_OF_PROCESSES = ("operators", "middlewares", "environments", "futures")
+#: those that are modules of the packages themselves
+_OWN = ("operators", "middlewares", "environments")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +37,14 @@ class Extension:
     Attributes:
         interface: the version of this interface that the package was written for.
         operators: subclasses of ``mutabot.Operator``, by the operators' names.
-        middlewares: modules with hooks, by the name of the module whose import puts them in place.
+        middlewares: modules that keep ``inside.targets.middleware.Middleware``, by the name of the module of
+            the client library whose import puts their hooks in place.
+        environments: modules that keep ``inside.targets.middleware.Environment``, by any name.
+        futures: classes of futures, by the name under which recorded answers keep them: one that is made
+            without arguments is not done until somebody completes it.
+        libraries: client libraries, by the name of the top-level package, in which ``*`` stands for any
+            text. What a program does through them has names on a middleware: ``mutabot init`` proposes none
+            of their callables as operations, but for these functions.
         vocabularies: files ``package:file.toml``, by the names that projects use for them.
         versions: distributions whose versions decide how tests end; a campaign's journal notes them.
     """
@@ -43,6 +52,9 @@ class Extension:
     interface: int
     operators: Mapping[str, str] = field(default_factory=dict)
     middlewares: Mapping[str, str] = field(default_factory=dict)
+    environments: Mapping[str, str] = field(default_factory=dict)
+    futures: Mapping[str, str] = field(default_factory=dict)
+    libraries: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     vocabularies: Mapping[str, str] = field(default_factory=dict)
     versions: tuple[str, ...] = ()
 
@@ -87,17 +99,16 @@ class Part:
 class _Told:
     """What the controller has told this process; None in the controller itself."""
 
-    parts: Mapping[str, Mapping[str, str]] | None = None
+    parts: Mapping[str, Mapping[str, Part]] | None = None
 
 
-def brought(kind: str) -> dict[str, Part]:
+def brought(kind: str) -> Mapping[str, Part]:
     """All parts of a kind, by name; those of mutabot's own packages first, then by package and name.
 
     Raises ExtensionError for a package that cannot be used, and for two parts of one name.
     """
     if _Told.parts is not None:
-        told = _Told.parts.get(kind, {})
-        return {name: Part(name, reference, "the controller") for name, reference in told.items()}
+        return _Told.parts.get(kind, {})
     found: dict[str, Part] = {}
     for owner, extension in _declared():
         for name, reference in getattr(extension, kind).items():
@@ -120,7 +131,31 @@ def told_to_processes() -> dict[str, dict[str, str]]:
 
 def use(parts: Mapping[str, Mapping[str, str]]) -> None:
     """In a process of the tests: these parts, as the controller found them, are all there are."""
-    _Told.parts = parts
+    _Told.parts = {
+        kind: {name: Part(name, reference, _package(reference)) for name, reference in told.items()}
+        for kind, told in parts.items()
+    }
+
+
+def libraries() -> dict[str, tuple[str, ...]]:
+    """The client libraries of middlewares, with the functions of them that are operations.
+
+    Only the controller can tell.
+    """
+    found: dict[str, tuple[str, ...]] = {}
+    for _, extension in _declared():
+        for name, functions in extension.libraries.items():
+            found[name] = (*found.get(name, ()), *functions)
+    return found
+
+
+def packages() -> frozenset[str]:
+    """Top-level packages of mutabot and of what it was brought: what they do is not the program's doing."""
+    return frozenset({GROUP, *(_package(part.reference) for kind in _OWN for part in brought(kind).values())})
+
+
+def _package(reference: str) -> str:
+    return reference.partition(":")[0].partition(".")[0]
 
 
 @cache

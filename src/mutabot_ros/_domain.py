@@ -12,8 +12,7 @@ import socket
 from collections.abc import Iterator
 from contextlib import suppress
 
-from mutabot.border.job import Job
-from mutabot.model import Operation
+from mutabot.model import Operation, Vocabulary
 
 DOMAIN, RANGE, LOGS = "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOG_DIR"
 PROFILES = ("FASTDDS_DEFAULT_PROFILES_FILE", "FASTRTPS_DEFAULT_PROFILES_FILE")
@@ -43,9 +42,9 @@ _PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
 _held: list[socket.socket] = []
 
 
-def is_wanted(job: Job) -> bool:
-    """Whether the job's vocabulary speaks of nodes, which may be those of ROS 2."""
-    return any(_is_of_nodes(operation) for operation in job.vocabulary.operations)
+def is_wanted(vocabulary: Vocabulary) -> bool:
+    """Whether the vocabulary speaks of nodes, which may be those of ROS 2."""
+    return any(_is_of_nodes(operation) for operation in vocabulary.operations)
 
 
 def take(home: str) -> None:

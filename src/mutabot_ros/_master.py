@@ -15,7 +15,8 @@ import sys
 import time
 from dataclasses import dataclass
 
-from mutabot.border.job import Job
+from mutabot.errors import MutabotError
+from mutabot.model import Operation, Vocabulary
 
 from ._speech import speaks_of
 
@@ -37,7 +38,7 @@ if os.getppid() == int(sys.argv[1]):
 """
 
 
-class MasterError(Exception):
+class MasterError(MutabotError):
     """No master came up."""
 
 
@@ -59,21 +60,19 @@ class Master:
         self.process.wait()
 
 
-def is_wanted(job: Job) -> bool:
+def is_wanted(root: str, vocabulary: Vocabulary | None) -> bool:
     """Whether the program uses ROS 1, as far as its vocabulary and files tell, and it is installed."""
-    operations = job.vocabulary.operations
-    modules = {operation.target.partition(":")[0].partition(".")[0] for operation in operations}
-    is_named = any(operation.named is not None for operation in operations)
-    if not is_named and not modules & {"rospy", "actionlib"}:
+    if vocabulary is not None and not any(map(_is_of_nodes, vocabulary.operations)):
         return False
     if not _is_installed("rospy") or not _is_installed("rosmaster"):
         return False
-    return not _is_installed("rclpy") or speaks_of(job.root, "rospy")
+    is_other_there = vocabulary is None or _is_installed("rclpy")
+    return not is_other_there or speaks_of(root, "rospy")
 
 
-def is_spoken_of(root: str) -> bool:
-    """Whether the files below a folder use ROS 1, and it is installed."""
-    return _is_installed("rospy") and _is_installed("rosmaster") and speaks_of(root, "rospy")
+def _is_of_nodes(operation: Operation) -> bool:
+    module = operation.target.partition(":")[0].partition(".")[0]
+    return operation.named is not None or module in ("rospy", "actionlib")
 
 
 def _is_installed(module: str) -> bool:

@@ -17,7 +17,7 @@ from typing import Any
 from mutabot.inside.calls.passing import is_under_way
 from mutabot.inside.processes.member import note_node
 from mutabot.inside.targets.delivery import anew, deliver, wait_for
-from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.middleware import Names
 from mutabot.inside.targets.target import Finding
 from mutabot.model import Operation
 from mutabot.model.named import Form
@@ -33,7 +33,7 @@ _OWN = frozenset({"/rosout", "/clock", "/statistics"})
 _types = Ros1Types()
 
 
-def hook(messages: Messages) -> Callable[[], None]:
+def hook(messages: Names) -> Callable[[], None]:
     """Let the messages of this process pass by; returns what takes the hooks away."""
     patches = Patches()
     rospy: Any = sys.modules[MODULE]
@@ -62,7 +62,7 @@ def _note(original: Any, *args: Any, **kwargs: Any) -> Any:
 class _Topics:
     """Publishers and subscribers."""
 
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: Names) -> None:
         self._messages = messages
 
     def hook(self, patches: Patches, rospy: Any) -> None:
@@ -160,7 +160,7 @@ class _Topics:
 class _Services:
     """Proxies of services."""
 
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: Names) -> None:
         self._messages = messages
 
     def hook(self, patches: Patches, rospy: Any) -> None:
@@ -206,7 +206,7 @@ class _Services:
 class _Parameters:
     """Values of the parameter server."""
 
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: Names) -> None:
         self._messages = messages
 
     def hook(self, patches: Patches, rospy: Any) -> None:
@@ -231,7 +231,7 @@ class _Parameters:
 class _Times:
     """Timers and rates. A timer is named after its callback, a rate after its node."""
 
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: Names) -> None:
         self._messages = messages
 
     def hook(self, patches: Patches, rospy: Any) -> None:

@@ -7,13 +7,11 @@ without the word simple are not seen.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 from mutabot.inside.targets.delivery import deliver
-from mutabot.inside.targets.messages import Messages
-from mutabot.inside.targets.target import Finding
-from mutabot.model import Operation
+from mutabot.inside.targets.middleware import Names
 from mutabot.model.named import Form
 
 from . import _ros1_node as node
@@ -25,7 +23,7 @@ MODULE = "actionlib"
 _ENDINGS = {2: "CANCELED", 4: "ABORTED", 5: "REJECTED", 8: "CANCELED"}
 
 
-def hook(messages: Messages) -> Callable[[], None]:
+def hook(messages: Names) -> Callable[[], None]:
     """Let the goals of this process pass by; returns what takes the hooks away."""
     patches = Patches()
     actionlib: Any = sys.modules[MODULE]
@@ -39,15 +37,10 @@ def hook(messages: Messages) -> Callable[[], None]:
     return patches.undo
 
 
-def check(operation: Operation) -> Iterator[Finding]:
-    """Types of actions are looked at with all others, in ``ros1``."""
-    return iter(())
-
-
 class _Simple:
     """Simple action clients."""
 
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: Names) -> None:
         self._messages = messages
 
     def make(self, original: Any, client: Any, *args: Any, **kwargs: Any) -> None:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 from mutabot.inside.targets.means import Means
-from mutabot.inside.targets.messages import Messages
-from mutabot.inside.targets.target import Finding, Where
-from mutabot.model import Operation
+from mutabot.inside.targets.middleware import Names
+from mutabot.inside.targets.target import Where
 from mutabot.model.named import Form
 
 from ._patches import Patches
@@ -17,7 +16,7 @@ from ._patches import Patches
 MODULE = "tf2_ros"
 
 
-def hook(messages: Messages) -> Callable[[], None]:
+def hook(messages: Names) -> Callable[[], None]:
     """Let transforms pass by; returns what takes the hook away."""
     patches = Patches()
 
@@ -41,11 +40,6 @@ def hook(messages: Messages) -> Callable[[], None]:
 
     patches.put(sys.modules[MODULE].Buffer, "lookup_transform", look_up)
     return patches.undo
-
-
-def check(operation: Operation) -> Iterator[Finding]:
-    """Transforms are of one type."""
-    return iter(())
 
 
 def _node() -> str | None:

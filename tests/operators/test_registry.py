@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from importlib.metadata import EntryPoint
-
 import pytest
 
 import mutabot
-from mutabot.errors import OperatorError
-from mutabot.operators import names, operator, registry
+from mutabot import extensions
+from mutabot.errors import ExtensionError, OperatorError
+from mutabot.extensions import Extension
+from mutabot.operators import names, operator
 
 
 def test_an_unknown_operator_is_named_with_the_nearest() -> None:
@@ -18,9 +18,12 @@ def test_an_unknown_operator_is_named_with_the_nearest() -> None:
 
 @pytest.mark.parametrize("name", ["skip", "identity", "drift"])
 def test_two_operators_of_one_name_are_refused(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
-    entries = [EntryPoint(name, f"plug_in_{number}:Operator", registry.ENTRY_POINT) for number in (1, 2)]
-    monkeypatch.setattr(registry, "_plug_ins", lambda: tuple(entries))
-    with pytest.raises(OperatorError, match=f"'{name}'"):
+    found = [(f"package-{number}", Extension(1, {name: f"package_{number}:Rule"})) for number in (1, 2)]
+    monkeypatch.setattr(extensions, "_declared", lambda: tuple(found))
+    with pytest.raises(ExtensionError, match=f"'{name}' of package 'package-2' .* 'package-1'"):
+        names()
+    del found[1]
+    with pytest.raises(OperatorError, match=f"'{name}' of package 'package-1' .* 'mutabot'"):
         names()
 
 

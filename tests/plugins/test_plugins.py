@@ -58,7 +58,7 @@ PROJECT = {
 
 #: the one that is only found when it is used
 ON_USE = "fails on an operation"
-#: how a plug-in can break the contract: (name in the entry point, its code, what the error must tell)
+#: how a plug-in can break the contract: (name in its extension, its code, what the error must tell)
 BROKEN = {
     "raises at import": ("late", "raise RuntimeError('no licence')", "RuntimeError('no licence')"),
     "imports what is not there": ("late", "import not_there_at_all", "not_there_at_all"),
@@ -170,7 +170,11 @@ def broken_plug_in(folder: Path, name: str, code: str) -> Path:
     details = folder / "broken_plug_in-1.0.dist-info"
     details.mkdir(parents=True)
     (details / "METADATA").write_text("Metadata-Version: 2.1\nName: broken-plug-in\nVersion: 1.0\n")
-    (details / "entry_points.txt").write_text(f"[mutabot.operators]\n{name} = broken_plug_in:Rule\n")
+    (details / "entry_points.txt").write_text("[mutabot]\nbroken = broken_plug_in_extension:EXTENSION\n")
+    (folder / "broken_plug_in_extension.py").write_text(
+        "from mutabot.extensions import Extension\n"
+        f"EXTENSION = Extension(interface=1, operators={{{name!r}: 'broken_plug_in:Rule'}})\n"
+    )
     (folder / "broken_plug_in.py").write_text(code)
     return folder
 
@@ -216,7 +220,7 @@ def test_a_broken_plug_in_raises_an_operator_error_that_names_it(how: str, tmp_p
         "except OperatorError as error:\n    print(error.operator, '|', error)\n"
     )
     done = python(broken_plug_in(tmp_path, name, code), "-c", ask)
-    named = f"{name} | operator {name!r} of plug-in 'broken-plug-in' (broken_plug_in:Rule)"
+    named = f"{name} | operator {name!r} of package 'broken-plug-in' (broken_plug_in:Rule)"
     assert done.stdout.startswith(named), done.stderr
     assert told in done.stdout
 

@@ -120,6 +120,7 @@ class Job:
             as well is judged by its tests.
         evidence: whether to record what the world does while tests run.
         pictures: which test is filmed; None for none.
+        extensions: references to what packages bring, by kind and name, see ``extensions.use``.
         key: of the seals on its report lines, see ``frame``.
     """
 
@@ -145,6 +146,7 @@ class Job:
     refused: Mapping[str, tuple[RefusedAt, ...]] = field(default_factory=dict)
     evidence: bool = False
     pictures: Pictures | None = None
+    extensions: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     key: str = ""
 
 

@@ -16,7 +16,9 @@ _PATIENCE, _STEP = 0.5, 0.02
 #: innermost calls to name
 _CALLS = 5
 _FRAME = re.compile(r'  File "(?P<file>.*)", line (?P<line>\d+) in (?P<function>.*)')
-_RUNNER, _OURS = re.compile(r"/(_pytest|pluggy)/"), re.compile(r"/mutabot/inside/|<frozen ")
+_RUNNER = re.compile(r"/(_pytest|pluggy)/")
+#: the inside, and the packages beside the core
+_OURS = re.compile(rf"/mutabot/inside/|{re.escape(str(Path(__file__).parents[2]))}/mutabot_|<frozen ")
 
 
 def ask(pid: int, file: str, root: str) -> str | None:

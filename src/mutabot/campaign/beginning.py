@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager, contextmanager
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.ranges import note_ranges
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.baseline.unfit import refuse_unfit
+from mutabot.campaign.baseline.unfit import refuse_unfit, refuse_unhooked
 from mutabot.campaign.engines.choice import first_engine, repetitions_for
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.plan.planned import Plan
@@ -66,10 +66,12 @@ def begin(
 ) -> tuple[Campaign, list[Result]]:
     """Take the baseline. Returns the campaign and the raw results of the baseline.
 
-    Raises what ``take_baseline`` raises, ConfigurationError for orientations that the original lacks, and
-    SelectionError for words of ``--only`` and ``--skip`` that cannot mean anything.
+    Raises what ``take_baseline`` raises, ConfigurationError for orientations that the original lacks and for
+    names on a middleware where none is installed, and SelectionError for words of ``--only`` and ``--skip``
+    that cannot mean anything.
     """
     refuse_typos(request)
+    refuse_unhooked(request.vocabulary)
     baseline, results = take_baseline(
         request, executor, progress,
         repetitions=repetitions_for(request), may_share=first_engine(request).may_share,

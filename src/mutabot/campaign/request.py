@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from mutabot.border.job import Job
 from mutabot.campaign.workers.pause import Pause
+from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
@@ -112,6 +113,7 @@ class Request:
             private_files=self.configuration.private_files,
             oracle_nodes=self.configuration.oracle_nodes,
             evidence=self.evidence,
+            extensions=told_to_processes(),
             **details,
         )
 

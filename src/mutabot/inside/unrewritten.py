@@ -1,4 +1,4 @@
-"""Importing mutabot's own modules as they are."""
+"""Importing modules of mutabot, and of the packages beside it, as they are."""
 
 from __future__ import annotations
 
@@ -15,5 +15,5 @@ def import_us_unrewritten() -> None:
     for finder in sys.meta_path:
         marked: Any = getattr(finder, "_must_rewrite", None)
         if isinstance(marked, set):
-            marked.discard("mutabot")
+            marked.difference_update([name for name in marked if name.partition("_")[0] == "mutabot"])
             getattr(finder, "_marked_for_rewrite_cache", {}).clear()

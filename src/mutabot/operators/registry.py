@@ -1,4 +1,4 @@
-"""Finding operators on calls by name: the built-in ones by their files, and those that plug-ins bring."""
+"""Finding operators on calls by name: the built-in ones by their files, and those that packages bring."""
 
 from __future__ import annotations
 
@@ -8,18 +8,15 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from mutabot.errors import OperatorError, unknown_name_text
+from mutabot.errors import ExtensionError, OperatorError, unknown_name_text
+from mutabot.extensions import Part, brought
 
 from .control import CONTROLS
 from .operator import Operator
 from .rule import in_order
 
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
-
-ENTRY_POINT = "mutabot.operators"
 _HERE = Path(__file__).parent
 
 
@@ -31,24 +28,21 @@ def built_in() -> list[str]:
 def names() -> list[str]:
     """Names of all operators that make mutants, built-in ones first.
 
-    Raises OperatorError when two operators want the same name: it would not be clear whose mutants are whose.
+    Raises OperatorError or ExtensionError when two operators want the same name: it would not be clear whose
+    mutants are whose.
     """
     found = built_in()
-    owners: dict[str, str] = dict.fromkeys([*found, *CONTROLS], "mutabot")
-    for entry in sorted(_plug_ins(), key=lambda entry: entry.name):
-        owner = _owner(entry)
-        if entry.name in owners:
-            raise OperatorError(
-                f"operator {entry.name!r} of plug-in {owner!r} has the name of one of {owners[entry.name]!r}",
-                operator=entry.name,
-            )
-        owners[entry.name] = owner
-        found.append(entry.name)
+    own = {*found, *CONTROLS}
+    for part in brought("operators").values():
+        if part.name in own:
+            text = f"operator {part.name!r} of package {part.owner!r} has the name of one of 'mutabot'"
+            raise OperatorError(text, operator=part.name)
+        found.append(part.name)
     return found
 
 
 def load_all() -> list[Operator]:
-    """All operators that make mutants. Raises OperatorError for a plug-in that is of no use."""
+    """All operators that make mutants. Raises OperatorError for one of a package that is of no use."""
     return [operator(name) for name in names()]
 
 
@@ -69,9 +63,9 @@ def operator(name: str) -> Operator:
         return CONTROLS[name]()
     if name in _files():
         return _of_file(name, _files()[name])
-    for entry in _plug_ins():
-        if entry.name == name:
-            return _loaded(entry)
+    part = brought("operators").get(name)
+    if part is not None:
+        return _loaded(part)
     raise OperatorError(unknown_name_text("operator", name, names()), operator=name)
 
 
@@ -103,31 +97,22 @@ def _checked(rule: Operator, where: str) -> Operator:
     return rule
 
 
-@cache
-def _plug_ins() -> tuple[EntryPoint, ...]:
-    from importlib import metadata  # noqa: PLC0415  # slow, and workers need it for plug-ins only
-
-    return tuple(metadata.entry_points(group=ENTRY_POINT))
-
-
-def _owner(entry: EntryPoint) -> str:
-    return entry.dist.name if entry.dist is not None else entry.value
-
-
-def _loaded(entry: EntryPoint) -> Operator:
-    where = f"operator {entry.name!r} of plug-in {_owner(entry)!r} ({entry.value})"
+def _loaded(part: Part) -> Operator:
+    where = f"operator {part.name!r} of package {part.owner!r} ({part.reference})"
     try:
-        made = entry.load()()
-    except Exception as error:  # a plug-in may fail in any way; the user needs to know which one it was
-        raise OperatorError(f"{where} cannot be loaded: {error!r}", operator=entry.name) from error
+        made = part.load()()
+    except ExtensionError as error:
+        raise OperatorError(f"operator {error}", operator=part.name) from error
+    except Exception as error:  # a package of others may fail in any way
+        raise OperatorError(f"{where} cannot be loaded: {error!r}", operator=part.name) from error
     if not isinstance(made, Operator):
         raise OperatorError(
-            f"{where} is {type(made).__name__}, not a subclass of mutabot.Operator", operator=entry.name
+            f"{where} is {type(made).__name__}, not a subclass of mutabot.Operator", operator=part.name
         )
-    if getattr(made, "name", None) != entry.name:
+    if getattr(made, "name", None) != part.name:
         raise OperatorError(
-            f"{where} calls itself {getattr(made, 'name', None)!r}; entry point and class must agree",
-            operator=entry.name,
+            f"{where} calls itself {getattr(made, 'name', None)!r}; extension and class must agree",
+            operator=part.name,
         )
     return _checked(made, where)
 

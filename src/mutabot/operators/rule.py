@@ -8,8 +8,8 @@ An operator is one class in one file, and nothing else has to be edited: the reg
 - One that acts on **program text** is a subclass of ``ClassicalOperator`` (``mutabot_source/operator.py``)
   in ``classical/operators/``; a file may hold several.
 
-What several share goes into a file whose name begins with ``_``. A third party names its class under the
-entry point ``mutabot.operators``; that goes for operators on calls.
+What several share goes into a file whose name begins with ``_``. A third party names its class in its
+``mutabot.extensions.Extension``; that goes for operators on calls.
 
 Engines, plan, reports and documentation know no operator by name: whatever they need to know of one stands
 here or in the two contracts that build on this one.

@@ -7,14 +7,14 @@ import builtins
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from typing import Any
+
+from mutabot.extensions import libraries
 
 from .layout import Layout, parsed
 
 _NO_ROBOTS = frozenset({*sys.stdlib_module_names, "numpy", "np", "pytest", "math3d"})
-#: client libraries of ROS, and what of them is an operation when it is called by the library's name
-_CLIENT_LIBRARIES = frozenset({"rospy", "rclpy", "actionlib", "tf2_ros", "tf"})
-_OPERATIONS = frozenset({"get_param", "get_param_cached", "wait_for_message"})
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def _is_plain(names: Sequence[str], own: set[str]) -> bool:
     return (
         (len(names) == 1 and (hasattr(builtins, last) or last in own))
         or names[0] in _NO_ROBOTS
-        or (names[0] in _CLIENT_LIBRARIES and last not in _OPERATIONS)
+        or any(fnmatchcase(names[0], one) and last not in known for one, known in libraries().items())
         or last.startswith("_")
         or last[:1].isupper()
         or any(hasattr(kind, last) for kind in (list, dict, str, set))

@@ -17,6 +17,7 @@ from typing import Any
 
 from mutabot.border.watch import WATCH_VARIABLE
 from mutabot.campaign.workers.processes import command, kill_group
+from mutabot.extensions import libraries, told_to_processes
 
 from .layout import Layout
 from .named.seen import Use, uses
@@ -159,7 +160,8 @@ def _run(layout: Layout, extra: list[str], limit: float) -> Observed:
 def _order(layout: Layout, output: Path) -> dict[str, Any]:
     names = {kind: {os.path.realpath(path): layout.relative(path) for path in getattr(layout, kind)}
              for kind in ("program", "tests")}  # fmt: skip
-    return {**names, "root": str(layout.root), "output": str(output)}
+    brought = {"extensions": told_to_processes(), "libraries": list(libraries())}
+    return {**names, **brought, "root": str(layout.root), "output": str(output)}
 
 
 def _wait(words: Sequence[str], root: Path, order: Path, log: Path, limit: float) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.middleware import Names
 from mutabot.inside.targets.target import Finding
 from mutabot.model import Operation
 from mutabot_ros._patches import Patches
@@ -27,7 +27,7 @@ MODULE = "rclpy"
 _HOOKS = (hook_nodes, hook_topics, hook_services, hook_actions, hook_parameters, hook_times, hook_clock)
 
 
-def hook(messages: Messages) -> Callable[[], None]:
+def hook(messages: Names) -> Callable[[], None]:
     """Let what nodes of this process do pass by; returns what takes the hooks away."""
     patches = Patches()
     for put in _HOOKS:

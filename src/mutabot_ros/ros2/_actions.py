@@ -9,7 +9,7 @@ from typing import Any
 import wrapt
 
 from mutabot.inside.targets.delivery import deliver
-from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.middleware import Names
 from mutabot.model.named import Form
 from mutabot_ros._patches import Patches, code_of
 
@@ -26,7 +26,7 @@ _SERVICE = "/_action/send_goal"
 _ENDINGS = {5: "CANCELED", 6: "ABORTED"}
 
 
-def hook(patches: Patches, messages: Messages) -> None:
+def hook(patches: Patches, messages: Names) -> None:
     """Stand around clients of actions as soon as the program imports them."""
     actions = _Actions(messages)
 
@@ -47,7 +47,7 @@ def hook(patches: Patches, messages: Messages) -> None:
 
 
 class _Actions:
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: Names) -> None:
         self._messages = messages
         self.is_over = False
 

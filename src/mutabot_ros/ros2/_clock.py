@@ -13,7 +13,7 @@ from collections.abc import Awaitable, Callable
 from importlib import import_module
 from typing import Any
 
-from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.middleware import Names
 from mutabot_ros._patches import Patches
 
 from ._steps import Pause
@@ -34,7 +34,7 @@ class _Moved:
 _moved = _Moved()
 
 
-def hook(patches: Patches, messages: Messages) -> None:
+def hook(patches: Patches, messages: Names) -> None:
     """Stand around the clocks of nodes."""
     clock: Any = import_module("rclpy.clock")
     steady = import_module("rclpy.clock_type").ClockType.STEADY_TIME

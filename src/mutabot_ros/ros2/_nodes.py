@@ -11,7 +11,7 @@ from typing import Any
 
 from mutabot.inside.processes.member import note_node
 from mutabot.inside.targets.means import Means
-from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.middleware import Names
 from mutabot.inside.targets.target import Where
 from mutabot_ros._patches import Patches
 
@@ -31,7 +31,7 @@ class _Now(threading.local):
 _now = _Now()
 
 
-def hook(patches: Patches, messages: Messages) -> None:
+def hook(patches: Patches, messages: Names) -> None:
     """Note nodes as they come."""
     patches.put(import_module("rclpy.node").Node, "__init__", _made)
 

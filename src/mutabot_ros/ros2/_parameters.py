@@ -6,14 +6,14 @@ from importlib import import_module
 from typing import Any
 from weakref import WeakKeyDictionary
 
-from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.middleware import Names
 from mutabot.model.named import Form
 from mutabot_ros._patches import Patches
 
 from . import _nodes
 
 
-def hook(patches: Patches, messages: Messages) -> None:
+def hook(patches: Patches, messages: Names) -> None:
     """Stand around the readings of parameters."""
     parameters = _Parameters(messages)
     node: Any = import_module("rclpy.node").Node
@@ -25,7 +25,7 @@ def hook(patches: Patches, messages: Messages) -> None:
 
 
 class _Parameters:
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: Names) -> None:
         self._messages = messages
         self._defaults: WeakKeyDictionary[Any, dict[str, Any]] = WeakKeyDictionary()
 

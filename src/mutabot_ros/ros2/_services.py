@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Callable
 from importlib import import_module
 from typing import Any
 
-from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.middleware import Names
 from mutabot.model.named import Form
 from mutabot_ros._patches import Patches
 
@@ -18,7 +18,7 @@ from ._types import TYPES
 _SLICE = 0.1
 
 
-def hook(patches: Patches, messages: Messages) -> None:
+def hook(patches: Patches, messages: Names) -> None:
     """Stand around clients of services."""
     services = _Services(messages)
     client: Any = import_module("rclpy.client").Client
@@ -33,7 +33,7 @@ def _remove(original: Any, client: Any, future: Any) -> Any:
 
 
 class _Services:
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: Names) -> None:
         self._messages = messages
 
     def make(self, original: Any, node: Any, srv_type: Any, srv_name: Any, **kwargs: Any) -> Any:

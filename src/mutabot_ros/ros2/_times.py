@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import Any
 
 from mutabot.inside.targets.delivery import deliver
-from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.middleware import Names
 from mutabot.model.named import Form
 from mutabot_ros._patches import Patches, code_of
 
@@ -14,7 +14,7 @@ from . import _nodes
 from ._topics import as_called
 
 
-def hook(patches: Patches, messages: Messages) -> None:
+def hook(patches: Patches, messages: Names) -> None:
     """Stand around timers and rates."""
     times = _Times(messages)
     node: Any = import_module("rclpy.node").Node
@@ -24,7 +24,7 @@ def hook(patches: Patches, messages: Messages) -> None:
 
 
 class _Times:
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: Names) -> None:
         self._messages = messages
 
     def make_timer(

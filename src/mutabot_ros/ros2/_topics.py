@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any
 
 from mutabot.inside.targets.delivery import anew, deliver, wait_for
-from mutabot.inside.targets.messages import Messages
+from mutabot.inside.targets.middleware import Names
 from mutabot.inside.targets.target import Handler
 from mutabot.model.named import Form
 from mutabot_ros._patches import Patches, code_of
@@ -22,7 +22,7 @@ from ._types import TYPES
 _WRAPPED = "_mutabot_wrapped"
 
 
-def hook(patches: Patches, messages: Messages) -> None:
+def hook(patches: Patches, messages: Names) -> None:
     """Stand around publishers and subscriptions."""
     node: Any = import_module("rclpy.node").Node
     topics = _Topics(messages)
@@ -49,7 +49,7 @@ def _hook_callback(patches: Patches, kind: Any, topics: _Topics) -> None:
 
 
 class _Topics:
-    def __init__(self, messages: Messages) -> None:
+    def __init__(self, messages: Names) -> None:
         self._messages = messages
 
     def advertise(

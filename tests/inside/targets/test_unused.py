@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from mutabot import extensions
+from mutabot.extensions import Extension
 from mutabot.inside.targets.messages import Messages
 from mutabot.inside.targets.unused import unheard, unused
 from mutabot.model.named import Form, Named, Refused
@@ -23,7 +25,17 @@ def said(wanted: str, *used: str) -> list[str]:
             ["publish /cell/lamp", "publish /arm/gaol", "receive /arm/pose"],
             "no test published /arm/goal; seen: /arm/gaol, /cell/lamp",
         ),
-        ("call /home", [], "no test called the service /home; nothing of that kind was seen under any name"),
+        (
+            "call /home",
+            ["publish /lamp"],
+            "no test called the service /home; nothing of that kind was seen under any name",
+        ),
+        (
+            "call /home",
+            [],
+            "no test called the service /home; nothing of that kind was seen under any name; "
+            "middlewares that are known here: bus",
+        ),
         (
             "receive /arm/pose",
             ["subscribe /arm/pose of /mission"],
@@ -42,8 +54,9 @@ def said(wanted: str, *used: str) -> list[str]:
     ],
 )
 def test_what_was_not_done_is_told_with_what_was_done_instead(
-    wanted: str, used: list[str], text: str
+    wanted: str, used: list[str], text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(extensions, "_declared", lambda: (("a", Extension(1, middlewares={"bus": "a.bus"})),))
     assert said(wanted, *used) == [text]
 
 

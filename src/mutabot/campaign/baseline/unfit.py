@@ -1,4 +1,4 @@
-"""Orientations of the vocabulary that the original does not have: mistakes that nothing else would tell."""
+"""What a vocabulary has and the original does not: mistakes that nothing else would tell."""
 
 from __future__ import annotations
 
@@ -7,17 +7,32 @@ from typing import Any
 
 from mutabot.border.lines import Problem
 from mutabot.campaign.comparing.orientations import parts_of, readings_of
+from mutabot.extensions import brought
 from mutabot.model import Quantity, Vocabulary
 from mutabot.model.values.quantity import value_text
 from mutabot.vocabulary import problem_error
 
 from .baseline import Baseline
 
+_NO_MIDDLEWARE = (
+    "it is a name on a middleware, but no installed package brings one, so that nothing would be seen of it; "
+    "that of ROS is mutabot_ros, which comes with mutabot: install it whole"
+)
 _NEEDED = {
     "rotation_vector": "three numbers",
     "euler": "three angles",
     "quaternion": "four numbers, not all zero",
 }
+
+
+def refuse_unhooked(vocabulary: Vocabulary) -> None:
+    """Refuse names on a middleware where nothing is installed that knows any.
+
+    Raises ConfigurationError that says where the first of them stands, and what is needed.
+    """
+    named = next((one for one in vocabulary.operations if one.named is not None), None)
+    if named is not None and not brought("middlewares"):
+        raise problem_error(Problem(named.source, "", _NO_MIDDLEWARE))
 
 
 def refuse_unfit(baseline: Baseline, vocabulary: Vocabulary) -> None:

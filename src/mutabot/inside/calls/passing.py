@@ -19,6 +19,7 @@ from typing import Any, Protocol, cast
 
 import wrapt
 
+from mutabot.extensions import packages
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import Meter
 from mutabot.inside.readings.along import Along
@@ -174,7 +175,8 @@ class Passing:
         """Whether the program itself makes the call, rather than a library that it calls."""
         if where is not None and where.code is not None:
             return False
-        while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "mutabot":
+        ours = packages()
+        while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] in ours:
             frame = frame.f_back
         return frame is not None and self._locate_definition(frame.f_code) is not None
 

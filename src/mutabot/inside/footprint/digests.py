@@ -20,6 +20,8 @@ from functools import cache
 from pathlib import PurePath
 from typing import Any
 
+from mutabot.extensions import packages
+
 #: objects looked at before a module counts as too large to look at
 LIMIT = 200_000
 _ATOMS = (type(None), bool, int, float, complex, str, bytes, type(...), type(NotImplemented), range)
@@ -91,6 +93,7 @@ class Look:
 
     def __init__(self, owns: Callable[[str], bool], classes: dict[type, Known]) -> None:
         self._owns, self._classes = owns, classes
+        self._machinery = (*_MACHINERY, *packages() - {"mutabot"})
         self._owned: dict[str, bool] = {}
         self._hash = hashlib.blake2b(digest_size=8)
         self._seen: dict[int, int] = {}
@@ -249,7 +252,7 @@ class Look:
     def _is_machinery(self, kind: type) -> bool:
         module = kind.__module__
         return isinstance(module, str) and any(
-            module == name or module.startswith(f"{name}.") for name in _MACHINERY
+            module == name or module.startswith(f"{name}.") for name in self._machinery
         )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from mutabot.border.job import Job
 from mutabot.border.processes import FOLDER, SUFFIX, Began, Entry, entry_of
+from mutabot.extensions import brought
 
 from .carried import carry
 from .exits import Exits
@@ -15,8 +16,6 @@ from .wake import write_wake
 
 #: what processes of interest load
 _JOIN = "mutabot.inside.processes.member"
-#: modules of middlewares, which nodes import, where the vocabulary names anything on one
-_MIDDLEWARES = ("rclpy", "rospy", "actionlib", "tf2_ros")
 
 
 @dataclass(slots=True)
@@ -123,8 +122,9 @@ class Host:
 
     def _write_wake(self, job: Job) -> None:
         names: set[str] = set()
+        nodes = {_top(module) for module in brought("middlewares")}  # what any node imports
         for operation in job.vocabulary.operations:
-            names.update(_MIDDLEWARES if operation.named is not None else [_top(operation.target)])
+            names.update(nodes if operation.named is not None else [_top(operation.target)])
         if job.vocabulary.clock is not None:
             names.add(_top(job.vocabulary.clock.tick))
         files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]

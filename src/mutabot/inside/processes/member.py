@@ -16,6 +16,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from mutabot import extensions
 from mutabot.border.job import Job, read_job
 from mutabot.border.lines import (
     Acted,
@@ -68,7 +69,9 @@ def join(folder: str) -> None:
     """Be a member of the campaign whose processes have this folder."""
     global _member  # noqa: PLW0603  # one process, one member
     if _member is None:
-        _member = Member(folder, read_job(os.path.dirname(folder)))
+        job = read_job(os.path.dirname(folder))
+        extensions.use(job.extensions)
+        _member = Member(folder, job)
         _member.begin()
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from importlib.util import find_spec
 
 from mutabot.border.processes import WAKE
+from mutabot.extensions import packages
 
 
 def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str]) -> None:
@@ -18,9 +19,11 @@ def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str
         names: top-level names of modules.
         files: real paths of files and folders.
     """
+    own = sorted({*packages(), "wrapt"})
     lines = [
         f"join {join}",
-        *(f"path {place}" for place in _own_folders()),
+        *(f"path {place}" for place in _folders_of(own)),
+        *(f"own {name}" for name in own),
         *(f"name {name}" for name in sorted(set(names))),
         *(f"file {file}" for file in files),
     ]
@@ -28,8 +31,10 @@ def write_wake(folder: str, join: str, names: Iterable[str], files: Iterable[str
         file.write("".join(f"{line}\n" for line in lines))
 
 
-def _own_folders() -> list[str]:
+def _folders_of(packages: Iterable[str]) -> list[str]:
     """Where another interpreter finds what the inside needs."""
-    found = (find_spec(name) for name in ("mutabot", "wrapt"))
-    places = [spec.submodule_search_locations for spec in found if spec is not None]
-    return list(dict.fromkeys(os.path.dirname(place) for several in places if several for place in several))
+    places: list[str] = []
+    for spec in map(find_spec, packages):
+        if spec is not None:
+            places += spec.submodule_search_locations or filter(os.path.isabs, [spec.origin or ""])
+    return list(dict.fromkeys(map(os.path.dirname, places)))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from mutabot import extensions
 from mutabot.border import stack
 from mutabot.border.job import Branching, Job, read_job
 from mutabot.border.lines import SessionEnd
@@ -31,10 +32,10 @@ from mutabot.inside.processes.member import watch_forks
 from mutabot.inside.processes.members import Members
 from mutabot.inside.session import Session
 from mutabot.inside.stacks import say_where_on_signal
+from mutabot.inside.targets.middleware import prepare
 from mutabot.inside.text.returns import Returns
 from mutabot.model import Role
 from mutabot.operators.registry import preload
-from mutabot_ros._environment import prepare
 
 from .classify import classify
 from .running import Running, is_no_program
@@ -84,6 +85,7 @@ class Conductor:
             os._exit(BRANCH_FAILED)
         home = os.path.dirname(job_file)
         job = read_job(home)
+        extensions.use(job.extensions)
         say_where_on_signal(home)  # before anybody notes which files are open
         if job.memory is not None:
             limit_memory(job.memory)
@@ -113,7 +115,7 @@ class Conductor:
             die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
-        prepare(self.job, home)
+        prepare(self.job.root, home, self.job.vocabulary)
         host = Host(home, self.job)
         host.open()
         self.running.members = Members(host, self.session)

@@ -1,44 +1,26 @@
 """Targets that have a name on a middleware: topics, services, actions, parameters.
 
-Which name something has is known only when it is used, after remapping and namespaces. So the hooks of a
-middleware (``mutabot_ros``, one file each) ask here at each use, and let the handler they get stand around
-it. They are put in place as soon as the program imports the middleware.
-
-What hooks keep to, so that all operators mean the same in every middleware:
-
-- Each use gives the handler a ``Where`` with ``means`` (``means.Means``): how the node sleeps, does something
-  later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps. All of it by the
-  clock of the node, so that simulated time counts.
-- What comes by itself (``COMING``: messages, feedback, ticks of a timer) goes through ``delivery``:
-  ``deliver`` calls the program's callback, ``wait_for`` stands around a wait. A handler's own result
-  may be a ``Delivery`` there and nowhere else.
-- An answer that is late or never comes is the handler's matter: it awaits ``means.sleep`` and ``means.lost``.
-- What sets something up is ``wrapped(name=…, depth=…)`` with the arguments of ``SETTING_UP``, as they come
-  out with the defaults of the middleware; those that it does not know are left out, and a deadline of 0 is
-  none. ``wrapped`` has a parameter for each that it is called with.
-- A parameter is read by ``wrapped(default=…)``, where the program or its declaration gives a default, and
-  what ``wrapped`` returns is the value itself.
+What stands around each use are hooks that packages bring (``middleware``). They are put in place as soon as
+the program imports the client library of a middleware, and not imported before.
 """
 
 from __future__ import annotations
 
-import pkgutil
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from importlib import import_module
-from types import ModuleType
+from functools import partial
 from typing import Any
 
 import wrapt
 
+from mutabot.errors import ExtensionError
+from mutabot.extensions import Part, brought
 from mutabot.model import Operation
 from mutabot.model.named import Form, Named, named_of
 
+from .middleware import Middleware, TypedMiddleware
 from .target import Finding, Handler, Targets, Tell
 from .unused import unheard, unused
-
-#: the rooms in which middlewares are: each file says in ``MODULE`` which module it is about, and has ``hook``
-_MIDDLEWARES = "mutabot_ros"
 
 
 class Messages(Targets):
@@ -56,7 +38,8 @@ class Messages(Targets):
         self._removed = False
         self._here: set[str] = set()
         self.used: set[Named] = set()
-        _when_imported(self._hook)
+        for part in brought("middlewares").values():
+            wrapt.register_post_import_hook(partial(self._hook, part), part.name)
 
     def wrap(self, target: str, handler: Handler, overrides: object = None) -> None:
         """Let a handler stand around what is done under a name; nothing is ever put in its place."""
@@ -78,10 +61,7 @@ class Messages(Targets):
             return found
 
     def heard(self, name: str, message: Any) -> None:
-        """A message passed under a resolved name, received or published, as it is in truth.
-
-        Of an action: its result, or the word by which its goal ended (``model.named.ENDINGS``).
-        """
+        """A message passed under a resolved name, as it is in truth; see ``middleware.Names``."""
         if self.on_heard is not None:
             self.on_heard(name, message)
 
@@ -115,8 +95,10 @@ class Messages(Targets):
 
     def check(self, operation: Operation) -> Iterator[Finding]:
         """What of an operation does not fit the installed definition of its type."""
-        for middleware in _loaded():
-            yield from middleware.check(operation)
+        for part in brought("middlewares").values():
+            middleware = part.load() if part.name in sys.modules else None
+            if isinstance(middleware, TypedMiddleware):
+                yield from middleware.check(operation)
 
     def _note(self, used: Named) -> None:
         self.used.add(used)
@@ -125,30 +107,17 @@ class Messages(Targets):
             if named.fits(used.form, used.name, used.node):
                 self._here.add(named.target)
 
-    def _hook(self, middleware: ModuleType) -> None:
-        if not self._removed:
-            self._undo.append(middleware.hook(self))
-
-
-def _loaded() -> Iterator[ModuleType]:
-    for middleware in _middlewares():
-        if middleware.MODULE in sys.modules:
-            yield middleware
-
-
-def _middlewares() -> Iterator[ModuleType]:
-    for found in pkgutil.iter_modules(import_module(_MIDDLEWARES).__path__):
-        if not found.name.startswith("_"):
-            yield import_module(f"{_MIDDLEWARES}.{found.name}")
-
-
-def _when_imported(hook: Callable[[ModuleType], None]) -> None:
-    for middleware in _middlewares():
-
-        def imported(_: ModuleType, middleware: ModuleType = middleware) -> None:
-            hook(middleware)
-
-        wrapt.register_post_import_hook(imported, middleware.MODULE)
+    def _hook(self, part: Part, _: object) -> None:
+        """The program has imported a client library."""
+        if self._removed:
+            return
+        try:
+            middleware: Middleware = part.load()
+        except ExtensionError as error:  # the program might catch it
+            for named, _handler in self._handlers:
+                self._tell(named.target, Finding(named.form.value, str(error)))
+            raise
+        self._undo.append(middleware.hook(self))
 
 
 #: what this file is, to ``interception``

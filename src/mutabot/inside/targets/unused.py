@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from difflib import SequenceMatcher
 
+from mutabot.extensions import brought
 from mutabot.model.named import Form, Named, Refused
 
 from .target import Finding
@@ -70,7 +71,8 @@ def _instead(named: Named, used: Collection[Named]) -> str:
         return f"it is set up in {', '.join(told)}" if is_set_up else f"seen in {', '.join(told)}"
     names = sorted({one.name for one in alike}, key=lambda name: (-_likeness(name, named.name), name))
     if not names:
-        return "nothing of that kind was seen under any name"
+        known = f"; middlewares that are known here: {', '.join(brought('middlewares')) or 'none'}"
+        return f"nothing of that kind was seen under any name{'' if used else known}"
     more = f" and {len(names) - _MOST} more" if len(names) > _MOST else ""
     return f"seen: {', '.join(names[:_MOST])}{more}"
 

@@ -17,6 +17,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any
 
+from mutabot import extensions
 from mutabot.border.processes import FOLDER
 from mutabot.inside.processes.carried import carry
 from mutabot.inside.processes.wake import write_wake
@@ -50,6 +51,7 @@ def join(folder: str) -> None:
     """Watch this process, which turned out to be of interest."""
     with open(os.path.join(folder, _ORDER), encoding="utf-8", errors="surrogateescape") as file:
         order = json.load(file)
+    extensions.use(order["extensions"])
     written = [time.monotonic()]
     writing = threading.Lock()
 
@@ -62,7 +64,7 @@ def join(folder: str) -> None:
             finally:
                 writing.release()
 
-    watch = Watch(order["program"], order["tests"], pulse)
+    watch = Watch(order["program"], order["tests"], order["libraries"], pulse)
     watch.install()
     hook_script()
     leave = os._exit

@@ -9,14 +9,14 @@ from __future__ import annotations
 import json
 import os
 import time
-from contextlib import suppress
 from typing import Any
 
 import pytest
 
+from mutabot import extensions
 from mutabot.border.watch import WATCH_VARIABLE
-from mutabot_ros._environment import prepare_unknown
-from mutabot_ros._master import MasterError
+from mutabot.errors import MutabotError
+from mutabot.inside.targets.middleware import prepare
 
 from .elsewhere import seen_elsewhere, watch_elsewhere
 from .watch import Watch
@@ -28,10 +28,9 @@ _PAUSE = 2.0
 class _Plugin:
     """Pytest's hooks: when to write down what was found, and what became of the tests."""
 
-    def __init__(self, watch: Watch, output: str, folder: str) -> None:
-        self._watch, self._output, self._folder = watch, output, folder
+    def __init__(self, watch: Watch, output: str, folder: str, problems: list[str]) -> None:
+        self._watch, self._output, self._folder, self._problems = watch, output, folder, problems
         self._outcomes: dict[str, str] = {}
-        self._problems: list[str] = []
         self._written = time.monotonic()
 
     def pytest_collectreport(self, report: Any) -> None:
@@ -82,9 +81,13 @@ def pytest_load_initial_conftests(early_config: Any) -> None:
         return
     with open(path, encoding="utf-8", errors="surrogateescape") as file:
         order = json.load(file)
-    watch = Watch(order["program"], order["tests"])
+    extensions.use(order["extensions"])
+    watch = Watch(order["program"], order["tests"], order["libraries"])
     watch.install()
     folder = watch_elsewhere(path, order)
-    with suppress(MasterError):  # the tests say themselves that they find none
-        prepare_unknown(order["root"], os.path.dirname(path))
-    early_config.pluginmanager.register(_Plugin(watch, order["output"], folder), "mutabot-watch")
+    problems = []
+    try:
+        prepare(order["root"], os.path.dirname(path), None)
+    except MutabotError as error:  # what the tests see all the same is worth having
+        problems.append(str(error))
+    early_config.pluginmanager.register(_Plugin(watch, order["output"], folder, problems), "mutabot-watch")

@@ -10,10 +10,11 @@ import functools
 import inspect
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from types import FrameType
 from typing import Any
 
@@ -36,15 +37,6 @@ _NO_ROBOTS = frozenset(
         "networkx", "click", "typer", "PIL", "math3d", "transforms3d",
     }
 )  # fmt: skip
-#: client libraries of ROS: what is done through them has a name of its own
-_CLIENT_LIBRARIES = frozenset(
-    {
-        "rospy", "rclpy", "actionlib", "tf", "tf2_ros", "tf2_py", "genpy", "rosgraph", "rosparam", "roslib",
-        "rosnode", "rosservice", "rostopic", "message_filters", "builtin_interfaces", "rosidl_runtime_py",
-        "rcl_interfaces", "ament_index_python", "launch", "launch_ros",
-    }
-)  # fmt: skip
-_MESSAGES = ("_msgs", "_srvs", "_interfaces")
 
 
 @dataclass
@@ -78,13 +70,19 @@ class Watch:
 
     Args:
         program, tests: real paths to names for people.
+        libraries: client libraries of middlewares, with ``*`` for any text: what is done through them has a
+            name of its own.
         pulse: called whenever something is seen, while nothing is held.
     """
 
     def __init__(
-        self, program: dict[str, str], tests: dict[str, str], pulse: Callable[[], None] = lambda: None
+        self,
+        program: dict[str, str],
+        tests: dict[str, str],
+        libraries: Iterable[str] = (),
+        pulse: Callable[[], None] = lambda: None,
     ) -> None:
-        self._program, self._tests, self._pulse = program, tests, pulse
+        self._program, self._tests, self._libraries, self._pulse = program, tests, tuple(libraries), pulse
         self._places: list[tuple[str, int]] = []
         self._numbers: dict[tuple[str, int], int] = {}
         self._seen: dict[tuple[str, bool], _Seen] = {}
@@ -182,7 +180,7 @@ class Watch:
         known = self._seen.get(key)
         if known is None:
             top = callee.target.partition(":")[0].partition(".")[0]
-            if _is_no_robot(top):
+            if _is_no_robot(top) or any(fnmatchcase(top, name) for name in self._libraries):
                 return None
             known = self._seen[key] = _Seen(callee, callee.file in self._program, key[1])
             known.signature = callee.signature
@@ -295,5 +293,4 @@ class Watch:
 
 def _is_no_robot(top: str) -> bool:
     """Whether nothing of a top-level package is to be described as a call."""
-    is_plain = top in sys.stdlib_module_names or top in _NO_ROBOTS or top.startswith("pytest")
-    return is_plain or top in _CLIENT_LIBRARIES or top.endswith(_MESSAGES)
+    return top in sys.stdlib_module_names or top in _NO_ROBOTS or top.startswith("pytest")

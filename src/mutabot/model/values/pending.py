@@ -8,30 +8,31 @@ import sys
 from collections.abc import Mapping
 from typing import Any
 
-_RCLPY = "rclpy.task"
+from mutabot.extensions import brought
+from mutabot.model.class_name import class_name
 
 
 def future_class(value: Any) -> str | None:
     """The kind of future that a value is; None if it is none."""
-    rclpy: Any = sys.modules.get(_RCLPY)
     if isinstance(value, asyncio.Task):
         return "asyncio.Task"
     if isinstance(value, asyncio.Future):
         return "asyncio.Future"
     if type(value) is concurrent.futures.Future:
         return "concurrent.futures.Future"
-    return "rclpy.task.Future" if rclpy is not None and type(value) is rclpy.Future else None
+    name = class_name(type(value))
+    return next((one.name for one in brought("futures").values() if one.reference == name), None)
 
 
 def never_done(kind: str, here: Mapping[str, Any]) -> Any:
     """A new future of this kind that nobody ever completes. Raises LookupError where there can be none."""
     if kind == "concurrent.futures.Future":
         return concurrent.futures.Future()
-    if kind == "rclpy.task.Future":
-        rclpy: Any = sys.modules.get(_RCLPY)
-        if rclpy is None:
-            raise LookupError(f"{_RCLPY} is not imported")
-        return rclpy.Future()
+    known = brought("futures").get(kind)
+    if known is not None:
+        if known.reference.partition(":")[0] not in sys.modules:
+            raise LookupError(f"{known.reference} is not imported")
+        return known.load()()
     try:
         loop = asyncio.get_running_loop()
     except RuntimeError:

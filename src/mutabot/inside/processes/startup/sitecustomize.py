@@ -7,7 +7,8 @@ module that the vocabulary names. Only then the rest of mutabot is loaded.
 
 The file ``wake`` of the folder that the environment names says what is of interest, a line each:
 ``join MODULE`` with a function of that name, which is then called with the folder, ``path FOLDER`` where
-packages of ours can be found, ``name MODULE``, ``file PATH`` of a file or folder.
+packages of ours can be found, ``own NAME`` of such a package, ``name MODULE``, ``file PATH`` of a file or
+folder.
 """
 
 import os
@@ -50,13 +51,13 @@ class _Finder:
 class _Ours:
     """Finds our packages where the interpreter has none of its own."""
 
-    def __init__(self, folders: "list[str]") -> None:
-        self.folders = folders
+    def __init__(self, folders: "list[str]", names: "list[str]") -> None:
+        self.folders, self.names = folders, names
 
     def find_spec(
         self, name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None
     ) -> "ModuleSpec | None":
-        if path is not None or name not in ("mutabot", "wrapt"):
+        if path is not None or name not in self.names:
             return None
         from _frozen_importlib_external import PathFinder
 
@@ -103,11 +104,11 @@ def enter(command: "str | None" = None) -> None:
             lines = [line.rstrip("\n").partition(" ") for line in file]
     except OSError:  # the campaign is over
         return
-    told: "dict[str, list[str]]" = {"join": [""], "path": [], "name": [], "file": []}
+    told: "dict[str, list[str]]" = {"join": [""], "path": [], "own": [], "name": [], "file": []}
     for key, _, value in lines:
         told[key].append(value)
     finder = _Finder(folder, told["join"][-1], frozenset(told["name"]), told["file"])
-    sys.meta_path.append(_Ours(told["path"]))
+    sys.meta_path.append(_Ours(told["path"], told["own"]))
     sys.meta_path.insert(0, finder)
     script = command if command is not None else getattr(sys, "argv", [""])[0]
     if script and script[0] != "-" and finder.is_of_interest(script):

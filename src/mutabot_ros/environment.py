@@ -1,0 +1,19 @@
+"""What the nodes of one worker need around them, so that workers do not meet."""
+
+from __future__ import annotations
+
+from mutabot.model import Vocabulary
+
+from . import _domain, _master
+from ._speech import speaks_of
+
+
+def prepare(root: str, home: str, vocabulary: Vocabulary | None) -> None:
+    """Set up what nodes will find in the environment; see ``mutabot.inside.targets.middleware``.
+
+    Raises ``_master.MasterError`` if there is to be a master and none comes up.
+    """
+    if speaks_of(root, "rclpy") if vocabulary is None else _domain.is_wanted(vocabulary):
+        _domain.take(home)
+    if _master.is_wanted(root, vocabulary):
+        _master.start(home)

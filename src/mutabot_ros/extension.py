@@ -1,0 +1,26 @@
+"""What this package brings to mutabot: ROS 1 and ROS 2."""
+
+from mutabot.extensions import Extension
+
+EXTENSION = Extension(
+    interface=1,
+    middlewares={
+        "rclpy": "mutabot_ros.ros2",
+        "rospy": "mutabot_ros.ros1",
+        "actionlib": "mutabot_ros.ros1_actions",
+        "tf2_ros": "mutabot_ros.tf",
+    },
+    environments={"ros": "mutabot_ros.environment"},
+    futures={"rclpy.task.Future": "rclpy.task:Future"},
+    libraries={
+        "rospy": ("get_param", "get_param_cached", "wait_for_message"),
+        "rclpy": ("wait_for_message",),
+        **dict.fromkeys(
+            ("actionlib", "tf", "tf2_ros", "tf2_py", "genpy", "rosgraph", "rosparam", "roslib", "rosnode",
+             "rosservice", "rostopic", "message_filters", "builtin_interfaces", "rosidl_runtime_py",
+             "rcl_interfaces", "ament_index_python", "launch", "launch_ros", "*_msgs", "*_srvs",
+             "*_interfaces"),
+            (),
+        ),
+    },
+)  # fmt: skip
