@@ -1,0 +1,1 @@
+from tests.inside.conftest import make_stage as make_stage
