@@ -1,1 +1,3 @@
-from tests.inside.conftest import make_stage as make_stage
+from tests.inside.conftest import make_stage
+
+__all__ = ["make_stage"]
