@@ -415,6 +415,6 @@ def versions() -> dict[str, str]:
 def _own_code() -> str:
     """Of a mutabot that is being worked on, the version alone does not tell what it does."""
     home = Path(mutabot.__file__).parent
-    parts = ("model", "operators", "inside", "classical", "campaign")
-    files = sorted(file for part in parts for file in (home / part).rglob("*.py"))
-    return _digest([(file.relative_to(home).as_posix(), _digest_of(file)) for file in files])
+    core = (home / part for part in ("model", "operators", "inside", "campaign"))
+    files = sorted(file for one in (*core, *home.parent.glob("mutabot_*")) for file in one.rglob("*.py"))
+    return _digest([(file.relative_to(home.parent).as_posix(), _digest_of(file)) for file in files])
