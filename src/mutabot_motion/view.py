@@ -63,7 +63,7 @@ class Viewer:
         stage = Stage(shown)
         if not stage.things:
             raise UsageError(
-                "--view has nothing to show: no simulator tells where things are, see docs/replay.md"
+                "--view has nothing to show: no simulator tells where things are, see docs/motion.md"
             )
         _watch(stage)
         return "the window was closed"

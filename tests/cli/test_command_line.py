@@ -254,9 +254,11 @@ def test_what_went_away_says_what_to_use_instead(
 
 
 def test_every_option_that_went_away_is_none_of_todays() -> None:
-    commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    group: Any = typer.main.get_command(app)
+    context = group.context_class(group, info_name="mutabot")
     today = {
-        name: [parameter.opts for parameter in commands[name].params] for name in ("run", "list", "check")
+        name: [parameter.opts for parameter in group.resolve_command(context, [name])[1].params]
+        for name in ("run", "list", "check")
     }
     assert not {option for every in today.values() for opts in every for option in opts} & _OPTIONS.keys()
     assert len(today["run"]) == 18

@@ -63,17 +63,17 @@ def _drawn(shown: Shown, why: str) -> tuple[Shots, Shots]:
     if original is None or mutant is None or not (original.tracks and mutant.tracks):
         raise UsageError(
             f"there is nothing to make a video of: {why}; and no simulator tells where things are "
-            "(mutabot.evidence.Feed, see docs/replay.md)"
+            "(mutabot.evidence.Feed, see docs/motion.md)"
         )
     return Drawn(original, [mutant]), Drawn(mutant, [original])
 
 
 def _why_no_pictures(problems: Sequence[str]) -> str:
     if not problems:
-        return "no simulator gives pictures: name one by `feed.camera`, see docs/replay.md"
+        return "no simulator gives pictures: name one by `feed.camera`, see docs/motion.md"
     return (
         f"{problems[0]} (without a screen, MuJoCo draws if Debian's libegl1 or libosmesa6 is installed; what "
-        "else may help says docs/replay.md)"
+        "else may help says docs/motion.md)"
     )
 
 
