@@ -149,7 +149,7 @@ def _line(index: int, data: Any) -> Line:
     try:
         line: Line = checked(kind, {name: value for name, value in data.items() if name != "type"})
     except Misfit as error:
-        raise Misfit(f".lines[{index}]{error}") from None
+        raise Misfit(f".lines[{index}] ({kind.__name__}): {error}") from None
     return line
 
 
