@@ -74,7 +74,8 @@ def _plain(value: Any, depth: int) -> Any:
 
 def _check_numbers(value: Any) -> None:
     """Raise Misfit for counts and times that are none; the user's own data may hold any number."""
-    for name, is_own in _fields(type(value)).items():
+    kind: Any = type(value)
+    for name, is_own in _fields(kind).items():
         item = getattr(value, name)
         for one in item if isinstance(item, tuple) else (item,):
             if is_dataclass(one):
@@ -95,5 +96,5 @@ def _integers(item: Any) -> Iterator[int]:
 
 @cache
 def _fields(kind: Any) -> dict[str, bool]:
-    """The fields of a dataclass, and whether what they hold is mutabot's own: of a type that says what it is."""
+    """The fields of a dataclass, and whether each is mutabot's own: then its type says all."""
     return {name: "Any" not in str(hint) for name, hint in get_type_hints(kind).items()}

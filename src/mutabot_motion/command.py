@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
@@ -23,11 +24,10 @@ from mutabot.journal.files import find_journal
 from mutabot.journal.reader import JournalReader
 from mutabot.model import Mutant
 
-from .choice import choose
+from .choice import choose, missing_in
 from .filming import choose_graphics, film
-from .pictures.video import check_video, show
 from .shown import Shown
-from .sights import show_all, sights_of
+from .sights import module, sights_of
 
 Test = Annotated[
     str | None,
@@ -67,9 +67,9 @@ def motion(
     films them. The others run nothing: they show the test as the campaign recorded it.
     """
     path = find_journal(context.obj)
-    sights = sights_of(path.parent, view=view, rerun=rerun, rrd=rrd, mcap=mcap)
+    sights = list(sights_of(path.parent, view=view, rerun=rerun, rrd=rrd, mcap=mcap))
     if video is not None:
-        check_video(video)
+        module("pictures.video").check_video(video)
     elif not sights:
         raise UsageError("say how to show it: --video, --view, --rerun, --rrd or --mcap")
     with JournalReader.open(path) as journal, StoredEvidence(path) as evidence:
@@ -77,8 +77,9 @@ def motion(
         result = find_mutant(results, mutant)
         wanted = None if round is None else number_of(round, results.rounds)
         shown = choose(results, result, evidence, wanted, test)
-        if sights:
-            tell(f"mutabot: {line}" for line in show_all(sights, shown))
+    if sights:
+        lines = chain(missing_in(shown), (sight.show(shown) for sight in sights))
+        tell(f"mutabot: {line}" for line in lines)
     if video is not None:
         request = request_again(path.parent.parent, results, jobs)
         with progress_shown() as progress:
@@ -101,4 +102,5 @@ def _film(request: Request, mutant: Mutant, shown: Shown, file: Path, progress: 
         )
         problems = dict.fromkeys([*original.problems, *other.problems])
         progress.stage("video")
-        yield from show(file, shown, (original.film, other.film), list(problems))
+        video = module("pictures.video")
+        yield from video.show(file, shown, (original.film, other.film), list(problems))

@@ -7,18 +7,15 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from math import isnan
-from typing import TYPE_CHECKING
+
+from PIL import Image, ImageDraw
 
 from mutabot.evidence.path import Point
 from mutabot.evidence.recording import Kind, Recording
-from mutabot.evidence.tracks import Path, paths_of
-from mutabot_motion.shown import end_of
+from mutabot.evidence.tracks import Path
+from mutabot_motion.shown import end_of, things_in
 
 from .lettering import letters
-
-if TYPE_CHECKING:
-    from PIL.Image import Image
-    from PIL.ImageDraw import ImageDraw
 
 _WIDTH, _HEIGHT = 600, 600
 _EDGE, _LABEL = 16, 20
@@ -54,12 +51,8 @@ class Drawn:
     """
 
     def __init__(self, recording: Recording, others: Iterable[Recording] = ()) -> None:
-        from PIL import Image, ImageDraw  # noqa: PLC0415  # an extra
-
         self.end = end_of(recording)
-        self._paths = {
-            name: path for name, path in paths_of(recording).items() if path.track.kind is not Kind.VALUE
-        }
+        self._paths = dict(things_in(recording))
         self._views = _views(_room([recording, *others]))
         self._empty = Image.new("RGB", (_WIDTH, _HEIGHT), _GROUND)
         draw = ImageDraw.Draw(self._empty)
@@ -72,10 +65,8 @@ class Drawn:
         for number, name in enumerate(self._paths):
             letters(14).draw(draw, (_WIDTH - _EDGE, 6 + 18 * number), name, _colour(number), "ra")
 
-    def at(self, time: float) -> Image:
+    def at(self, time: float) -> Image.Image:
         """How it was at a time, s: paths until then, and where things were."""
-        from PIL import ImageDraw  # noqa: PLC0415  # as above
-
         image = self._empty.copy()
         draw = ImageDraw.Draw(image)
         for number, path in enumerate(self._paths.values()):
@@ -98,8 +89,7 @@ def _room(recordings: Sequence[Recording]) -> list[tuple[float, float]]:
     points = [
         point
         for recording in recordings
-        for path in paths_of(recording).values()
-        if path.track.kind is not Kind.VALUE
+        for _, path in things_in(recording)
         for point in path.points
         if not any(map(isnan, point))
     ]
@@ -121,7 +111,9 @@ def _views(room: Sequence[tuple[float, float]]) -> list[_View]:
     ]
 
 
-def _draw_block(draw: ImageDraw, view: _View, centre: Sequence[float], size: Sequence[float]) -> None:
+def _draw_block(
+    draw: ImageDraw.ImageDraw, view: _View, centre: Sequence[float], size: Sequence[float]
+) -> None:
     low = view.pixel([c - s / 2 for c, s in zip(centre, size, strict=True)])
     high = view.pixel([c + s / 2 for c, s in zip(centre, size, strict=True)])
     half = view.centre[1] - _HEIGHT / 4, view.centre[1] + _HEIGHT / 4
@@ -130,7 +122,7 @@ def _draw_block(draw: ImageDraw, view: _View, centre: Sequence[float], size: Seq
         draw.rectangle((low[0], top, high[0], bottom), fill=_BLOCK, outline=_OUTLINE)
 
 
-def _draw_thing(draw: ImageDraw, view: _View, path: Path, row: int, colour: str) -> None:
+def _draw_thing(draw: ImageDraw.ImageDraw, view: _View, path: Path, row: int, colour: str) -> None:
     """A box as its outline, as it is turned; anything else as a dot."""
     place, size = path.points[row], path.track.size
     if size is None:

@@ -62,17 +62,29 @@ def test_what_cannot_be_done_is_2_before_anything_runs(
     assert sorted(project.glob("*")) == before
 
 
-@pytest.mark.parametrize(("option", "library"), [("--rrd a.rrd", "rerun"), ("--mcap a.mcap", "foxglove")])
+@pytest.mark.parametrize(
+    ("option", "library", "module"),
+    [
+        ("--rrd a.rrd", "rerun", "rrd"),
+        ("--mcap a.mcap", "foxglove", "mcap"),
+        ("--view", "mujoco", "view"),
+        ("--video a.mp4", "av", "pictures.video"),
+    ],
+)
 def test_without_its_library_the_extra_is_named(
     option: str,
     library: str,
+    module: str,
     project: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, library, None)
+    monkeypatch.delitem(__import__("sys").modules, f"mutabot_motion.{module}", raising=False)
     assert main(["motion", number(), *option.split()]) == 2
-    assert "pip install 'path/to/mutabot[" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert f"{option.partition(' ')[0]} need" in error
+    assert "pip install 'path/to/mutabot[" in error
 
 
 def test_of_what_was_not_recorded_it_is_said_what_records_it(
