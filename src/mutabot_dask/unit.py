@@ -121,16 +121,12 @@ class Introduction:
     """What a worker says of itself.
 
     Attributes:
-        host: the name of its machine.
         versions: what it runs with, as keys of outcomes have it.
         has: whether it has the bundle.
-        threads: how many tasks it would run at a time.
     """
 
-    host: str
     versions: Mapping[str, str] = field(default_factory=dict)
     has: bool = False
-    threads: int = 1
 
     def data(self) -> bytes:
         """It as bytes."""

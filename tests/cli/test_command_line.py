@@ -19,6 +19,7 @@ from analysis import samples
 from mutabot.campaign import run as campaign
 from mutabot.cli.app import app, main
 from mutabot.cli.gone import _OPTIONS
+from mutabot.cli.request import request_of
 from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
 
@@ -251,6 +252,11 @@ def test_what_went_away_says_what_to_use_instead(
     err = capsys.readouterr().err
     assert told in err
     assert len(err.splitlines()) == 1
+
+
+def test_an_option_that_there_is_not_is_no_part_of_a_request(project: Path) -> None:
+    with pytest.raises(TypeError, match="there is no option rouns"):
+        request_of(project, rouns=3)  # type: ignore[call-arg]
 
 
 def test_every_option_that_went_away_is_none_of_todays() -> None:

@@ -212,7 +212,7 @@ class FakeLink:
 
     def ask(self, worker: str, function: Callable[..., bytes], *given: Any) -> int:
         number = next(self._numbers)
-        answer = Introduction("host", {}, has=True).data()
+        answer = Introduction({}, has=True).data()
         if function.__name__ == "run_unit":
             asked = Unit.of(given[0])
             data = packed(good(asked.ticket))
