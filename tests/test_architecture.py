@@ -24,7 +24,7 @@ ALLOWED = {
     "languages": {"model"},
     "border": {"errors", "model"},
     "operators": {"errors", "extensions", "families", "model"},
-    "settings": {"errors", "families", "limits", "model", "border", "operators"},
+    "settings": {"errors", "extensions", "families", "limits", "model", "border", "operators"},
     "vocabulary": {"errors", "extensions", "families", "limits", "model", "settings"},
     "evidence": {"model"},
     "inside": {"errors", "extensions", "model", "languages", "border", "operators", "evidence"},
@@ -36,11 +36,11 @@ ALLOWED = {
     "proposal": {"errors", "extensions", "model", "border", "settings", "vocabulary", "campaign"},
     "suggestion": {"errors", "model", "border", "journal", "campaign", "analysis"},
     "analysis": {"exit_codes", "errors", "families", "model", "border", "vocabulary", "journal", "evidence"},
-    "report": {"errors", "model", "border", "vocabulary", "journal", "analysis", "evidence"},
+    "report": {"errors", "extensions", "model", "border", "vocabulary", "journal", "analysis", "evidence"},
     "__main__": {"cli"},
     "cli": {
-        "exit_codes", "errors", "families", "limits", "model", "border", "settings", "vocabulary", "journal",
-        "campaign", "proposal", "suggestion", "analysis", "report",
+        "exit_codes", "errors", "extensions", "families", "limits", "model", "border", "settings",
+        "vocabulary", "journal", "campaign", "proposal", "suggestion", "analysis", "report",
     },
 }  # fmt: skip
 FILES = files()

@@ -1,4 +1,4 @@
-"""The text of docs/configuration.md, from the settings themselves: their types, defaults and texts."""
+"""The text of docs/configuration.md, from the settings and our packages' tables: types, texts, defaults."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ from itertools import pairwise
 from textwrap import dedent
 from typing import Any
 
+from mutabot.extensions import GROUP, brought
 from mutabot.settings.configuration import Settings
+from mutabot.settings.table import Table
 
 HEAD = """\
 # Which settings are there?
 
-<!-- Written by tools/make_docs.py from src/mutabot/settings/configuration.py. Do not edit. -->
+<!-- Written by tools/make_docs.py from src/mutabot/settings/configuration.py and others. Do not edit. -->
 
 The configuration stands in `pyproject.toml` under `[tool.mutabot]`, or in `mutabot.toml`, there without that
 heading. `mutabot init` proposes one. An unknown key or a wrong value is an error that names the line and the
@@ -33,27 +35,49 @@ rounds = 5
 
 def page() -> str:
     """The text of the page."""
-    texts = documented()
-    schema = Settings.model_json_schema()
-    lines = [HEAD, "| key | value | default |", "|---|---|---|"]
-    for key in Settings.model_fields:
-        values, default = values_of(schema["properties"][key], schema), _default(key)
-        lines.append(f"| [`{key}`](#{key}) | {values} | {default} |")
-    for key in Settings.model_fields:
-        text, example = texts[key]
-        lines += ["", f"## {key}", "", text, "", "```toml", example, "```"]
+    tables = tables_of_ours()
+    lines = [HEAD, "| key | value | default |", "|---|---|---|", *_rows(Settings)]
+    for name, table in tables.items():
+        lines += [f"| [`{name}`](#{name}) | table | none |", *_rows(table, f"{name}.")]
+    lines += _texts_of(Settings)
+    for name, table in tables.items():
+        lines += ["", f"## {name}", "", inspect.cleandoc(table.__doc__ or ""), *_texts_of(table, name)]
     return "\n".join([*lines, ""])
 
 
-def documented() -> dict[str, tuple[str, str]]:
+def tables_of_ours() -> dict[str, type[Table]]:
+    """The tables that packages in this repository bring, by name."""
+    parts = brought("tables").items()
+    return {name: part.load_class(Table) for name, part in parts if part.owner == GROUP}
+
+
+def _rows(model: type[Table], prefix: str = "") -> Iterator[str]:
+    schema = model.model_json_schema()
+    for key in model.model_fields:
+        values, default = values_of(schema["properties"][key], schema), _default(model, key)
+        yield f"| [`{prefix}{key}`](#{_anchor(prefix + key)}) | {values} | {default} |"
+
+
+def _texts_of(model: type[Table], table: str = "") -> Iterator[str]:
+    for key, (text, example) in documented(model).items():
+        name = f"{table}.{key}" if table else key
+        shown = [f"[tool.mutabot.{table}]", example] if table else [example]
+        yield from ("", f"{'###' if table else '##'} {name}", "", text, "", "```toml", *shown, "```")
+
+
+def _anchor(heading: str) -> str:
+    return heading.replace(".", "")
+
+
+def documented(model: type[Table]) -> dict[str, tuple[str, str]]:
     """The text and the example below each key."""
-    tree = ast.parse(dedent(inspect.getsource(Settings)))
+    tree = ast.parse(dedent(inspect.getsource(model)))
     body = tree.body[0].body if isinstance(tree.body[0], ast.ClassDef) else []
     found = dict(_texts(body))
-    missing = [key for key in Settings.model_fields if key not in found]
+    missing = [key for key in model.model_fields if key not in found]
     if missing:
         raise ValueError(
-            f"a text with an example is missing below {', '.join(missing)} in {Settings.__module__}"
+            f"a text with an example is missing below {', '.join(missing)} in {model.__module__}"
         )
     return found
 
@@ -106,8 +130,8 @@ def _bounds(schema: Mapping[str, Any]) -> str:
     return f" from {low:g}" if low is not None else ""
 
 
-def _default(key: str) -> str:
-    field = Settings.model_fields[key]
+def _default(model: type[Table], key: str) -> str:
+    field = model.model_fields[key]
     if field.is_required():
         return "must be given"
     if field.default is None:

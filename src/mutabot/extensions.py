@@ -8,13 +8,13 @@ since reading entry points is slow.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from .errors import ExtensionError
 
@@ -24,10 +24,30 @@ if TYPE_CHECKING:
 #: version of this interface: raised when a package written for an older one would break
 INTERFACE = 1
 GROUP = "mutabot"
+#: what comes with mutabot's own packages: who asks for it is told which one is not installed
+_OF_OWN_PACKAGES = {"cluster": "mutabot_dask", "live": "mutabot_live", "motion": "mutabot_motion"}
 #: kinds of parts that processes of the tests need
 _OF_PROCESSES = ("operators", "middlewares", "environments", "futures")
 #: those that are modules of the packages themselves
 _OWN = ("operators", "middlewares", "environments")
+
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Described:
+    """A part that ``--help`` tells of without importing it.
+
+    Attributes:
+        reference: ``module:attribute``.
+        help: what it does, in one sentence.
+        metavar: what stands for the value of an option.
+    """
+
+    reference: str
+    help: str
+    metavar: str = "TEXT"
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +67,11 @@ class Extension:
             of their callables as operations, but for these functions.
         vocabularies: files ``package:file.toml``, by the names that projects use for them.
         versions: distributions whose versions decide how tests end; a campaign's journal notes them.
+        executors: subclasses of ``mutabot.campaign.request.ExecutorChoice``. One named ``cluster``
+            gives commands that run campaigns an option ``--cluster``, whose value says where.
+        tables: subclasses of ``mutabot.settings.table.Table``, by the table's name in the configuration.
+        commands: sub-commands: functions that typer makes a command of (see ``mutabot.cli.commands``).
+        formats: a ``mutabot.report.format.Format`` each, by its name.
     """
 
     interface: int
@@ -57,6 +82,10 @@ class Extension:
     libraries: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     vocabularies: Mapping[str, str] = field(default_factory=dict)
     versions: tuple[str, ...] = ()
+    executors: Mapping[str, Described] = field(default_factory=dict)
+    tables: Mapping[str, str] = field(default_factory=dict)
+    commands: Mapping[str, Described] = field(default_factory=dict)
+    formats: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,11 +96,14 @@ class Part:
         name: its name among those of its kind.
         reference: ``module:attribute`` or ``module``; of a file ``package:file``.
         owner: the distribution that brings it.
+        help, metavar: as in ``Described``; empty for what is not.
     """
 
     name: str
     reference: str
     owner: str
+    help: str = ""
+    metavar: str = ""
 
     def load(self) -> Any:
         """Import it. Raises ExtensionError, naming the part and its package, if that fails."""
@@ -81,8 +113,7 @@ class Part:
             for name in attribute.split(".") if attribute else ():
                 found = getattr(found, name)
         except Exception as error:  # a package of others may fail in any way
-            text = f"{self.name!r} of package {self.owner!r} ({self.reference}) cannot be loaded: {error!r}"
-            raise ExtensionError(text) from error
+            raise ExtensionError(f"{self.words} cannot be loaded: {error!r}") from error
         return found
 
     @property
@@ -95,6 +126,18 @@ class Part:
                 return found
         raise ExtensionError(f"{self.name!r} of package {self.owner!r}: there is no file {self.reference}")
 
+    def load_class(self, base: type[T]) -> type[T]:
+        """The same for a class. Raises ExtensionError also if it is no subclass of ``base``."""
+        found = self.load()
+        if not (isinstance(found, type) and issubclass(found, base)):
+            raise ExtensionError(f"{self.words} is not a subclass of {base.__module__}.{base.__qualname__}")
+        return found
+
+    @property
+    def words(self) -> str:
+        """It in a message."""
+        return f"{self.name!r} of package {self.owner!r} ({self.reference})"
+
 
 class _Told:
     """What the controller has told this process; None in the controller itself."""
@@ -102,8 +145,10 @@ class _Told:
     parts: Mapping[str, Mapping[str, Part]] | None = None
 
 
-def brought(kind: str) -> Mapping[str, Part]:
+def brought(kind: str, own: Collection[str] = ()) -> Mapping[str, Part]:
     """All parts of a kind, by name; those of mutabot's own packages first, then by package and name.
+
+    ``own``: the names of what the core itself has of this kind.
 
     Raises ExtensionError for a package that cannot be used, and for two parts of one name.
     """
@@ -111,17 +156,33 @@ def brought(kind: str) -> Mapping[str, Part]:
         return _Told.parts.get(kind, {})
     found: dict[str, Part] = {}
     for owner, extension in _declared():
-        for name, reference in getattr(extension, kind).items():
-            if name in found:
-                text = f"{name!r} of package {owner!r} has the name of one of {found[name].owner!r} ({kind})"
-                raise ExtensionError(text)
-            found[name] = Part(name, reference, owner)
+        for name, declared in getattr(extension, kind).items():
+            other = found[name].owner if name in found else GROUP if name in own else None
+            if other is not None:
+                raise ExtensionError(
+                    f"{name!r} of package {owner!r} has the name of one of {other!r} ({kind})"
+                )
+            found[name] = _part(name, declared, owner)
     return found
 
 
 def versions() -> tuple[str, ...]:
     """Distributions whose versions decide how tests end, by the packages that say so."""
     return tuple(dict.fromkeys(name for _, extension in _declared() for name in extension.versions))
+
+
+def _part(name: str, declared: str | Described, owner: str) -> Part:
+    if isinstance(declared, str):
+        return Part(name, declared, owner)
+    return Part(name, declared.reference, owner, declared.help, declared.metavar)
+
+
+def not_installed(name: str, kind: str) -> str | None:
+    """What to say of a part that one of mutabot's own packages brings, and is missing; else None."""
+    package = _OF_OWN_PACKAGES.get(name)
+    if package is None or name in brought(kind):
+        return None
+    return f"comes with the package {package}, which is not installed"
 
 
 def told_to_processes() -> dict[str, dict[str, str]]:
@@ -164,7 +225,16 @@ def _declared() -> tuple[tuple[str, Extension], ...]:
     from importlib import metadata  # noqa: PLC0415  # slow, and most commands do not need it
 
     found = [(_owner(entry), entry) for entry in metadata.entry_points(group=GROUP)]
-    return tuple((owner, _read(owner, entry)) for owner, entry in _in_order(found))
+    return tuple(
+        (owner, _read(owner, entry))
+        for owner, entry in _in_order(found)
+        if owner != GROUP or _is_there(entry)
+    )
+
+
+def _is_there(entry: EntryPoint) -> bool:
+    """Whether a package of our own is installed: each can be left out."""
+    return find_spec(entry.module.partition(".")[0]) is not None
 
 
 def _in_order(found: Iterable[tuple[str, EntryPoint]]) -> list[tuple[str, EntryPoint]]:

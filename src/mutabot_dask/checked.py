@@ -7,12 +7,10 @@ from __future__ import annotations
 
 import json
 import math
-import types
-from collections.abc import Callable, Mapping
-from dataclasses import MISSING, fields, is_dataclass
-from enum import Enum
+from collections.abc import Iterator, Mapping
+from dataclasses import is_dataclass
 from functools import cache
-from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Any, TypeVar, get_type_hints
 
 from mutabot.border.codec import from_data
 
@@ -22,9 +20,10 @@ MOST_BYTES, _DEEPEST, _MOST = 64 << 20, 64, 10**15
 _GREATEST = 2**1023
 #: fields that are measured by us, and finite
 _MEASURED = {"wall", "cpu"}
+#: characters of a message
+_SHOWN = 200
 
 T = TypeVar("T")
-Check = Callable[[Any], None]
 
 
 class Misfit(ValueError):  # noqa: N818  # it is a finding
@@ -44,14 +43,18 @@ def read(data: bytes) -> Any:
     except Misfit:
         raise
     except ValueError as error:
-        raise Misfit(f"no JSON ({error})"[:200]) from None
+        raise Misfit(f"no JSON ({error})"[:_SHOWN]) from None
 
 
 def checked(kind: type[T], data: Any) -> T:
     """The value of a type in such data. Raises Misfit."""
-    anything: Any = kind
-    _check(anything)(data)
-    return from_data(kind, data)
+    try:
+        found = from_data(kind, data)
+        _check_numbers(found)
+    except (TypeError, ValueError, KeyError, OverflowError) as error:
+        text = str(error) if isinstance(error, Misfit) else f"{type(error).__name__}: {error}"
+        raise Misfit(text[:_SHOWN]) from None
+    return found
 
 
 def _plain(value: Any, depth: int) -> Any:
@@ -69,115 +72,29 @@ def _plain(value: Any, depth: int) -> Any:
     return value
 
 
-@cache
-def _check(kind: Any) -> Check:
-    """What raises Misfit for data that are not of a type."""
-    origin, arguments = get_origin(kind), get_args(kind)
-    if kind is Any:
-        return lambda data: None
-    if origin in (Union, types.UnionType):
-        return _check_optional([option for option in arguments if option is not type(None)])
-    if origin in (tuple, list):
-        return _check_sequence(kind, arguments)
-    if origin is not None and issubclass(origin, Mapping):
-        return _check_mapping(_check(arguments[1]))
-    if is_dataclass(kind):
-        return _check_fields(kind)
-    if issubclass(kind, Enum):
-        return _check_that(lambda data: data in {one.value for one in kind}, kind.__name__)
-    return _check_that(*_SIMPLE[kind])
+def _check_numbers(value: Any) -> None:
+    """Raise Misfit for counts and times that are none; the user's own data may hold any number."""
+    kind: Any = type(value)
+    for name, is_own in _fields(kind).items():
+        item = getattr(value, name)
+        for one in item if isinstance(item, tuple) else (item,):
+            if is_dataclass(one):
+                _check_numbers(one)
+        if is_own and any(abs(number) > _MOST for number in _integers(item)):
+            raise Misfit(f"{name}: {item!r} is no count")
+        if name in _MEASURED and not 0 <= item < math.inf:
+            raise Misfit(f"{name}: {item} is no time")
 
 
-def _is_count(data: Any) -> bool:
-    return type(data) is int and abs(data) <= _MOST
-
-
-_SIMPLE: dict[Any, tuple[Callable[[Any], bool], str]] = {
-    str: (lambda data: type(data) is str, "a text"),
-    bool: (lambda data: type(data) is bool, "true or false"),
-    int: (_is_count, "an integer"),
-    float: (lambda data: type(data) is float or _is_count(data), "a number"),
-}
-
-
-def _check_that(holds: Callable[[Any], bool], what: str) -> Check:
-    def check(data: Any) -> None:
-        if isinstance(data, list | dict) or not holds(data):
-            raise Misfit(f"{_shown(data)} is not {what}")
-
-    return check
-
-
-def _check_optional(options: list[Any]) -> Check:
-    item = _check(options[0] if len(options) == 1 else Any)
-    return lambda data: None if data is None else item(data)
-
-
-def _check_sequence(kind: Any, arguments: tuple[Any, ...]) -> Check:
-    is_open = get_origin(kind) is list or (len(arguments) == 2 and arguments[1] is Ellipsis)
-    items = [_check(arguments[0])] if is_open else [_check(one) for one in arguments]
-
-    def check(data: Any) -> None:
-        if not isinstance(data, list) or (not is_open and len(data) != len(items)):
-            raise Misfit(f"{_shown(data)} is not a list" + ("" if is_open else f" of {len(items)}"))
-        for index, value in enumerate(data):
-            _at(f"[{index}]", items[0 if is_open else index], value)
-
-    return check
-
-
-def _check_mapping(item: Check) -> Check:
-    def check(data: Any) -> None:
-        if not isinstance(data, dict):
-            raise Misfit(f"{_shown(data)} is not an object")
-        for key, value in data.items():
-            _at(f".{key[:100]}", item, value)
-
-    return check
-
-
-def _check_fields(kind: Any) -> Check:
-    def check(data: Any) -> None:
-        if not isinstance(data, dict):
-            raise Misfit(f"{_shown(data)} is not an object")
-        known, needed = _fields(kind)
-        for name in data.keys() - known.keys():
-            raise Misfit(f"{kind.__name__} has no field {_shown(name)}")
-        for name in needed - data.keys():
-            raise Misfit(f"{kind.__name__} lacks {name}")
-        for name, value in data.items():
-            _at(f".{name}", known[name], value)
-            if name in _MEASURED and not 0 <= value < math.inf:
-                raise Misfit(f".{name}: {value} is no time")
-
-    return check
+def _integers(item: Any) -> Iterator[int]:
+    if isinstance(item, int):
+        yield item
+    elif isinstance(item, Mapping | tuple):
+        for one in item.values() if isinstance(item, Mapping) else item:
+            yield from _integers(one)
 
 
 @cache
-def _fields(kind: Any) -> tuple[dict[str, Check], set[str]]:
-    """How each field is checked, and which must be there: what is None is left out."""
-    hints = get_type_hints(kind)
-    needed = {
-        field.name
-        for field in fields(kind)
-        if field.default is MISSING
-        and field.default_factory is MISSING
-        and hints[field.name] is not Any
-        and type(None) not in get_args(hints[field.name])
-    }
-    return {name: _check(hint) for name, hint in hints.items()}, needed
-
-
-def _at(place: str, check: Check, value: Any) -> None:
-    try:
-        check(value)
-    except Misfit as error:
-        text = str(error)
-        raise Misfit(place + (text if text[:1] in (".", "[") else f": {text}")) from None
-
-
-def _shown(data: Any) -> str:
-    """A value in a message, whatever its size."""
-    if isinstance(data, str):
-        return repr(data[:60])
-    return f"a {type(data).__name__}" if isinstance(data, list | dict) else repr(data)[:60]
+def _fields(kind: Any) -> dict[str, bool]:
+    """The fields of a dataclass, and whether each is mutabot's own: then its type says all."""
+    return {name: "Any" not in str(hint) for name, hint in get_type_hints(kind).items()}

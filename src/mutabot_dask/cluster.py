@@ -17,13 +17,13 @@ from pathlib import Path
 from types import TracebackType
 
 from mutabot.border.lines import Line
+from mutabot.campaign.local import on_this_machine
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import versions
 from mutabot.campaign.workers.interruption import interruptible
 from mutabot.campaign.workers.task import Result, Task
 from mutabot.campaign.workers.workers import Workers
 from mutabot.errors import ClusterError
-from mutabot_dask.settings import ClusterSettings
 
 from .bundle import Bundle
 from .dispatch import Dispatch, is_for_home
@@ -31,6 +31,7 @@ from .environment import decided, module_folders
 from .link import Link, is_private
 from .local import LocalCluster, address_in
 from .roster import Roster
+from .settings import ClusterSettings
 from .shipping import Shipment
 from .telling import explained, summary, warnings
 from .unit import Ground
@@ -86,6 +87,16 @@ class Cluster:
             self._meet()
         except BaseException:
             self._let_go()
+            raise
+
+    @classmethod
+    def opened(cls, request: Request, settings: ClusterSettings, tell: Callable[[str], None]) -> Cluster:
+        """One for a campaign, with worker processes on this machine beside it. Raises ClusterError."""
+        home = on_this_machine(request, tell)
+        try:
+            return cls(request, settings, home, tell)
+        except BaseException:
+            home.__exit__(None, None, None)
             raise
 
     def __enter__(self) -> Cluster:

@@ -30,11 +30,10 @@ _stores: dict[Path, Store] = {}
 
 def introduce(digest: str, inner: str) -> bytes:
     """Say who this worker is, and whether it has a bundle. An empty digest asks for none."""
-    worker = _worker()
     has = bool(digest) and _store().has(digest)
     if has:
         _clear_up(_store().place(digest) / inner / ".mutabot")
-    return Introduction(socket.gethostname(), versions(), has, worker.state.nthreads).data()
+    return Introduction(versions(), has).data()
 
 
 def receive(digest: str, index: int, count: int, part: bytes) -> bytes:

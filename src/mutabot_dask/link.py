@@ -22,7 +22,6 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from mutabot.errors import ClusterError
-from mutabot_dask.settings import ClusterSettings
 
 try:
     import distributed
@@ -33,6 +32,7 @@ except ImportError as error:  # said in words a user can act on
     ) from error
 
 from . import guard
+from .settings import ClusterSettings
 
 #: seconds that a scheduler may take to answer
 PATIENCE = 10.0

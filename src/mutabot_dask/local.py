@@ -87,11 +87,6 @@ class LocalCluster:
         self._start_workers()
         return self._address
 
-    @property
-    def is_alive(self) -> bool:
-        """Whether its scheduler is there."""
-        return self._scheduler is not None and self._scheduler.poll() is None
-
     def look_after_workers(self) -> bool:
         """Start the workers again if whoever looks after them is gone; returns whether that was so."""
         if self._workers is None or self._workers.poll() is None:

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Self
 
-from pydantic import BaseModel, ConfigDict, Field
-
+from mutabot.campaign.request import ExecutorChoice, Request
+from mutabot.campaign.workers.executor import Executor
 from mutabot.errors import UsageError
+from mutabot.settings.table import ProjectFiles, Table
+
+if TYPE_CHECKING:
+    from mutabot.settings.configuration import Configuration
+
+    from .telling import Forecast
 
 _LOCAL = re.compile(r"local:([0-9]+)")
 _ADDRESS = re.compile(r"(?:tcp|tls)://(?:[^/:]+|\[[0-9a-fA-F:]+\]):0*([0-9]{1,5})")
@@ -22,19 +30,41 @@ _SHOWN = 60
 _WORKERS, _PER_PROCESSOR = 32, 4
 
 
-class ClusterTable(BaseModel):
-    """``[tool.mutabot.cluster]``: files for TLS, and further ones for workers, relative to the project."""
+class ClusterTable(Table):
+    """For a [cluster](cluster.md). `--cluster` says which one it is. Where this table stands, `mutabot check`
+    lists what is sent to workers.
+    """
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+    files: ProjectFiles = ()
+    """What is sent beside [what git tracks](cluster.md#what-is-shipped); folders and patterns may be named.
 
+        files = ["data/table.json"]
+    """
     ca: str | None = None
+    """File in PEM format, relative to the project, with whom to trust for [TLS](cluster.md#tls).
+
+        ca = "ca.pem"
+    """
     cert: str | None = None
+    """The same for the certificate of this machine.
+
+        cert = "cert.pem"
+    """
     key: str | None = None
-    files: Annotated[tuple[str, ...], Field(strict=False)] = ()
+    """The same for its private key.
+
+        key = "key.pem"
+    """
+
+    @classmethod
+    def of(cls, configuration: Configuration) -> ClusterTable:
+        """The table in a configuration; an empty one if there is none."""
+        found = configuration.tables.get("cluster")
+        return found if isinstance(found, cls) else cls()
 
 
 @dataclass(frozen=True, slots=True)
-class ClusterSettings:
+class ClusterSettings(ExecutorChoice):
     """A cluster.
 
     Attributes:
@@ -46,6 +76,57 @@ class ClusterSettings:
     ca: str | None = None
     cert: str | None = None
     key: str | None = None
+
+    @classmethod
+    def parse(cls, value: str, configuration: Configuration) -> Self:
+        """See ``ExecutorChoice``: with the certificate files of the configuration, if it may need them."""
+        table, root = ClusterTable.of(configuration), configuration.root
+        names = () if value.startswith(("tcp://", "local:")) else (table.ca, table.cert, table.key)
+        found = cls(value, *(None if name is None else str(root / name) for name in names))
+        found.check()
+        return found
+
+    def open(self, request: Request, tell: Callable[[str], None]) -> AbstractContextManager[Executor]:
+        """See ``ExecutorChoice``. Raises ClusterError."""
+        from .cluster import Cluster  # noqa: PLC0415  # it needs Dask
+
+        return Cluster.opened(request, self, tell)
+
+    @classmethod
+    def preview(cls, configuration: Configuration) -> Forecast:
+        """See ``ExecutorChoice``: what workers are sent."""
+        from .telling import Forecast  # noqa: PLC0415  # it looks at the whole project
+
+        return Forecast.of(configuration)
+
+    def check(self) -> None:
+        """Raise UsageError for what cannot be a cluster."""
+        address = self.address
+        name = address if len(address) <= _SHOWN else f"{address[:_SHOWN]}…"
+        if self.local is not None:
+            _check_count(self.local, name)
+        elif self.is_file:
+            if not os.path.isfile(address):  # noqa: PTH113  # a Path raises for names that no file can have
+                raise UsageError(
+                    f"--cluster {name}: neither an address (tcp://host:8786, tls://host:8786, local:4) "
+                    "nor a scheduler file that is there"
+                )
+        elif not _is_address(address):
+            raise UsageError(f"--cluster {name}: an address is like tcp://host:8786 or tls://host:8786")
+        for option, file in (("ca", self.ca), ("cert", self.cert), ("key", self.key)):
+            if file is not None and not Path(file).is_file():
+                raise UsageError(f"cluster.{option} = {file!r}: there is no such file")
+        if self.files and self.local is not None:
+            raise UsageError(
+                f"--cluster {address} makes its own certificates: certificate files go with tls://"
+            )
+        if self.files and address.startswith("tcp://"):
+            raise UsageError(f"--cluster {address} is not encrypted: certificate files go with tls://")
+        if address.startswith("tls://") and len(self.files) < 3:
+            raise UsageError(
+                f"--cluster {address} needs certificates: set ca, cert and key in the table cluster, "
+                "or -o cluster.ca=FILE -o cluster.cert=FILE -o cluster.key=FILE"
+            )
 
     @property
     def local(self) -> int | None:
@@ -62,41 +143,6 @@ class ClusterSettings:
     def files(self) -> tuple[str, ...]:
         """The files for TLS."""
         return tuple(file for file in (self.ca, self.cert, self.key) if file is not None)
-
-
-def cluster_settings(
-    address: str,
-    *,
-    ca: str | None = None,
-    cert: str | None = None,
-    key: str | None = None,
-) -> ClusterSettings:
-    """The cluster that a user has named. Raises UsageError for what cannot be one."""
-    found = ClusterSettings(address, ca, cert, key)
-    name = address if len(address) <= _SHOWN else f"{address[:_SHOWN]}…"
-    if found.local is not None:
-        _check_count(found.local, name)
-    elif found.is_file:
-        if not os.path.isfile(address):  # noqa: PTH113  # a Path raises for names that no file can have
-            raise UsageError(
-                f"--cluster {name}: neither an address (tcp://host:8786, tls://host:8786, local:4) "
-                "nor a scheduler file that is there"
-            )
-    elif not _is_address(address):
-        raise UsageError(f"--cluster {name}: an address is like tcp://host:8786 or tls://host:8786")
-    for option, file in (("ca", ca), ("cert", cert), ("key", key)):
-        if file is not None and not Path(file).is_file():
-            raise UsageError(f"cluster.{option} = {file!r}: there is no such file")
-    if found.files and found.local is not None:
-        raise UsageError(f"--cluster {address} makes its own certificates: certificate files go with tls://")
-    if found.files and address.startswith("tcp://"):
-        raise UsageError(f"--cluster {address} is not encrypted: certificate files go with tls://")
-    if address.startswith("tls://") and len(found.files) < 3:
-        raise UsageError(
-            f"--cluster {address} needs certificates: set the keys ca, cert and key of the table cluster, "
-            "or -o cluster.ca=FILE -o cluster.cert=FILE -o cluster.key=FILE"
-        )
-    return found
 
 
 def _is_address(address: str) -> bool:

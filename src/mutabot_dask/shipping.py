@@ -22,6 +22,7 @@ from mutabot.repository import GitError, repository_of, tracked, unignored
 from mutabot.settings.configuration import Configuration
 
 from .private import may_be_secret
+from .settings import ClusterTable
 
 #: files, in the project and above it, by which pytest finds its bearings
 BEARINGS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "setup.cfg", "conftest.py")
@@ -97,7 +98,7 @@ class Shipment:
     @classmethod
     def of_configuration(cls, configuration: Configuration) -> Shipment:
         """What goes of a configured project. Raises ClusterError where git cannot tell."""
-        return cls.of(configuration.root, _named(configuration), configuration.cluster.get("files", ()))
+        return cls.of(configuration.root, _named(configuration), ClusterTable.of(configuration).files)
 
     @cached_property
     def suspicious(self) -> tuple[str, ...]:

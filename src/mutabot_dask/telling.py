@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterable, Iterator, Mapping
-from typing import Any
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from .bundle import Bundle
 from .environment import decided
 from .shipping import Shipment
+
+if TYPE_CHECKING:
+    from mutabot.settings.configuration import Configuration
 
 #: names that a sentence shows
 _SHOWN = 8
@@ -37,43 +41,55 @@ def warnings(shipment: Shipment, bundle: Bundle) -> Iterator[str]:
         yield f"sent though it is named like a secret, since {why}: {listed(shipment.suspicious)}"
 
 
-def lacking(shipment: Shipment, opened: Iterable[str] | None) -> str | None:
-    """What tests of the baseline opened that workers will not have; None if that is nothing."""
-    missed = shipment.missed(opened or ())
-    return f"tests open files that workers will not have: {listed(missed)}; {_ADVICE}" if missed else None
-
-
 def explained(shipment: Shipment, why: str) -> str:
     """What was wrong on a worker, with the files that it lacks, if that is what it speaks of."""
     names = shipment.named_in(why)
     return f"{why} (not sent: {listed(names)}; {_ADVICE})" if names else why
 
 
-def check_lines(shipment: Shipment, opened: Iterable[str] | None) -> tuple[list[str], Mapping[str, Any]]:
-    """What ``mutabot check`` says, for people and for machines."""
-    bundle = Bundle.make(shipment)
-    variables = sorted(decided())
-    lines = [
-        f"cluster   workers are sent {summary(bundle)}",
-        f"cluster   and the variables {', '.join(variables)}",
-        *(f"cluster   {text}" for text in warnings(shipment, bundle)),
-    ]
-    missed = lacking(shipment, opened)
-    if missed is not None:
-        lines.append(f"cluster   {missed}")
-    data = {
-        "files": [os.path.relpath(path, shipment.root) for path in shipment.files],
-        "bytes": len(bundle.data),
-        "variables": variables,
-        "left_out": list(shipment.left_out),
-        "outside": list(bundle.outside),
-        "secret_names": list(shipment.suspicious),
-        "opened_but_left_out": shipment.missed(opened or ()),
-    }
-    return lines, {
-        key: [_printable(name) for name in value] if isinstance(value, list) else value
-        for key, value in data.items()
-    }
+@dataclass(frozen=True, slots=True)
+class Forecast:
+    """See ``mutabot.campaign.request.Preview``: what workers will be sent."""
+
+    shipment: Shipment
+
+    @classmethod
+    def of(cls, configuration: Configuration) -> Forecast:
+        """That of a project. Raises ClusterError where git cannot tell what it tracks."""
+        return cls(Shipment.of_configuration(configuration))
+
+    @property
+    def folders_left_out(self) -> set[str]:
+        """See ``Preview``."""
+        return self.shipment.folders_left_out
+
+    def lacking(self, opened: Collection[str] | None) -> str | None:
+        """See ``Preview``."""
+        missed = self.shipment.missed(opened or ())
+        return f"tests open files that workers will not have: {listed(missed)}; {_ADVICE}" if missed else None
+
+    def check(self, opened: Collection[str] | None) -> tuple[list[str], Mapping[str, Any]]:
+        """See ``Preview``."""
+        shipment = self.shipment
+        bundle = Bundle.make(shipment)
+        variables = sorted(decided())
+        missed = self.lacking(opened)
+        said = [
+            f"workers are sent {summary(bundle)}",
+            f"and the variables {', '.join(variables)}",
+            *warnings(shipment, bundle),
+            *([missed] if missed is not None else []),
+        ]
+        names = {
+            "files": [os.path.relpath(path, shipment.root) for path in shipment.files],
+            "left_out": shipment.left_out,
+            "outside": bundle.outside,
+            "secret_names": shipment.suspicious,
+            "opened_but_left_out": shipment.missed(opened or ()),
+        }
+        data = {key: [_printable(name) for name in value] for key, value in names.items()}
+        lines = [f"cluster   {text}" for text in said]
+        return lines, {**data, "bytes": len(bundle.data), "variables": variables}
 
 
 def listed(names: Collection[str]) -> str:

@@ -121,16 +121,12 @@ class Introduction:
     """What a worker says of itself.
 
     Attributes:
-        host: the name of its machine.
         versions: what it runs with, as keys of outcomes have it.
         has: whether it has the bundle.
-        threads: how many tasks it would run at a time.
     """
 
-    host: str
     versions: Mapping[str, str] = field(default_factory=dict)
     has: bool = False
-    threads: int = 1
 
     def data(self) -> bytes:
         """It as bytes."""
@@ -149,7 +145,7 @@ def _line(index: int, data: Any) -> Line:
     try:
         line: Line = checked(kind, {name: value for name, value in data.items() if name != "type"})
     except Misfit as error:
-        raise Misfit(f".lines[{index}]{error}") from None
+        raise Misfit(f".lines[{index}] ({kind.__name__}): {error}") from None
     return line
 
 

@@ -15,7 +15,7 @@ from .shown import Shown
 _LISTED = 5
 _WHAT_TO_DO = (
     "`mutabot run --fresh` records it if `evidence` is not 0 and a simulator tells where things are, see "
-    "docs/replay.md"
+    "docs/motion.md"
 )
 
 
@@ -74,7 +74,7 @@ def missing_in(shown: Shown) -> list[str]:
     elif shown.mutant is None:
         found.append(f"nothing that is recorded of {which} differs: only the original is shown")
     if not shown.original.tracks:
-        found.append("no simulator tells where things are: only calls are shown, see docs/replay.md")
+        found.append("no simulator tells where things are: only calls are shown, see docs/motion.md")
     return found
 
 

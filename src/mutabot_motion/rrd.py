@@ -9,26 +9,22 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import rerun
+from rerun import blueprint as layout
 
 from mutabot.errors import UsageError
 from mutabot.evidence.recording import Block, Kind, Recording
 from mutabot.evidence.tracks import Path as Way
-from mutabot.evidence.tracks import paths_of
 
 from .events import Weight, events
-from .shown import Shown
-from .target import check, missing, written_whole
-
-if TYPE_CHECKING:
-    import rerun
+from .shown import BLOCK, COLOURS, Shown, things_in, values_in
+from .target import check, has_screen, written_whole
 
 _MAGIC = b"RRF2"
-#: of both sides: colours that people with any kind of sight tell apart
-_COLOURS = {"original": (86, 180, 233), "mutant": (230, 159, 0)}
-_BLOCK = (150, 156, 164, 90)
 #: seconds after which a viewer that cannot begin has ended
 _BEGINNING = 4.0
 #: m: half the width of paths, and what stands for things without a size
@@ -48,10 +44,6 @@ class Rrd:
         self._home, self._file, self._opens = home, file, opens
         if file is not None:
             check(file, "recording", ".rrd", _MAGIC)
-        try:
-            import rerun  # noqa: F401, PLC0415  # an extra
-        except ImportError as error:
-            raise missing("rerun-sdk", "--rrd" if file is not None else "--rerun", "rerun") from error
 
     def show(self, shown: Shown) -> str:
         """See ``Sight``."""
@@ -64,17 +56,16 @@ class Rrd:
 
 def write_rrd(file: Path, shown: Shown) -> None:
     """Write what is recorded, with the layout in which it is to be seen."""
-    import rerun  # noqa: PLC0415  # as above
-
+    about = "\n\n".join(f"**{name}** {text}" for name, text in shown.about.items())
     name = f"mutant {shown.number}, round {shown.round + 1}: {shown.test}"
     with rerun.RecordingStream("mutabot", recording_id=f"{shown.id} {shown.round} {shown.test}") as stream:
         stream.set_log_time_enabled(False)
         stream.set_log_tick_enabled(False)
         stream.save(str(file), default_blueprint=_layout(shown))
         stream.send_recording_name(name)
-        stream.log("about", rerun.TextDocument(_about(shown), media_type="text/markdown"), static=True)
+        stream.log("about", rerun.TextDocument(about, media_type="text/markdown"), static=True)
         stream.log("/", rerun.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-        for block in _blocks(shown):
+        for block in shown.blocks:
             _log_block(stream, block)
         for side, recording in shown.sides:
             _Side(stream, shown, side, recording).log()
@@ -87,19 +78,16 @@ class _Side:
 
     def __init__(self, stream: rerun.RecordingStream, shown: Shown, name: str, recording: Recording) -> None:
         self._stream, self._shown, self._name, self._recording = stream, shown, name, recording
-        self._colour = _COLOURS[name]
+        self._colour = COLOURS[name]
 
     def log(self) -> None:
-        for name, way in paths_of(self._recording).items():
-            if way.track.kind is Kind.VALUE:
-                self._log_value(name, way)
-            else:
-                self._log_thing(name, way)
+        for name, way in things_in(self._recording):
+            self._log_thing(name, way)
+        for name, way in values_in(self._recording):
+            self._log_value(name, way)
         self._log_events()
 
     def _log_thing(self, name: str, way: Way) -> None:
-        import rerun  # noqa: PLC0415  # as above
-
         path = self._path("things", name)
         turned: dict[str, Any] = {}
         if way.track.kind is Kind.POSE:
@@ -121,8 +109,6 @@ class _Side:
         self._stream.log(self._path("paths", name), line, static=True)
 
     def _log_value(self, name: str, way: Way) -> None:
-        import rerun  # noqa: PLC0415  # as above
-
         path = self._path("values", name)
         unit = f", {way.track.unit}" if way.track.unit else ""
         line = rerun.SeriesLines(colors=self._colour, names=f"{self._name}: {name}{unit}")
@@ -131,8 +117,6 @@ class _Side:
         self._stream.send_columns(path, [self._times(way.when)], found)
 
     def _log_events(self) -> None:
-        import rerun  # noqa: PLC0415  # as above
-
         levels = {Weight.READING: "DEBUG", Weight.COMMAND: "INFO", Weight.FAULT: "WARN"}
         found = events(self._shown, self._recording)
         if found:
@@ -142,25 +126,14 @@ class _Side:
             self._stream.send_columns(self._path("log"), [self._times(one.time for one in found)], lines)
 
     def _times(self, times: Iterable[float]) -> rerun.TimeColumn:
-        import rerun  # noqa: PLC0415  # as above
-
         return rerun.TimeColumn(self._shown.clock, duration=list(times))
 
     def _path(self, *parts: str) -> str:
-        import rerun  # noqa: PLC0415  # as above
-
         return str(rerun.new_entity_path([self._name, *parts]))
 
 
-def _blocks(shown: Shown) -> Sequence[Block]:
-    """What stands around on either side."""
-    return list(dict.fromkeys(block for _, found in shown.sides for block in found.blocks))
-
-
 def _log_block(stream: rerun.RecordingStream, block: Block) -> None:
-    import rerun  # noqa: PLC0415  # as above
-
-    colour = tuple(round(255 * part) for part in block.colour) if block.colour is not None else _BLOCK
+    colour = tuple(round(255 * part) for part in block.colour) if block.colour is not None else (*BLOCK, 90)
     box = rerun.Boxes3D(
         centers=[block.centre], sizes=[block.size], colors=[colour], fill_mode="solid",
         labels=[block.name], show_labels=False,
@@ -169,8 +142,6 @@ def _log_block(stream: rerun.RecordingStream, block: Block) -> None:
 
 
 def _layout(shown: Shown) -> Any:
-    from rerun import blueprint as layout  # noqa: PLC0415  # as above
-
     below = [layout.TextLogView(origin=side, name=side) for side, _ in shown.sides]
     values = layout.TimeSeriesView(
         name="values", contents=[f"+ /{side}/values/**" for side, _ in shown.sides]
@@ -186,26 +157,12 @@ def _layout(shown: Shown) -> Any:
     )
 
 
-def _about(shown: Shown) -> str:
-    return "\n\n".join(_about_lines(shown))
-
-
-def _about_lines(shown: Shown) -> Iterator[str]:
-    yield f"**Mutant {shown.number}** `{shown.id}`"
-    yield shown.what
-    yield f"Test `{shown.test}`, round {shown.round + 1}"
-    if shown.story:
-        yield shown.story
-    if shown.fault is not None:
-        yield f"Fault at {shown.fault:.2f} s of {shown.clock}"
-
-
 def open_viewer(file: Path, home: Path) -> str:
     """Open Rerun's viewer, which goes on when this process has ended. Returns what came of it, in words.
 
     Without a screen it is not opened. Raises UsageError if it does not begin.
     """
-    if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+    if not has_screen():
         return f"there is no screen to open its viewer on: look at it elsewhere, with `rerun {file.name}`"
     settings = home / "rerun"
     settings.mkdir(exist_ok=True)

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mutabot.evidence.recording import Recording
+from mutabot.evidence.recording import Block, Kind, Recording
+from mutabot.evidence.tracks import Path, paths_of
+
+#: of both sides: red, green and blue that people with any kind of sight tell apart
+COLOURS = {"original": (86, 180, 233), "mutant": (230, 159, 0)}
+#: of blocks without a wish
+BLOCK = (150, 156, 164)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +60,26 @@ class Shown:
         return tuple((name, found) for name, found in both if found is not None)
 
     @property
+    def blocks(self) -> list[Block]:
+        """What stands around on either side, each once."""
+        return list(dict.fromkeys(block for _, found in self.sides for block in found.blocks))
+
+    @property
+    def about(self) -> dict[str, str]:
+        """What there is to say of it as a whole, by what that is."""
+        found = {
+            "mutant": str(self.number),
+            "id": self.id,
+            "what": self.what,
+            "test": self.test,
+            "round": str(self.round + 1),
+            "clock": self.clock,
+            "story": self.story,
+            "fault": "" if self.fault is None else f"{self.fault:.3f} s",
+        }
+        return {name: text for name, text in found.items() if text}
+
+    @property
     def clock(self) -> str:
         """What the times are of."""
         return "simulated time" if all(found.is_simulated for _, found in self.sides) else "wall clock"
@@ -64,3 +90,13 @@ def end_of(recording: Recording) -> float:
     calls = (one.ended for one in recording.calls if one.ended is not None)
     moments = (one.time for one in recording.moments)
     return max((*recording.times[-1:], *calls, *moments), default=0.0)
+
+
+def things_in(recording: Recording) -> list[tuple[str, Path]]:
+    """What moves in space, with its name."""
+    return [(name, way) for name, way in paths_of(recording).items() if way.track.kind is not Kind.VALUE]
+
+
+def values_in(recording: Recording) -> list[tuple[str, Path]]:
+    """What has a value over time, with its name."""
+    return [(name, way) for name, way in paths_of(recording).items() if way.track.kind is Kind.VALUE]

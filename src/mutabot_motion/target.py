@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -49,7 +50,6 @@ def written_whole(file: Path) -> Iterator[Path]:
         part.unlink(missing_ok=True)
 
 
-def missing(library: str, what: str, extra: str) -> UsageError:
-    """The error where a library of an extra is not installed."""
-    install = f"pip install 'path/to/mutabot[{extra}]'"
-    return UsageError(f"{what} needs {library}, which is not installed: {install}")
+def has_screen() -> bool:
+    """Whether a window can be opened."""
+    return sys.platform != "linux" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

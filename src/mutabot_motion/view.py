@@ -6,32 +6,27 @@ around. The original is the pale one.
 
 from __future__ import annotations
 
-import os
-import sys
 import threading
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import pairwise
 from math import dist
 from textwrap import wrap
-from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
+
+import mujoco
+from mujoco import viewer
 
 from mutabot.errors import UsageError
 from mutabot.evidence.recording import Kind
 from mutabot.evidence.tracks import Path as Way
-from mutabot.evidence.tracks import paths_of
 
 from .pictures.lettering import letters_of_english
-from .shown import Shown, end_of
-from .target import missing
+from .shown import BLOCK, COLOURS, Shown, end_of, things_in
+from .target import has_screen
 
-if TYPE_CHECKING:
-    pass
-
-#: of both sides: red, green, blue, opacity
-_COLOURS = {"original": "0.34 0.71 0.91 0.4", "mutant": "0.90 0.62 0 1"}
-_BLOCK = (0.59, 0.61, 0.64, 1.0)
+#: how much of each side is seen
+_OPACITY = {"original": 0.4, "mutant": 1.0}
 #: m: the world that is shown is at least this large
 _LEAST = 0.5
 #: letters in a line of text: the font of the viewer has those of English alone
@@ -48,22 +43,18 @@ class Viewer:
     """MuJoCo's viewer. Raises UsageError where there is no screen, or no MuJoCo."""
 
     def __init__(self) -> None:
-        if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        if not has_screen():
             raise UsageError(
                 "--view needs a screen, and there is none (DISPLAY is not set); --video FILE.mp4, "
                 "--rrd FILE.rrd and --mcap FILE.mcap do without"
             )
-        try:
-            import mujoco  # noqa: F401, PLC0415  # an extra
-        except ImportError as error:
-            raise missing("MuJoCo", "--view", "cells") from error
 
     def show(self, shown: Shown) -> str:
         """See ``Sight``. It ends when the window is closed."""
         stage = Stage(shown)
         if not stage.things:
             raise UsageError(
-                "--view has nothing to show: no simulator tells where things are, see docs/replay.md"
+                "--view has nothing to show: no simulator tells where things are, see docs/motion.md"
             )
         _watch(stage)
         return "the window was closed"
@@ -79,7 +70,6 @@ class Stage:
     """
 
     def __init__(self, shown: Shown) -> None:
-        import mujoco  # noqa: PLC0415  # as above
 
         self.shown = shown
         self.things = {f"{side} {name}": way for side, name, way in _things(shown)}
@@ -90,7 +80,6 @@ class Stage:
 
     def at(self, time: float) -> None:
         """Put everything where it was at a time, s."""
-        import mujoco  # noqa: PLC0415  # as above
 
         for name, way in self.things.items():
             row = way.rows[way.at(time)]
@@ -142,8 +131,6 @@ class _Clock:
 
 
 def _watch(stage: Stage) -> None:
-    import mujoco  # noqa: PLC0415  # as above
-    from mujoco import viewer  # noqa: PLC0415  # as above
 
     clock = _Clock(stage.end)
     place = mujoco.mjtGridPos.mjGRID_TOPLEFT, mujoco.mjtGridPos.mjGRID_BOTTOMLEFT
@@ -169,26 +156,27 @@ def _watch(stage: Stage) -> None:
             thread.join(_BEGINNING)
 
 
-def _things(shown: Shown) -> Iterator[tuple[str, str, Way]]:
-    for side, recording in shown.sides:
-        for name, way in paths_of(recording).items():
-            if way.track.kind is not Kind.VALUE:
-                yield side, name, way
+def _things(shown: Shown) -> list[tuple[str, str, Way]]:
+    return [(side, name, way) for side, found in shown.sides for name, way in things_in(found)]
+
+
+def _colour(side: str) -> str:
+    return _numbers((*(part / 255 for part in COLOURS[side]), _OPACITY[side]))
 
 
 def _world(shown: Shown) -> str:
     """The model, as MuJoCo's XML."""
-    blocks = dict.fromkeys(block for _, found in shown.sides for block in found.blocks)
+    grey = tuple(part / 255 for part in BLOCK)
     parts = [
         f'<geom type="box" pos={_numbers(one.centre)} size={_numbers(edge / 2 for edge in one.size)} '
-        f"rgba={_numbers((*(one.colour or _BLOCK), 1.0)[:4])}/>"
-        for one in blocks
+        f"rgba={_numbers((*(one.colour or grey), 1.0)[:4])}/>"
+        for one in shown.blocks
     ]
     for side, name, way in _things(shown):
         parts.append(f'<body name={quoteattr(f"{side} {name}")} mocap="true">{_shape(side, way)}</body>')
         corners = [" ".join(f"{number:.5g}" for number in point) for point in way.outline]
         parts += (
-            f'<geom type="capsule" size="0.003" fromto="{one} {other}" rgba="{_COLOURS[side]}"/>'
+            f'<geom type="capsule" size="0.003" fromto="{one} {other}" rgba={_colour(side)}/>'
             for one, other in pairwise(corners)
             if one != other
         )
@@ -207,10 +195,10 @@ def _world(shown: Shown) -> str:
 
 
 def _shape(side: str, way: Way) -> str:
-    colour = _COLOURS[side]
+    colour = _colour(side)
     if way.track.size is not None:
-        return f'<geom type="box" size={_numbers(edge / 2 for edge in way.track.size)} rgba="{colour}"/>'
-    ball = f'<geom type="sphere" size="0.012" rgba="{colour}"/>'
+        return f'<geom type="box" size={_numbers(edge / 2 for edge in way.track.size)} rgba={colour}/>'
+    ball = f'<geom type="sphere" size="0.012" rgba={colour}/>'
     if way.track.kind is not Kind.POSE:
         return ball
     axes = (

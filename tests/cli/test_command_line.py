@@ -19,6 +19,7 @@ from analysis import samples
 from mutabot.campaign import run as campaign
 from mutabot.cli.app import app, main
 from mutabot.cli.gone import _OPTIONS
+from mutabot.cli.request import request_of
 from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict
 
@@ -253,10 +254,17 @@ def test_what_went_away_says_what_to_use_instead(
     assert len(err.splitlines()) == 1
 
 
+def test_an_option_that_there_is_not_is_no_part_of_a_request(project: Path) -> None:
+    with pytest.raises(TypeError, match="there is no option rouns"):
+        request_of(project, rouns=3)  # type: ignore[call-arg]
+
+
 def test_every_option_that_went_away_is_none_of_todays() -> None:
-    commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    group: Any = typer.main.get_command(app)
+    context = group.context_class(group, info_name="mutabot")
     today = {
-        name: [parameter.opts for parameter in commands[name].params] for name in ("run", "list", "check")
+        name: [parameter.opts for parameter in group.resolve_command(context, [name])[1].params]
+        for name in ("run", "list", "check")
     }
     assert not {option for every in today.values() for opts in every for option in opts} & _OPTIONS.keys()
     assert len(today["run"]) == 18

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 from mutabot.campaign.baseline.baseline import Baseline
@@ -22,36 +23,36 @@ from .request import Progress, Request
 
 
 def replay_one(
-    request: Request,
-    journal: JournalReader,
-    mutant: Mutant,
-    rounds: Iterable[int],
-    progress: Progress,
-    also: Callable[[Campaign, Mutant], object] | None = None,
+    request: Request, journal: JournalReader, mutant: Mutant, rounds: Iterable[int], progress: Progress
 ) -> list[Replayed]:
     """Run one mutant again in these rounds, beside what the journal says of it.
 
-    ``also``: what else is to be run of it, after that.
+    Raises what ``anew`` raises.
+    """
+    rounds = sorted(set(rounds))
+    first = {(one.mutant, one.round): one for one in journal.outcomes()}
+    with anew(request, mutant, rounds[-1], progress) as (campaign, now):
+        looker = Looker(campaign)
+        for _ in run_controls(campaign, [now]):
+            pass
+        trials = [(now, round) for round in rounds]
+        progress.stage("replay", len(trials))
+        looker.run(trials)
+    return [Replayed(round, first.get((now.id, round)), looker.found[now.id, round]) for round in rounds]
+
+
+@contextmanager
+def anew(
+    request: Request, mutant: Mutant, last: int, progress: Progress
+) -> Iterator[tuple[Campaign, Mutant]]:
+    """The campaign with a baseline taken anew up to a round, and the mutant in the program as it is now.
 
     Raises SelectionError if the program no longer has the mutant, and what a baseline raises.
     """
-    rounds = sorted(set(rounds))
-    request = replace(request, rounds=rounds[-1] + 1)
-    first = {(one.mutant, one.round): one for one in journal.outcomes()}
+    request = replace(request, rounds=last + 1)
     with open_executor(request, progress) as opened:
         baseline, _ = take_baseline(request, opened, progress, repetitions=1)
-        mutant = as_it_is_now(request, baseline, mutant)
-        looker = Looker(Campaign(request, baseline, opened, progress))
-        for _ in run_controls(looker.campaign, [mutant]):
-            pass
-        trials = [(mutant, round) for round in rounds]
-        progress.stage("replay", len(trials))
-        looker.run(trials)
-        if also is not None:
-            also(looker.campaign, mutant)
-    return [
-        Replayed(round, first.get((mutant.id, round)), looker.found[mutant.id, round]) for round in rounds
-    ]
+        yield Campaign(request, baseline, opened, progress), as_it_is_now(request, baseline, mutant)
 
 
 def as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant:

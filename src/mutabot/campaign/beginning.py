@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -25,9 +24,9 @@ from mutabot.campaign.workers.task import Result
 from mutabot.errors import NothingToDoError
 from mutabot.journal.lock import at_work
 
-from . import executors
 from .campaign import Campaign
 from .evidence import Evidence
+from .local import on_this_machine
 from .request import Progress, Request
 
 #: remarks that are told where there are no mutants
@@ -36,14 +35,9 @@ _REMARKS = 8
 
 def open_executor(request: Request, progress: Progress) -> AbstractContextManager[Executor]:
     """What runs the tasks of a campaign."""
-    named = (
-        "mutabot_dask.executor"
-        if request.executor == "cluster"
-        else f"{executors.__name__}.{request.executor}"
-    )
-    chosen = importlib.import_module(named)
-    opened: AbstractContextManager[Executor] = chosen.executor(request, progress.note)
-    return opened
+    if request.executor is None:
+        return on_this_machine(request, progress.note)
+    return request.executor.open(request, progress.note)
 
 
 @contextmanager

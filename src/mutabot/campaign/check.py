@@ -11,35 +11,47 @@ from mutabot.campaign.engines.choice import try_controls
 from mutabot.campaign.engines.engine import Remainder
 from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.reuse.opened import OpenedFiles
+from mutabot.extensions import brought
 from mutabot.families import CATALOGUE
 from mutabot.journal.tracked import refuse_tracked
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.named import MAIN
 from mutabot.operators import load_all
+from mutabot.settings.configuration import Configuration
 from mutabot.vocabulary.load import shipped
-from mutabot_dask.shipping import Shipment
-from mutabot_dask.telling import check_lines
 
 from .beginning import at_it, begin, plan_of, selected
 from .campaign import Campaign
-from .request import CheckReport, Progress, Request
+from .request import CheckReport, ExecutorChoice, Preview, Progress, Request
 
 
 def check(request: Request, progress: Progress) -> CheckReport:
     """Try the whole set-up, controls included, without running mutants."""
     refuse_tracked(request.journal_path)
-    shipment = Shipment.of_configuration(request.configuration) if request.configuration.cluster else None
+    previews = dict(_previews(request.configuration))
     with at_it(request, progress) as opened:
-        with OpenedFiles(request.root, shipment.folders_left_out if shipment is not None else ()) as watch:
+        folders = {folder for one in previews.values() for folder in one.folders_left_out}
+        with OpenedFiles(request.root, folders) as watch:
             campaign, _ = begin(request, opened, progress)
         plan = plan_of(request, campaign.baseline)
         mutants = selected(campaign, plan).mutants
         controls, remainder = try_controls(campaign, mutants)
     report = _report(campaign, plan, mutants, controls, remainder)
-    if shipment is None:
-        return report
-    lines, data = check_lines(shipment, watch.opened)
-    return CheckReport([*report.lines, *lines], {**report.data, "cluster": data})
+    for name, preview in previews.items():
+        lines, data = preview.check(watch.opened)
+        report = CheckReport([*report.lines, *lines], {name: data, **report.data})
+    return report
+
+
+def _previews(configuration: Configuration) -> Iterator[tuple[str, Preview]]:
+    """What executors that the configuration has a table for would take elsewhere, by their names."""
+    if not configuration.tables:
+        return
+    for name, part in brought("executors").items():
+        if name in configuration.tables:
+            preview = part.load_class(ExecutorChoice).preview(configuration)  # type: ignore[type-abstract]
+            if preview is not None:
+                yield name, preview
 
 
 def _report(

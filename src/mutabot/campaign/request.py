@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, Self
 
 from mutabot.border.job import Job
+from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.pause import Pause
 from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
@@ -17,7 +20,53 @@ from mutabot.model import Moment, Vocabulary
 from mutabot.settings.configuration import Configuration
 from mutabot.settings.sample import Sample
 from mutabot.settings.shard import Shard
-from mutabot_dask.settings import ClusterSettings
+
+
+class Preview(Protocol):
+    """What an executor would take elsewhere, known before it does.
+
+    Attributes:
+        folders_left_out: folders with files that stay here, relative to the project: which of these files
+            tests open is watched while the baseline is taken.
+    """
+
+    @property
+    def folders_left_out(self) -> Collection[str]: ...
+
+    def lacking(self, opened: Collection[str] | None) -> str | None:
+        """What tests lack there of the files that they opened here, in words; None if that is nothing."""
+
+    def check(self, opened: Collection[str] | None) -> tuple[list[str], Mapping[str, Any]]:
+        """What ``mutabot check`` says of it: lines for people, and the same for machines."""
+
+
+class ExecutorChoice(ABC):
+    """An executor as the command line names it, with its settings. The base of those that packages bring."""
+
+    @classmethod
+    @abstractmethod
+    def parse(cls, value: str, configuration: Configuration) -> Self:
+        """The choice that the value of its option stands for.
+
+        ``configuration``: of the project, with the package's own table in ``tables``.
+
+        Raises UsageError for a value that cannot be meant.
+        """
+
+    @abstractmethod
+    def open(self, request: Request, tell: Callable[[str], None]) -> AbstractContextManager[Executor]:
+        """The executor. Raises UsageError where there is none.
+
+        ``tell``: told what the user should know about where and how tasks run.
+        """
+
+    @classmethod
+    def preview(cls, configuration: Configuration) -> Preview | None:
+        """What it would take elsewhere; None if all stays on this machine.
+
+        ``mutabot check`` asks this where the configuration has a table of the executor's name.
+        """
+        return None
 
 
 @dataclass(frozen=True)
@@ -31,8 +80,7 @@ class Request:
         only, skip: selections as in ``select``.
         selection: file with the ids to run; None for all.
         engine: name of the engine; ``auto`` for the first that can judge a mutant.
-        executor: name of what runs the tasks.
-        cluster: where the executor ``cluster`` runs them.
+        executor: what runs the tasks; None for worker processes on this machine.
         fresh: whether to run everything, also what an earlier campaign has found.
         verify: how many outcomes to run once more in fresh processes, and compare.
         repeats: whether to run once more the kills that may be chance.
@@ -61,8 +109,7 @@ class Request:
     skip: tuple[str, ...] = ()
     selection: Path | None = None
     engine: str = "auto"
-    executor: str = "local"
-    cluster: ClusterSettings | None = None
+    executor: ExecutorChoice | None = None
     fresh: bool = False
     verify: int = 0
     repeats: bool = True

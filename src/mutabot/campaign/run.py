@@ -41,8 +41,6 @@ from mutabot.journal.journal import Journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS
 from mutabot.model import LeftOut, Mutant
-from mutabot_dask.shipping import Shipment
-from mutabot_dask.telling import lacking
 
 from .beginning import at_it, begin, plan_of, selected
 from .campaign import Campaign
@@ -308,11 +306,11 @@ def _write_beginning(
 
 
 def _note_lacking(request: Request, opened: Collection[str] | None, progress: Progress) -> None:
-    """Name what tests need and workers will not have, before anything is sent."""
-    if request.cluster is not None:
-        missed = lacking(Shipment.of_configuration(request.configuration), opened)
-        if missed is not None:
-            progress.note(missed)
+    """Name what tests need and will not have where they run, before anything goes there."""
+    preview = request.executor.preview(request.configuration) if request.executor is not None else None
+    missed = preview.lacking(opened) if preview is not None else None
+    if missed is not None:
+        progress.note(missed)
 
 
 def _note_unstable(baseline: Baseline, progress: Progress) -> None:

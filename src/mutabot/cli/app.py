@@ -19,10 +19,11 @@ from mutabot.exit_codes import ExitCode
 from mutabot.limits import shortened
 
 from . import campaign, init, replay, report, results, suggest, thresholds
+from .commands import SETTINGS, Commands
 from .gone import gone
 from .lists import operators
 from .merging import merge
-from .options import Version
+from .options import Version, with_options
 from .termination import terminated_like_ctrl_c
 
 #: signs of a message about the command line
@@ -33,9 +34,8 @@ app = typer.Typer(
     name="mutabot",
     help="Mutation testing for robot programs: would your tests notice?",
     no_args_is_help=True,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
+    cls=Commands,
+    **SETTINGS,
 )
 
 
@@ -55,11 +55,10 @@ def options(
 
 # in this order they stand in --help
 app.command(rich_help_panel=_SETUP)(init.init)
-app.command(rich_help_panel=_SETUP)(campaign.check)
-app.command("list", rich_help_panel=_SETUP)(campaign.list_)
+app.command(rich_help_panel=_SETUP)(with_options(campaign.check))
+app.command("list", rich_help_panel=_SETUP)(with_options(campaign.list_))
 app.command(rich_help_panel=_SETUP)(operators.operators)
-app.command(rich_help_panel=_RUN)(campaign.run)
-app.command(rich_help_panel=_RUN)(campaign.live)
+app.command(rich_help_panel=_RUN)(with_options(campaign.run))
 app.command(rich_help_panel=_RUN)(merge.merge)
 app.command(rich_help_panel=_RUN)(replay.replay)
 app.command(rich_help_panel=_RUN)(suggest.suggest)

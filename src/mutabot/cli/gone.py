@@ -1,6 +1,10 @@
-"""Commands and options that earlier versions had: what to use instead."""
+"""Commands and options that are not there: what to use instead, or what to install."""
 
 from __future__ import annotations
+
+import re
+
+from mutabot.extensions import not_installed
 
 _COMMANDS = {"compare": "`make comparison` in a clone of mutabot compares families of mutants"}
 _OPTIONS = {
@@ -21,14 +25,21 @@ _OPTIONS = {
     "--repeats": "kills that may be a coincidence are re-run anyway",
     "--no-repeats": "use -o repeats=false",
     "--mixed": "workers run with the same versions as this machine",
+    **{
+        option: f"use `mutabot motion MUTANT {option}`"
+        for option in ("--test", "--video", "--view", "--rerun", "--rrd", "--mcap")
+    },
 }
 
 
 def gone(error: Exception) -> str | None:
-    """What to say of the parser's error; None if it is about nothing that there ever was."""
-    option = getattr(error, "option_name", None)
+    """What to say of the parser's error; None if it is about nothing that there ever was, or could be."""
+    option: str = getattr(error, "option_name", None) or ""
     if option in _OPTIONS:
         return f"{option} is gone; {_OPTIONS[option]}"
-    message = getattr(error, "message", "")
-    named = next((name for name in _COMMANDS if message.startswith(f"No such command '{name}'")), None)
-    return f"the command {named} is gone; {_COMMANDS[named]}" if named is not None else None
+    found = re.match(r"No such command '([^']*)'", getattr(error, "message", ""))
+    command = found[1] if found is not None else ""
+    if command in _COMMANDS:
+        return f"the command {command} is gone; {_COMMANDS[command]}"
+    missing = not_installed(option.removeprefix("--"), "executors") or not_installed(command, "commands")
+    return None if missing is None else f"{option or f'the command {command}'} {missing}"

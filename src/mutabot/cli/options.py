@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import wraps
+from inspect import Parameter, signature
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any, TypedDict, get_args, get_type_hints
 
 import typer
 
 from mutabot import __version__, limits
+from mutabot.errors import UsageError
 from mutabot.families import FAMILIES
+
+if TYPE_CHECKING:
+    from mutabot.extensions import Part
 
 _KINDS = Path(__file__).parent.parent / "campaign" / "engines" / "kinds"
 #: an engine is a file; its name is told without loading it, so that `--help` is fast
@@ -94,7 +101,7 @@ Engine = Annotated[
 OneMutant = Annotated[
     str, typer.Argument(metavar="MUTANT", help="The mutant's number or id, or as much of it as is unique.")
 ]
-Part = Annotated[
+Shard = Annotated[
     str | None,
     typer.Option("--shard", metavar="N/M", help="Run only part N of M; `mutabot merge` puts them together."),
 ]
@@ -138,18 +145,6 @@ Verify = Annotated[
 Round = Annotated[
     int | None, typer.Option("--round", metavar="N", min=1, max=limits.ROUNDS, help="Only this round.")
 ]
-Cluster = Annotated[
-    str | None,
-    typer.Option(
-        "--cluster",
-        metavar="WHERE",
-        help="Run mutants on a Dask cluster: tcp://host:8786, tls://…, local:4, or a scheduler file.",
-    ),
-]
-Port = Annotated[
-    int | None,
-    typer.Option("--port", metavar="N", min=1, max=65535, help="Port on this machine; else a free one."),
-]
 MinScore = Annotated[
     float | None,
     typer.Option(
@@ -161,3 +156,85 @@ MinScore = Annotated[
         help="Exit with 1 if a score is under this many percent.",
     ),
 ]
+
+
+class Setting(TypedDict, total=False):
+    """The options of commands that take a baseline; commands take them as ``**given: Unpack[…]``."""
+
+    family: Families
+    rounds: Rounds
+    jobs: Jobs
+    settings: Settings
+
+
+class Planning(Setting, total=False):
+    """The same for commands that make a plan."""
+
+    only: Only
+    skip: Skip
+    sample: Sample
+    seed: Seed
+    shard: Shard
+
+
+class Running(Planning, total=False):
+    """The same for commands that run a campaign."""
+
+    engine: Engine
+    fresh: Fresh
+    verify: Verify
+    since: Since
+    journal: OtherJournal
+    budget: Budget
+
+
+_DEFAULTS: Mapping[str, Any] = {"engine": "auto", "fresh": False, "verify": 0}
+#: a parameter of this name stands for the options of all executors
+_EXECUTOR = "executor"
+
+
+def with_options(
+    function: Callable[..., object], executors: Mapping[str, Part] | None = None
+) -> Callable[..., object]:
+    """A command as typer makes options of it.
+
+    Its ``**given: Unpack[…]`` becomes the options of a class above. A parameter ``executor`` becomes an
+    option for each of these executors, and takes which was chosen: its name and the option's value.
+    """
+    own = signature(function, eval_str=True)
+    options = {f"{_EXECUTOR}_{name.replace('-', '_')}": part for name, part in (executors or {}).items()}
+    if _EXECUTOR not in own.parameters:
+        options = {}
+
+    @wraps(function)
+    def command(**values: Any) -> object:
+        if options:
+            given = {part.name: values.pop(key) for key, part in options.items()}
+            values[_EXECUTOR] = _chosen({name: value for name, value in given.items() if value is not None})
+        return function(**values)
+
+    parameters = [*_parameters(own.parameters.values(), options)]
+    changed: Any = command
+    changed.__signature__ = own.replace(parameters=parameters)
+    changed.__annotations__ = {one.name: one.annotation for one in parameters}
+    return command
+
+
+def _parameters(own: Iterable[Parameter], executors: Mapping[str, Part]) -> Iterator[Parameter]:
+    for one in own:
+        if one.kind is one.VAR_KEYWORD:
+            (options,) = get_args(one.annotation)
+            for name, hint in get_type_hints(options, include_extras=True).items():
+                yield Parameter(name, one.KEYWORD_ONLY, default=_DEFAULTS.get(name), annotation=hint)
+        elif one.name != _EXECUTOR:
+            yield one.replace(kind=one.KEYWORD_ONLY)
+    for key, part in executors.items():
+        option = typer.Option(f"--{part.name}", metavar=part.metavar, help=part.help)
+        yield Parameter(key, Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option])
+
+
+def _chosen(given: Mapping[str, str]) -> tuple[str, str] | None:
+    """Raises UsageError for more than one executor."""
+    if len(given) > 1:
+        raise UsageError(f"{' and '.join(f'--{name}' for name in given)}: a campaign has one executor")
+    return next(iter(given.items()), None)

@@ -35,8 +35,8 @@ Formats = Annotated[
     typer.Option(
         "--format",
         metavar="NAME",
-        help=f"One of {', '.join(FORMATS)}. Repeatable, each with an --output.",
-        autocompletion=lambda: list(FORMATS),
+        help=f"One of {', '.join(FORMATS)}, or of a package. Repeatable, each with an --output.",
+        autocompletion=lambda: [*_names()],
     ),
 ]
 Outputs = Annotated[
@@ -86,7 +86,7 @@ def report(
     wanted = list(_wanted(format or (), output or ()))
     if not wanted and compare is None and html is None:
         raise UsageError(
-            f"say which --format to write: {', '.join(FORMATS)}; or --html with a folder; "
+            f"say which --format to write: {', '.join(_names())}; or --html with a folder; "
             "or --compare with what"
         )
     if html is not None:
@@ -110,6 +110,12 @@ def report(
     if not campaign.is_complete:
         known = f"{campaign.results.done} of {campaign.results.planned} outcomes are known"
         tell([f"mutabot: the campaign is not complete ({campaign.state}): {known}"])
+
+
+def _names() -> list[str]:
+    from mutabot.report.choice import names
+
+    return names()
 
 
 def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Format, Path]]:

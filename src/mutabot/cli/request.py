@@ -8,28 +8,37 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
 from mutabot.errors import UsageError, unknown_name_text
 
-from .options import ENGINES
+from .options import ENGINES, Running
 
 if TYPE_CHECKING:
-    from mutabot.campaign.request import Request
+    from mutabot.analysis.results import Results
+    from mutabot.campaign.request import ExecutorChoice, Request
     from mutabot.model import Moment
     from mutabot.settings.configuration import Configuration
-    from mutabot_dask.settings import ClusterSettings
 
 
 def request_of(
     project: Path,
     *,
-    sample: str | None = None,
-    engine: str = "auto",
+    executor: tuple[str, str] | None = None,
+    evidence: bool = False,
+    order: int | None = None,
+    every_test: bool = False,
     configured_selection: bool = True,
-    **given: Any,
+    **given: Unpack[Running],
 ) -> Request:
-    """The request of a command: its options (``given``, by their names), else what the configuration says.
+    """The request of a command: its options, else what the configuration says.
+
+    Args:
+        executor: the name of an executor, and the value of its option; None for this machine.
+        evidence: whether to record, unless the configuration has no room for it.
+        order, every_test: as in ``Request``.
+        configured_selection: whether the selection that the configuration names holds.
+        given: the options.
 
     Raises UsageError and ConfigurationError.
     """
@@ -40,57 +49,61 @@ def request_of(
     from mutabot.settings.shard import Shard
     from mutabot.vocabulary import load
 
+    if unknown := given.keys() - Running.__annotations__.keys():
+        raise TypeError(f"there is no option {', '.join(sorted(unknown))}")
+    engine, seed = given.get("engine", "auto"), given.get("seed")
+    sample, shard, budget = given.get("sample"), given.get("shard"), given.get("budget")
     if engine not in ENGINES:
         raise UsageError(unknown_name_text("engine", engine, ENGINES))
     size = Sample.parse(sample) if sample is not None else None
     families = families_of(given.get("family"))
     configuration = load_configuration(project, families, given.get("settings") or ())
     root, families = configuration.root, families or configuration.families
-    selection = None
-    if configuration.selection is not None and configured_selection:
-        selection = root / configuration.selection
-    cluster = None
-    if given.get("cluster"):
-        cluster = _cluster(configuration, given["cluster"])
+    selection = configuration.selection if configured_selection else None
     return Request(
         configuration=configuration,
         vocabulary=load(configuration.vocabulary, configuration.root, families),
         rounds=given.get("rounds") or configuration.rounds,
-        seed=configuration.seed if given.get("seed") is None else given["seed"],
+        seed=configuration.seed if seed is None else seed,
         jobs=given.get("jobs") or configuration.jobs or len(os.sched_getaffinity(0)),
         only=_listed(given.get("only"), root),
         skip=_listed(given.get("skip"), root),
-        selection=selection,
+        selection=None if selection is None else root / selection,
         engine=engine,
-        executor="local" if cluster is None else "cluster",
-        cluster=cluster,
-        fresh=bool(given.get("fresh")),
-        verify=given.get("verify") or 0,
+        executor=None if executor is None else _choice(configuration, *executor),
+        fresh=given.get("fresh", False),
+        verify=given.get("verify", 0),
         repeats=configuration.repeats,
         baseline=configuration.baseline_repetitions,
         families=families,
         sample=size,
-        order=given.get("order") or configuration.order,
+        order=order or configuration.order,
         pairs=configuration.pairs,
-        every_test=bool(given.get("every_test")),
+        every_test=every_test,
         moments=_moments(configuration.when),
-        shard=Shard.parse(given["shard"]) if given.get("shard") is not None else None,
-        evidence=bool(given.get("evidence")) and configuration.evidence > 0,
+        shard=Shard.parse(shard) if shard is not None else None,
+        evidence=evidence and configuration.evidence > 0,
         since=given.get("since"),
-        other_journal=given.get("other_journal"),
-        budget=None if given.get("budget") is None else seconds_of(given["budget"]),
+        other_journal=given.get("journal"),
+        budget=None if budget is None else seconds_of(budget),
     )
 
 
-def _cluster(configuration: Configuration, address: str) -> ClusterSettings:
-    """The cluster, with the certificate files of the configuration if it may need them. Raises UsageError."""
-    from mutabot_dask.settings import cluster_settings
+def request_again(root: Path, results: Results, jobs: int | None) -> Request:
+    """The request of the campaign that had these results, for some of its mutants."""
+    meta = results.meta
+    return request_of(
+        root, rounds=results.rounds, seed=meta.get("seed"), jobs=jobs, family=meta.get("families"),
+        order=meta.get("order"), every_test=bool(meta.get("every_test")), configured_selection=False,
+    )  # fmt: skip
 
-    if address.startswith(("tcp://", "local:")):
-        return cluster_settings(address)
-    table, root = configuration.cluster, configuration.root
-    files = {name: str(root / table[name]) for name in ("ca", "cert", "key") if name in table}
-    return cluster_settings(address, ca=files.get("ca"), cert=files.get("cert"), key=files.get("key"))
+
+def _choice(configuration: Configuration, name: str, value: str) -> ExecutorChoice:
+    """Raises UsageError for a value that says nothing to its executor."""
+    from mutabot.campaign.request import ExecutorChoice
+    from mutabot.extensions import brought
+
+    return brought("executors")[name].load_class(ExecutorChoice).parse(value, configuration)  # type: ignore[type-abstract]
 
 
 def families_of(given: Sequence[str] | None) -> tuple[str, ...]:

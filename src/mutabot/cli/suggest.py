@@ -16,7 +16,7 @@ from mutabot.journal.files import find_journal
 
 from . import options
 from .output import print_json, progress_shown, tell
-from .request import request_of
+from .request import request_again
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -63,10 +63,7 @@ def suggest(
     root = path.parent.parent
     file = _new_file(write, root) if write is not None else None
     chosen = _chosen(results, only, skip)
-    request = request_of(
-        root, rounds=results.rounds, seed=results.meta.get("seed"), jobs=jobs,
-        family=results.meta.get("families"), order=results.meta.get("order"), configured_selection=False,
-    )  # fmt: skip
+    request = request_again(root, results, jobs)
     with progress_shown() as progress:
         found = find_checks(request, results, chosen, progress, seeds=seeds, write=file)
     for name in found.files:

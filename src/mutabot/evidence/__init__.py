@@ -7,7 +7,7 @@
     feed.pose("box", lambda: (*data.body("box").xpos, *data.body("box").xquat), size=(0.05, 0.05, 0.05))
     feed.contacts(touching_pairs)
     feed.block("table", centre=(0.6, 0.0, 0.95), size=(1.0, 2.5, 0.1))
-    feed.camera(picture)                                            # for `mutabot replay MUTANT --video`
+    feed.camera(picture)                                            # for `mutabot motion MUTANT --video`
     …
     mujoco.mj_step(model, data)
     feed.tick()                                                     # nothing happens outside a campaign

@@ -79,7 +79,7 @@ class Feed:
         )
 
     def camera(self, read: Callable[[], Any], *, rate: float = 25.0) -> None:
-        """Pictures of the world, for ``mutabot replay MUTANT --video``; no campaign ever takes any.
+        """Pictures of the world, for ``mutabot motion MUTANT --video``; no campaign ever takes any.
 
         Args:
             read: gives a picture of the world as it is now: an array of bytes (uint8) of the shape (height,

@@ -1,8 +1,9 @@
 """The contract of a format: what it is called, and what makes it of a campaign.
 
 A format is one file in ``report/formats``, which sets ``FORMAT``; it has the file's name, with hyphens. It is
-found there, and nothing else has to be edited. What it is given has no absolute path and no character that
-no format could hold (``report.shaping.portable``); what is special in the format it escapes itself.
+found there, and nothing else has to be edited. Packages bring others (``extensions.Extension``). What it is
+given has no absolute path and no character that no format could hold (``report.shaping.portable``); what is
+special in the format it escapes itself.
 """
 
 from __future__ import annotations

@@ -4,27 +4,28 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Any, Literal, get_origin
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from mutabot import limits
 from mutabot.errors import ConfigurationError, nearest_name
+from mutabot.extensions import brought, not_installed
 from mutabot.families import FAMILIES, OF_TEXT, USUAL
 from mutabot.limits import shortened
 from mutabot.model import Moment
 from mutabot.model.graded.demand import Demand
 from mutabot.model.moment import EVERY
-from mutabot_dask.settings import ClusterTable
 
 from .demands import check_demands
 from .document import Document
 from .families import need_vocabulary, why_unknown
 from .mistakes import Check, raise_errors
 from .overrides import overridden
+from .table import Table
 from .toml_lines import KeyPath
 
 _NO_VOCABULARY = (
@@ -104,13 +105,8 @@ _Moments = Annotated[tuple[_Moment, ...], Field(strict=False, min_length=1)]
 _Share = Annotated[float, Field(ge=0, le=1)]
 
 
-class Settings(BaseModel):
-    """The keys a user can write.
-
-    The text below each key, with its example, is what docs/configuration.md says.
-    """
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+class Settings(Table):
+    """The keys a user can write, beside the tables that packages bring."""
 
     program: _SomeTexts
     """Files and folders of the robot program; globs may be used. Calls in them are mutated, in the role
@@ -271,14 +267,6 @@ class Settings(BaseModel):
 
         demand = [{ site = "mission.py:38", quantity = "y", notice = "5 mm" }]
     """
-    cluster: dict[str, Any] = {}
-    """For a [cluster](cluster.md): `files` are sent to workers beside
-    [what git tracks](cluster.md#what-is-shipped); folders and patterns may be named. `ca`, `cert` and
-    `key` are files in PEM format for [TLS](cluster.md#tls). `--cluster` says which cluster it is. Where this
-    table stands, `mutabot check` lists what is sent.
-
-        cluster = { files = ["data/table.json"], ca = "ca.pem", cert = "cert.pem", key = "key.pem" }
-    """
 
 
 class Configuration(Settings):
@@ -288,15 +276,13 @@ class Configuration(Settings):
         root: absolute path of the project.
         file: the file it was read from, relative to ``root``.
         demands: what ``demand`` says, checked.
+        tables: the tables of packages that it has, by name.
     """
 
     root: Path
     file: str
     demands: tuple[Demand, ...] = ()
-
-
-#: keys that hold a list
-_LISTS = {name for name, field in Settings.model_fields.items() if get_origin(field.annotation) is tuple}
+    tables: Mapping[str, Table] = {}
 
 
 def load_configuration(
@@ -325,13 +311,20 @@ def _checked(
     families: Collection[str],
     overrides: Sequence[str],
 ) -> Configuration:
-    raw = overridden(_child(document.data, place), overrides, _LISTS)
+    given = _child(document.data, place)
+    named = {text.partition("=")[0].partition(".")[0].strip() for text in overrides}.union(
+        given if isinstance(given, dict) else ()
+    )
+    further = brought("tables", Settings.model_fields) if named - Settings.model_fields.keys() else {}
+    models = {name: part.load_class(Table) for name, part in further.items() if name in named}
+    lists = {f"{name}.{key}" for name, model in models.items() for key in model.lists()}
+    raw = overridden(given, overrides, lists | Settings.lists())
     check = Check(document)
     if document.file == _OWN and isinstance(raw.get("tool"), dict) and "mutabot" in raw["tool"]:
         raise document.error(
             ("tool", "mutabot"), f"in {_OWN} the keys stand at the top, without [tool.mutabot]"
         )
-    settings = check.table(Settings, raw, place, salvage=True)
+    settings = check.table(Settings, _without(raw, models, check, place), place, salvage=True, also=further)
     if settings is None:
         raise_errors(check.errors)
         raise AssertionError("a table without a mistake is refused")
@@ -342,14 +335,29 @@ def _checked(
     paths.check_rest(settings)
     if not settings.vocabulary and need_vocabulary(families or settings.families):
         check.error((*place, *(("vocabulary",) if "vocabulary" in raw else ())), _NO_VOCABULARY)
-    cluster = check.table(ClusterTable, settings.cluster, (*place, "cluster"))
-    if cluster is not None:
-        paths.check_shipped(cluster.files)
+    tables = {}
+    for name, model in models.items():
+        table = check.table(model, raw[name], (*place, name)) if name in raw else None
+        if table is not None:
+            tables[name] = table
+            paths.check_table(name, table)
     demands = check_demands(settings.demand, check, (*place, "demand"))
     raise_errors(check.errors)
     changed = {"program": program, "oracle": oracle, "root": folder.resolve(), "file": document.file}
-    changed["demands"] = demands
-    return Configuration(**{**dict(settings), **changed})
+    return Configuration(**{**dict(settings), **changed, "demands": demands, "tables": tables})
+
+
+def _without(raw: Any, models: Collection[str], check: Check, place: KeyPath) -> Any:
+    """The keys of the core. A table of a package that is not installed is noted."""
+    if not isinstance(raw, dict):
+        return raw
+    own = {key: value for key, value in raw.items() if key not in models}
+    for key in own.keys() - Settings.model_fields.keys():
+        why = not_installed(key, "tables")
+        if why is not None:
+            check.error((*place, key), why)
+            del own[key]
+    return own
 
 
 def _find(folder: Path) -> tuple[Document, KeyPath]:
@@ -462,10 +470,14 @@ class _Paths:
         if settings.selection is not None and self.is_inside(where, settings.selection):
             self.exists(where, settings.selection)
 
-    def check_shipped(self, files: tuple[str, ...]) -> None:
-        """Note each path or pattern of files for workers that fits nothing."""
-        for index, name in enumerate(files):
-            where = (*self.place, "cluster", "files", index)
+    def check_table(self, table: str, found: Table) -> None:
+        """Note each path or pattern in the table of a package that fits nothing."""
+        for key in found.paths():
+            self._check_patterns((*self.place, table, key), getattr(found, key))
+
+    def _check_patterns(self, key: KeyPath, names: tuple[str, ...]) -> None:
+        for index, name in enumerate(names):
+            where = (*key, index)
             if not self.is_inside(where, name):
                 continue
             if not _WILD.search(name) or (self.root / name).exists():

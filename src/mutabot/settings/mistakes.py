@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
@@ -100,16 +100,25 @@ class Check:
             _reword(error, f"unknown {kind} {name!r}; did you mean {alias!r}?")
         self.errors.append(error)
 
-    def table(self, model: type[M], raw: Any, place: KeyPath, *, salvage: bool = False) -> M | None:
+    def table(
+        self,
+        model: type[M],
+        raw: Any,
+        place: KeyPath,
+        *,
+        salvage: bool = False,
+        also: Collection[str] = (),
+    ) -> M | None:
         """``raw`` as a ``model``; None if it has mistakes, which are noted.
 
-        With ``salvage``, what is sound comes back all the same where that makes sense.
+        With ``salvage``, what is sound comes back all the same where that makes sense. ``also``: keys that
+        there are beside the model's.
         """
         try:
             return model.model_validate(raw)
         except ValidationError as error:
             details = error.errors(include_url=False)
-        self._explain(details, model, place)
+        self._explain(details, model, place, also)
         if not salvage or not isinstance(raw, dict):
             return None
         bad = {detail["loc"][0] for detail in details if detail["loc"]}
@@ -118,8 +127,10 @@ class Check:
         except ValidationError:
             return None
 
-    def _explain(self, details: list[ErrorDetails], model: type[BaseModel], place: KeyPath) -> None:
-        keys = known_keys(model)
+    def _explain(
+        self, details: list[ErrorDetails], model: type[BaseModel], place: KeyPath, also: Collection[str]
+    ) -> None:
+        keys = [*known_keys(model), *also]
         extras = [str(detail["loc"][-1]) for detail in details if detail["type"] == "extra_forbidden"]
         meant = {nearest_name(extra, keys) for extra in extras}
         for detail in details:

@@ -16,7 +16,7 @@ def overridden(raw: dict[str, Any], texts: Sequence[str], lists: Collection[str]
     """A table of the configuration with what ``KEY=VALUE`` says instead of its own keys.
 
     A value is written as in TOML; what is no TOML is a text, so ``-o when=once`` needs no quotation marks. A
-    text for one of the keys in ``lists`` is a list of one.
+    text for one of the keys in ``lists`` (``TABLE.KEY`` in a table) is a list of one.
 
     Raises UsageError for a text that is not of this form.
     """
@@ -31,7 +31,7 @@ def overridden(raw: dict[str, Any], texts: Sequence[str], lists: Collection[str]
             inner = found.get(parts[0])
             found[parts[0]] = table = dict(inner) if isinstance(inner, dict) else {}
         given = _value(value.strip())
-        table[last] = [given] if last in lists and isinstance(given, str) else given
+        table[last] = [given] if ".".join(parts) in lists and isinstance(given, str) else given
     return found
 
 

@@ -5,20 +5,18 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import combinations, product
 from math import isnan
-from typing import TYPE_CHECKING
+from operator import ne
 
-from mutabot.evidence.path import Point
+from PIL import Image, ImageDraw
+
 from mutabot.evidence.recording import Kind, Recording
-from mutabot.evidence.tracks import Path, paths_of
-from mutabot_motion.shown import end_of
+from mutabot.evidence.tracks import Path
+from mutabot.model.values import rotation
+from mutabot_motion.shown import end_of, things_in
 
 from .lettering import letters
-
-if TYPE_CHECKING:
-    from PIL.Image import Image
-    from PIL.ImageDraw import ImageDraw
 
 _WIDTH, _HEIGHT = 600, 600
 _EDGE, _LABEL = 16, 20
@@ -54,12 +52,8 @@ class Drawn:
     """
 
     def __init__(self, recording: Recording, others: Iterable[Recording] = ()) -> None:
-        from PIL import Image, ImageDraw  # noqa: PLC0415  # an extra
-
         self.end = end_of(recording)
-        self._paths = {
-            name: path for name, path in paths_of(recording).items() if path.track.kind is not Kind.VALUE
-        }
+        self._paths = dict(things_in(recording))
         self._views = _views(_room([recording, *others]))
         self._empty = Image.new("RGB", (_WIDTH, _HEIGHT), _GROUND)
         draw = ImageDraw.Draw(self._empty)
@@ -72,10 +66,8 @@ class Drawn:
         for number, name in enumerate(self._paths):
             letters(14).draw(draw, (_WIDTH - _EDGE, 6 + 18 * number), name, _colour(number), "ra")
 
-    def at(self, time: float) -> Image:
+    def at(self, time: float) -> Image.Image:
         """How it was at a time, s: paths until then, and where things were."""
-        from PIL import ImageDraw  # noqa: PLC0415  # as above
-
         image = self._empty.copy()
         draw = ImageDraw.Draw(image)
         for number, path in enumerate(self._paths.values()):
@@ -98,8 +90,7 @@ def _room(recordings: Sequence[Recording]) -> list[tuple[float, float]]:
     points = [
         point
         for recording in recordings
-        for path in paths_of(recording).values()
-        if path.track.kind is not Kind.VALUE
+        for _, path in things_in(recording)
         for point in path.points
         if not any(map(isnan, point))
     ]
@@ -121,7 +112,9 @@ def _views(room: Sequence[tuple[float, float]]) -> list[_View]:
     ]
 
 
-def _draw_block(draw: ImageDraw, view: _View, centre: Sequence[float], size: Sequence[float]) -> None:
+def _draw_block(
+    draw: ImageDraw.ImageDraw, view: _View, centre: Sequence[float], size: Sequence[float]
+) -> None:
     low = view.pixel([c - s / 2 for c, s in zip(centre, size, strict=True)])
     high = view.pixel([c + s / 2 for c, s in zip(centre, size, strict=True)])
     half = view.centre[1] - _HEIGHT / 4, view.centre[1] + _HEIGHT / 4
@@ -130,60 +123,19 @@ def _draw_block(draw: ImageDraw, view: _View, centre: Sequence[float], size: Seq
         draw.rectangle((low[0], top, high[0], bottom), fill=_BLOCK, outline=_OUTLINE)
 
 
-def _draw_thing(draw: ImageDraw, view: _View, path: Path, row: int, colour: str) -> None:
-    """A box as its outline, as it is turned; anything else as a dot."""
+def _draw_thing(draw: ImageDraw.ImageDraw, view: _View, path: Path, row: int, colour: str) -> None:
+    """A box by its edges, as it is turned; anything else as a dot."""
     place, size = path.points[row], path.track.size
     if size is None:
         x, y = view.pixel(place)
         draw.ellipse((x - 5, y - 5, x + 5, y + 5), fill=colour)
         return
-    turn = path.rows[row][3:7] if path.track.kind is Kind.POSE else (1.0, 0.0, 0.0, 0.0)
-    corners = [
-        view.pixel(
-            [
-                p + t
-                for p, t in zip(
-                    place, _turned([s * c for s, c in zip(signs, size, strict=True)], turn), strict=True
-                )
-            ]
-        )
-        for signs in product((-0.5, 0.5), repeat=3)
-    ]
-    draw.polygon(_hull(corners), outline=colour, fill=None, width=3)
-
-
-def _turned(v: Sequence[float], q: Sequence[float]) -> Point:
-    """A vector turned by a quaternion w, x, y, z."""
-    w, x, y, z = q
-    tx, ty, tz = 2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])
-    return (
-        v[0] + w * tx + y * tz - z * ty,
-        v[1] + w * ty + z * tx - x * tz,
-        v[2] + w * tz + x * ty - y * tx,
-    )
-
-
-def _hull(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The corners around points (Andrew's monotone chain).
-
-    Source: A. M. Andrew: Another efficient algorithm for convex hulls in two dimensions. Information
-    Processing Letters 9 (1979), pp. 216-219.
-    """
-    ordered = sorted(set(points))
-    if len(ordered) < 3:
-        return list(ordered)
-    halves = [_half(ordered), _half(ordered[::-1])]
-    return halves[0][:-1] + halves[1][:-1]
-
-
-def _half(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    kept: list[tuple[float, float]] = []
-    for point in points:
-        while len(kept) > 1 and _cross(kept[-2], kept[-1], point) <= 0:
-            kept.pop()
-        kept.append(point)
-    return kept
-
-
-def _cross(o: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
-    return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
+    w, x, y, z = path.rows[row][3:7] if path.track.kind is Kind.POSE else (1.0, 0.0, 0.0, 0.0)
+    turn, corners = (w, x, y, z), {}
+    for signs in product((-0.5, 0.5), repeat=3):
+        a, b, c = (part * edge for part, edge in zip(signs, size, strict=True))
+        _, *offset = rotation.product(rotation.product(turn, (0.0, a, b, c)), rotation.inverse(turn))
+        corners[signs] = view.pixel([one + other for one, other in zip(place, offset, strict=True)])
+    for one, other in combinations(corners, 2):
+        if sum(map(ne, one, other)) == 1:  # they differ along one edge
+            draw.line((corners[one], corners[other]), fill=colour, width=3)

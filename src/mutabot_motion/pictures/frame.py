@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from PIL import Image, ImageDraw, ImageOps
 
-from mutabot_motion.shown import Shown
+from mutabot_motion.shown import COLOURS, Shown
 
 from .lettering import letters
 from .shots import Shots
 
-if TYPE_CHECKING:
-    from PIL.Image import Image
-    from PIL.ImageDraw import ImageDraw
-
 _GROUND, _TEXT, _DIM, _RAIL = "#14171c", "#e8ebf0", "#98a1ad", "#3a414b"
-#: of colours that people with any kind of sight tell apart
-_SIDES = ("#56b4e9", "#e69f00")
 _FAULT, _APART = "#ff6b45", "#f0e442"
 _MARGIN, _TITLE, _FOOT = 14, 74, 112
 #: a video takes at least and at most so long, s, if it need not be slower than this
@@ -46,8 +40,6 @@ class Frames:
     """
 
     def __init__(self, shown: Shown, sides: tuple[Shots, Shots]) -> None:
-        from PIL import Image, ImageDraw  # noqa: PLC0415  # an extra
-
         self._shown, self._sides = shown, sides
         self.end = max(side.end for side in sides)
         self.speed = _speed(self.end)
@@ -62,10 +54,8 @@ class Frames:
         self._draw_titles(ImageDraw.Draw(self._empty))
         self._draw_rail(ImageDraw.Draw(self._empty))
 
-    def at(self, time: float) -> Image:
+    def at(self, time: float) -> Image.Image:
         """The frame of a moment, s; from call to call the same or a later one."""
-        from PIL import ImageDraw  # noqa: PLC0415  # as above
-
         frame = self._empty.copy()
         for number, side in enumerate(self._sides):
             frame.paste(self._fitted(side.at(time)), (self._left(number), _TITLE))
@@ -81,24 +71,22 @@ class Frames:
     def _left(self, number: int) -> int:
         return _MARGIN + number * (self._width + _MARGIN)
 
-    def _fitted(self, image: Image) -> Image:
+    def _fitted(self, image: Image.Image) -> Image.Image:
         """A picture of another size is shown as large as it can be."""
-        from PIL import Image, ImageOps  # noqa: PLC0415  # as above
-
         size = self._width, self._height
         return image if image.size == size else ImageOps.pad(image, size, Image.Resampling.BILINEAR, _GROUND)
 
-    def _draw_titles(self, draw: ImageDraw) -> None:
+    def _draw_titles(self, draw: ImageDraw.ImageDraw) -> None:
         shown = self._shown
         where = f"{shown.test.rpartition('::')[2]}, round {shown.round + 1}"
         texts = ("original", where), (f"mutant {shown.number}", f"{shown.place} · {shown.what}")
         for number, (name, more) in enumerate(texts):
             left, big, small = self._left(number), letters(18), letters(14)
-            big.draw(draw, (left, 8), name, _SIDES[number])
+            big.draw(draw, (left, 8), name, tuple(COLOURS.values())[number])
             for line, text in enumerate(small.lines(more, self._width - 4, 2)):
                 small.draw(draw, (left, 34 + 18 * line), text, _TEXT)
 
-    def _draw_rail(self, draw: ImageDraw) -> None:
+    def _draw_rail(self, draw: ImageDraw.ImageDraw) -> None:
         left, right, y = self._rail
         draw.rectangle((left, y - 3, right, y + 3), fill=_RAIL)
         small = letters(13)
@@ -116,7 +104,7 @@ class Frames:
             taken = place + small.width(label) + 10
         small.draw(draw, (right, y + 11), f"{self.end:.1f} s", _DIM, "ra")
 
-    def _draw_time(self, draw: ImageDraw, time: float) -> None:
+    def _draw_time(self, draw: ImageDraw.ImageDraw, time: float) -> None:
         left, _, y = self._rail
         draw.rectangle((left, y - 3, self._x(time), y + 3), fill=_TEXT)
         for moment, colour in ((self._shown.fault, _FAULT), (self._shown.apart, _APART)):
@@ -131,7 +119,7 @@ class Frames:
             for number, text in enumerate(self._story):
                 letters(15).draw(draw, (_MARGIN, y + 38 + 20 * number), text, _TEXT)
 
-    def _draw_fault(self, draw: ImageDraw, time: float) -> None:
+    def _draw_fault(self, draw: ImageDraw.ImageDraw, time: float) -> None:
         fault = self._shown.fault
         if fault is None or time < fault:
             return
@@ -142,7 +130,7 @@ class Frames:
         draw.rectangle((left, _TITLE, left + font.width(text) + 16, _TITLE + 26), fill=_FAULT)
         font.draw(draw, (left + 8, _TITLE + 13), text, _GROUND, "lm")
 
-    def _badge(self, draw: ImageDraw, number: int, text: str, colour: str) -> None:
+    def _badge(self, draw: ImageDraw.ImageDraw, number: int, text: str, colour: str) -> None:
         left, bottom, font = self._left(number), _TITLE + self._height, letters(15)
         draw.rectangle((left, bottom - 26, left + font.width(text) + 16, bottom), fill=_GROUND)
         font.draw(draw, (left + 8, bottom - 13), text, colour, "lm")

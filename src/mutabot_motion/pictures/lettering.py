@@ -49,7 +49,12 @@ class Letters:
         return found
 
     def draw(
-        self, onto: ImageDraw.ImageDraw, place: tuple[float, float], text: str, fill: str, anchor: str = "la"
+        self,
+        onto: ImageDraw.ImageDraw,
+        place: tuple[float, float],
+        text: str,
+        fill: str | tuple[int, ...],
+        anchor: str = "la",
     ) -> None:
         """Write a text; ``anchor`` as Pillow has it."""
         onto.text(place, self.known(text), fill=fill, font=self.font, anchor=anchor)

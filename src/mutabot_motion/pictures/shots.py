@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
+
+from PIL import Image
 
 from mutabot.evidence.film import Film, Picture
-
-if TYPE_CHECKING:
-    from PIL.Image import Image
 
 #: a moment that is meant may differ by this much from that of its picture, s
 _SLACK = 1e-6
@@ -24,7 +23,7 @@ class Shots(Protocol):
     @property
     def end(self) -> float: ...
 
-    def at(self, time: float) -> Image:
+    def at(self, time: float) -> Image.Image:
         """How it looked at a time, s: from call to call the same or a later one."""
 
 
@@ -40,7 +39,7 @@ class Filmed:
         self._next: Picture | None = next(self._coming)
         self._shown = self._image(self._next)
 
-    def at(self, time: float) -> Image:
+    def at(self, time: float) -> Image.Image:
         """See ``Shots``. Before its first picture it shows that."""
         latest = None
         while self._next is not None and self._next.time <= time + _SLACK:
@@ -50,7 +49,5 @@ class Filmed:
         return self._shown
 
     @staticmethod
-    def _image(picture: Picture) -> Image:
-        from PIL import Image  # noqa: PLC0415  # an extra
-
+    def _image(picture: Picture) -> Image.Image:
         return Image.frombytes("RGB", (picture.width, picture.height), picture.pixels)

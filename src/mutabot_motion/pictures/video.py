@@ -10,10 +10,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import av
+
 from mutabot.errors import UsageError
 from mutabot.evidence.film import Film
 from mutabot_motion.shown import Shown
-from mutabot_motion.target import check, missing, written_whole
+from mutabot_motion.target import check, written_whole
 
 from .drawn import Drawn
 from .frame import Frames
@@ -26,13 +28,8 @@ _HELD = 1.5
 
 
 def check_video(file: Path) -> None:
-    """Raise UsageError if a video cannot be written there, or what makes it is not installed."""
+    """Raise UsageError if a video cannot be written there."""
     check(file, "video", ".mp4", b"ftyp", at=4)
-    for name, library in (("av", "PyAV"), ("PIL", "Pillow")):
-        try:
-            __import__(name)
-        except ImportError as error:
-            raise missing(library, "--video", "video") from error
 
 
 def show(file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[str]) -> list[str]:
@@ -63,24 +60,22 @@ def _drawn(shown: Shown, why: str) -> tuple[Shots, Shots]:
     if original is None or mutant is None or not (original.tracks and mutant.tracks):
         raise UsageError(
             f"there is nothing to make a video of: {why}; and no simulator tells where things are "
-            "(mutabot.evidence.Feed, see docs/replay.md)"
+            "(mutabot.evidence.Feed, see docs/motion.md)"
         )
     return Drawn(original, [mutant]), Drawn(mutant, [original])
 
 
 def _why_no_pictures(problems: Sequence[str]) -> str:
     if not problems:
-        return "no simulator gives pictures: name one by `feed.camera`, see docs/replay.md"
+        return "no simulator gives pictures: name one by `feed.camera`, see docs/motion.md"
     return (
         f"{problems[0]} (without a screen, MuJoCo draws if Debian's libegl1 or libosmesa6 is installed; what "
-        "else may help says docs/replay.md)"
+        "else may help says docs/motion.md)"
     )
 
 
 def write_video(file: Path, frames: Frames) -> int:
     """Write a video; of one that is not finished nothing is left. Returns how many frames it has."""
-    import av  # noqa: PLC0415  # an extra
-
     count = 0
     frame: Any = av.VideoFrame
     with written_whole(file) as part, av.open(str(part), "w", options={"movflags": "+faststart"}) as video:

@@ -1,4 +1,4 @@
-"""A new engine, and a new executor, is one file: nothing else knows of them."""
+"""A new engine is one file: nothing else knows of it."""
 
 from __future__ import annotations
 
@@ -9,13 +9,11 @@ from textwrap import dedent
 
 import pytest
 
-from mutabot.campaign import executors
 from mutabot.campaign.engines import kinds
 from mutabot.campaign.engines.choice import all_engines
-from mutabot.campaign.run import run_campaign
 from mutabot.cli.options import ENGINES
 from mutabot.model import Verdict
-from tests.campaign.project import Quiet, outcomes, request_for, run, write_project
+from tests.campaign.project import run, write_project
 
 MISSION = """
     def run(arm):
@@ -47,37 +45,18 @@ IDLE = """
 
     ENGINE = Idle()
     """
-EXECUTOR = """
-    from mutabot.campaign.workers.workers import Workers
-
-    class Telling(Workers):
-        def __init__(self, request, tell):
-            super().__init__(request.root, request.arguments, request.jobs)
-            self.tell = tell
-
-        def events(self, tasks):
-            for event in super().events(tasks):
-                if not isinstance(event, tuple):
-                    self.tell("a task is done")
-                yield event
-
-    def executor(request, tell):
-        return Telling(request, tell)
-    """
 
 
 @pytest.fixture
 def more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A folder with folders whose files count as engines, and as executors, too."""
+    """A folder whose files count as engines, too."""
     folder = tmp_path / "more"
-    for package, name in ((kinds, "engines"), (executors, "executors")):
-        (folder / name).mkdir(parents=True)
-        monkeypatch.setattr(package, "__path__", [*package.__path__, str(folder / name)])
+    folder.mkdir()
+    monkeypatch.setattr(kinds, "__path__", [*kinds.__path__, str(folder)])
     all_engines.cache_clear()
     yield folder
     all_engines.cache_clear()
-    for name in (f"{kinds.__name__}.idle", f"{executors.__name__}.telling"):
-        sys.modules.pop(name, None)
+    sys.modules.pop(f"{kinds.__name__}.idle", None)
 
 
 def test_the_command_line_knows_each_engine_by_its_file() -> None:
@@ -85,19 +64,10 @@ def test_the_command_line_knows_each_engine_by_its_file() -> None:
 
 
 def test_an_engine_is_a_file(more: Path, tmp_path: Path) -> None:
-    (more / "engines" / "idle.py").write_text(dedent(IDLE))
+    (more / "idle.py").write_text(dedent(IDLE))
     assert [engine.name for engine in all_engines()] == ["branch", "idle", "warm", "replay"]
     ends = run(write_project(tmp_path / "project", MISSION, TESTS), engine="idle", rounds=1)
     found = {mutant.rpartition(":")[2]: (one.verdict, one.engine) for mutant, one in ends.items()}
     assert len(found) > 1
     assert found.pop("skip") == (Verdict.ERROR, "idle")
     assert set(found.values()) == {(Verdict.NO_EFFECT, "idle")}
-
-
-def test_an_executor_is_a_file(more: Path, tmp_path: Path) -> None:
-    (more / "executors" / "telling.py").write_text(dedent(EXECUTOR))
-    told = Quiet()
-    project = write_project(tmp_path / "project", MISSION, TESTS)
-    found = outcomes(run_campaign(request_for(project, executor="telling", rounds=1), told))
-    assert "a task is done" in told.lines
-    assert {one.verdict for one in found} == {Verdict.SURVIVED}

@@ -111,7 +111,7 @@ def ends(path: Path) -> Ends:
 def on_cluster(request: Request, where: str | ClusterSettings, **changes: Any) -> Request:
     """The same campaign on a cluster."""
     there = ClusterSettings(where) if isinstance(where, str) else where
-    return replace(request, executor="cluster", cluster=replace(there, **changes), fresh=True)
+    return replace(request, executor=replace(there, **changes), fresh=True)
 
 
 def run_twice(project: Path, where: str | ClusterSettings, **changes: Any) -> tuple[Ends, Ends, Quiet]:

@@ -18,7 +18,7 @@ from mutabot_dask import link
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.local import LocalCluster, address_in
 from mutabot_dask.roster import Roster
-from mutabot_dask.settings import ClusterSettings, cluster_settings
+from mutabot_dask.settings import ClusterSettings
 from mutabot_dask.shipping import Shipment
 from tests.campaign.project import CONFIGURATION
 
@@ -45,12 +45,12 @@ from .clusters import cluster, processes, strange_worker, until, write, write_sl
 )
 def test_what_is_no_cluster_is_refused(address: str, says: str) -> None:
     with pytest.raises(UsageError, match=says):
-        cluster_settings(address)
+        ClusterSettings(address).check()
 
 
 def test_a_missing_certificate_is_named() -> None:
     with pytest.raises(UsageError, match=r"cluster\.ca = .*nowhere\.pem.*: there is no such file"):
-        cluster_settings("tls://host:8786", ca="nowhere.pem")
+        ClusterSettings("tls://host:8786", ca="nowhere.pem").check()
 
 
 def test_certificates_may_stand_in_the_configuration(tmp_path: Path) -> None:
@@ -61,12 +61,9 @@ def test_certificates_may_stand_in_the_configuration(tmp_path: Path) -> None:
         (project / name).touch()
     mine = str(project / "mine.pem")
     settings = ["cluster.cert=mine.pem", "cluster.key=mine.pem"]
-    request = request_of(project, cluster="tls://host:1", settings=settings)
-    assert request.cluster == ClusterSettings("tls://host:1", str(project / "ca.pem"), mine, mine)
-    assert request.executor == "cluster"
-    without = request_of(project, cluster="local:2").cluster
-    assert without is not None
-    assert without.files == ()
+    request = request_of(project, executor=("cluster", "tls://host:1"), settings=settings)
+    assert request.executor == ClusterSettings("tls://host:1", str(project / "ca.pem"), mine, mine)
+    assert request_of(project, executor=("cluster", "local:2")).executor == ClusterSettings("local:2")
     write(tmp_path, configuration=CONFIGURATION + '    cluster = { cq = "ca.pem" }\n')
     with pytest.raises(ConfigurationError, match=r"cluster.*'cq'; did you mean 'ca'"):
         request_of(project)
@@ -75,7 +72,7 @@ def test_certificates_may_stand_in_the_configuration(tmp_path: Path) -> None:
 def test_certificates_without_encryption_are_refused(tmp_path: Path) -> None:
     (tmp_path / "ca.pem").touch()
     with pytest.raises(UsageError, match="certificate files go with tls://"):
-        cluster_settings("tcp://host:8786", ca=str(tmp_path / "ca.pem"))
+        ClusterSettings("tcp://host:8786", ca=str(tmp_path / "ca.pem")).check()
 
 
 def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -153,7 +150,7 @@ def test_certificates_that_do_not_fit_are_told(tmp_path: Path, monkeypatch: pyte
         assert until(lambda: (tmp_path / "s.json").exists() and (tmp_path / "s.json").read_text())
         address = address_in(tmp_path / "s.json")
         assert address.startswith("tls://")
-        link.Link(cluster_settings(address, ca=ca, cert=cert, key=key), address).close()
+        link.Link(ClusterSettings(address, ca=ca, cert=cert, key=key), address).close()
         with pytest.raises(ClusterError, match="Do the certificate files belong to it"):
             link.Link(ClusterSettings(address, *others), address)
     finally:

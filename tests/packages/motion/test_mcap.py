@@ -9,11 +9,12 @@ from typing import Any
 
 import pytest
 
-from mutabot_motion.mcap import Mcap
 from packages.motion.sample import STEPS, shown
 
 pytest.importorskip("foxglove")
 pytest.importorskip("mcap")
+
+from mutabot_motion.mcap import Mcap
 
 
 class Found:

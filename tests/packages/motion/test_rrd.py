@@ -7,10 +7,11 @@ from typing import Any
 
 import pytest
 
-from mutabot_motion import rrd
 from packages.motion.sample import STEPS, recording, shown
 
 pytest.importorskip("rerun")
+
+from mutabot_motion import rrd
 
 
 def chunks(file: Path) -> list[Any]:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 
 from mutabot.errors import UsageError
-from mutabot_motion.view import Stage, Viewer
 from packages.motion.sample import recording, shown
 
 pytest.importorskip("mujoco")
+
+from mutabot_motion.view import Stage, Viewer
 
 
 def test_both_sides_stand_where_they_were_at_a_time() -> None:

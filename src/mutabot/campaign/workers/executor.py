@@ -1,7 +1,7 @@
 """The contract of whatever runs tasks: worker processes on this machine, or on others.
 
-An executor is one file in ``campaign/executors/`` that opens it. It only runs what it is given:
-which tasks there are, and what their results mean, is the engines' business.
+It only runs what it is given: which tasks there are, and what their results mean, is the engines' business.
+A package brings another executor by a ``campaign.request.ExecutorChoice``.
 """
 
 from __future__ import annotations

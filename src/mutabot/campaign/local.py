@@ -8,7 +8,7 @@ from mutabot.campaign.request import Request
 from mutabot.campaign.workers.workers import Workers
 
 
-def executor(request: Request, tell: Callable[[str], None]) -> Workers:
+def on_this_machine(request: Request, tell: Callable[[str], None]) -> Workers:
     """As many processes as the request has ``jobs``. Raises JournalError where it cannot write."""
 
     def unshared(reason: str) -> None:

@@ -13,14 +13,13 @@ from pathlib import Path
 
 from mutabot.border.job import Job, Pictures
 from mutabot.border.test_end import TestEnd
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.engines.fresh import task
+from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.errors import SelectionError
 from mutabot.evidence.film import Film
 from mutabot.evidence.recording import Recording, bytes_of, from_bytes
 from mutabot.model import Mutant
-
-from .campaign import Campaign
-from .engines.fresh import task
-from .workers.task import Result, Task, death
 
 #: wall-clock seconds that a picture may take, beside those of the test; pictures per simulated second
 _PER_PICTURE, _RATE = 4.0, 25.0

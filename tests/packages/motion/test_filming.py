@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from campaign.project import write_project
-from mutabot.campaign.filming import choose_graphics
 from mutabot.cli.app import main
 from mutabot.journal.files import JOURNAL
 from mutabot.journal.reader import JournalReader
+from mutabot_motion.filming import choose_graphics
 
 ROBOT = """
     class Arm:
@@ -89,9 +89,8 @@ def test_original_and_mutant_are_filmed_and_the_feed_makes_no_mutants(
     assert {one.site.text for one in mutants} == {"arm.go"}, "what the feed reads is no call of the program's"
 
     skip = next(str(one.number) for one in mutants if one.operator == "skip")
-    assert main(["replay", skip, "--video", "a.mp4", "-j", "1"]) == 0
-    out, err = capsys.readouterr()
-    assert "as in the journal" in out
+    assert main(["motion", skip, "--video", "a.mp4", "-j", "1"]) == 0
+    _, err = capsys.readouterr()
     assert "a.mp4: " in err
     assert "drawn" not in err
     with av.open("a.mp4") as video:

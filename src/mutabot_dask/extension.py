@@ -1,0 +1,17 @@
+"""What this package brings to mutabot."""
+
+from __future__ import annotations
+
+from mutabot.extensions import Described, Extension
+
+EXTENSION = Extension(
+    interface=1,
+    executors={
+        "cluster": Described(
+            "mutabot_dask.settings:ClusterSettings",
+            "Run mutants on a Dask cluster: tcp://host:8786, tls://…, local:4, or a scheduler file.",
+            "WHERE",
+        )
+    },
+    tables={"cluster": "mutabot_dask.settings:ClusterTable"},
+)

@@ -1,0 +1,15 @@
+"""What this package brings to mutabot."""
+
+from __future__ import annotations
+
+from mutabot.extensions import Described, Extension
+
+EXTENSION = Extension(
+    interface=1,
+    commands={
+        "motion": Described(
+            "mutabot_motion.command:motion",
+            "Show what one mutant of the last campaign did, beside the original.",
+        )
+    },
+)
