@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from importlib.util import find_spec
 
 import pytest
 
@@ -12,6 +13,15 @@ def pytest_configure() -> None:
     """Tests interrupt campaigns: a shell that starts us in the background has had interruptions ignored."""
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests that need a package beside the core skip themselves where it is not installed."""
+    for item in items:
+        for marker in item.iter_markers("needs"):
+            missing = [name for name in marker.args if find_spec(f"mutabot_{name}") is None]
+            if missing:
+                item.add_marker(pytest.mark.skip(reason=f"needs mutabot_{missing[0]}"))
 
 
 @pytest.fixture(scope="session", autouse=True)
