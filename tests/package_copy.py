@@ -10,6 +10,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 from textwrap import dedent
+from types import ModuleType
 from typing import Any
 
 import mutabot
@@ -17,10 +18,10 @@ import mutabot
 TOOLS = Path(__file__).parents[1] / "tools"
 
 
-def copied(folder: Path, dropped: Mapping[str, str]) -> Path:
-    """The folder, in which now is a copy of the package with these files, by their paths in the package."""
-    package = folder / "mutabot"
-    shutil.copytree(Path(mutabot.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
+def copied(folder: Path, dropped: Mapping[str, str], of: ModuleType = mutabot) -> Path:
+    """The folder, in which now is a copy of a package with these files, by their paths in the package."""
+    package = folder / of.__name__
+    shutil.copytree(Path(str(of.__file__)).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
     for name, code in dropped.items():
         file = package / name
         assert not file.exists()

@@ -16,7 +16,7 @@ import configuration_page
 from mutabot.families import CATALOGUE, GRADED, MIDDLEWARE
 from mutabot.model import Mishap, Quantity
 from mutabot.model.values.notation import Notation
-from mutabot.operators import Example, Operator, Subject, operator
+from mutabot.operators import Example, Need, Operator, Subject, operator
 from mutabot.operators.registry import built_in
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -51,7 +51,7 @@ GRADED_HEAD = """\
 `--family graded` plants the same fault at rising magnitudes, to find from which on the tests notice it: see
 [thresholds](thresholds.md), which also says where their ladders come from.
 """
-#: what the groups of the catalogue are called; by the folder of their operators
+#: what the groups of the catalogue are called; by the file of their operators
 GROUPS = {
     "units": "Units",
     "frames": "Frames, axes, joints and tools",
@@ -65,23 +65,32 @@ TAIL = """\
 ## Your own operators
 
 An operator is a class with a name, a summary, examples and three methods. The contract is
-`src/mutabot/operators/operator.py`, the shortest example `src/mutabot/operators/robot/skip.py`. In mutabot
-itself an operator is one file in `src/mutabot/operators/robot`, named as the operator is; it is found there,
-and nothing else has to be edited. What it needs it declares on the class:
+`src/mutabot/operators/operator.py`, the shortest ones stand in `src/mutabot/operators/robot/commands.py`.
+In mutabot itself it is in any file of `src/mutabot/operators/robot` or of a folder beside it, an old file or
+a new one; it is found there, and nothing else has to be edited. What it needs is a set, such as
+`needs = frozenset({Need.IDLE})`; where a need is not met, its mutants are left out, with the reason:
 
-| attribute | what it gets or promises |
+| need | what it gets |
 |---|---|
-| `asks_where = True` | `call.current` tells where the robot is; used only where the vocabulary says |
-| `needs_where(subject)` | the same for some subjects alone |
-| `asks_idle = True` | `call.idle` is what to answer while the robot does nothing; used only where known |
+| `Need.PLACE` | `call.current` tells where the robot is; used only where the vocabulary says |
+| `Need.SIGN` | a value below zero among those that were recorded, so that there is another direction |
+| `Need.IDLE` | `call.idle` is what to answer while the robot does nothing; used only where known |
+| `Need.CLOCK` | `call.time()` tells the time; used only where the vocabulary has a clock |
+| `Need.WAIT` | `await call.wait(seconds)` lets time pass; used only where the vocabulary says how |
+| `Need.ERROR` | calls that raise: left out where none did in the baseline |
+| `Need.PROGRAM` | calls of the program: readings by the tests' own checks are no place for it |
+| `Need.MEMORY` | one middleware for all calls of a test |
+| `Need.COPIES` | beside it, copies of what they write and read, which the program cannot change |
+
+| attribute or method | what it says |
+|---|---|
+| `needs_of(subject)` | what it needs at one subject, where that differs |
 | `does_nothing = True` | no call reaches the robot: one that would is an error, never a verdict |
-| `remembers = True` | one middleware for all calls of a test, and copies of what they write and read |
-| `copies = False` | beside `remembers`: no copies, since it copies itself what it remembers |
-| `asks_time = True` | `call.time()` tells the time; used only where the vocabulary has a clock |
-| `asks_wait = True` | `await call.wait(seconds)` lets time pass; used only where the vocabulary says how |
-| `needs_error = True` | it acts on calls that raise: left out where none did in the baseline |
-| `magnitudes(quantity)` | how big the fault is to be: a mutant each, with `subject.magnitude` |
 | `family = "…"` | a family of its own: its mutants are planted where `--family` or `families` names it |
+
+Most operators have one of two shapes. A `ValueOperator` (`operators/value.py`) changes one value,
+`change(value, context)`; its `magnitudes(quantity)` say how big the fault is to be, a mutant each. A
+`CommandOperator` (`operators/command.py`) does something with the call as a whole.
 
 Say in any installed package that it brings the class, and every campaign of its family uses it:
 
@@ -139,8 +148,8 @@ def _operators(*, of_middleware: bool) -> list[Operator]:
 
 
 def _group(each: Operator) -> str:
-    """The folder of an operator."""
-    return type(each).__module__.split(".")[-2]
+    """The file of an operator."""
+    return type(each).__module__.rpartition(".")[2]
 
 
 def _overview(operators: list[Operator]) -> Iterator[str]:
@@ -179,7 +188,7 @@ def _section(each: Operator) -> Iterator[str]:
 
 
 def _promises(each: Operator) -> Iterator[str]:
-    if each.asks_idle:
+    if Need.IDLE in each.needs:
         yield (
             "The program gets what the command answered in the unmutated run of the same test; where\n"
             "answers changed from call to call, the robot's last one, since the world stands still: see\n"

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .model import Quantity as Quantity
     from .model import Reply as Reply
     from .operators import Example as Example
+    from .operators import Need as Need
     from .operators import Operator as Operator
     from .operators import Subject as Subject
 
@@ -33,7 +34,7 @@ _HOMES = {
     "analysis.stored.campaign": ("StoredCampaign", "open"),
     "errors": ("MutabotError",),
     "model": ("Call", "Kind", "Middleware", "Mode", "Operation", "Pattern", "Proceed", "Quantity", "Reply"),
-    "operators": ("Example", "Operator", "Subject"),
+    "operators": ("Example", "Need", "Operator", "Subject"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -283,11 +283,11 @@ TEST_OF_HANDLE = """
 
 #: a plug-in with the body of skip, under another name
 LOST = """
-    from mutabot.operators import Operator, Subject
+    from mutabot.operators import Need, Operator, Subject
 
     class Rule(Operator):
         name = "lost"
-        asks_idle = True
+        needs = frozenset({Need.IDLE})
         summary = "A command is lost on its way."
 
         def subjects(self, operation, pattern):
@@ -303,11 +303,11 @@ LOST = """
             return "is lost"
 """
 #: the same, but it does not say that it asks for an answer
-UNDECLARED = LOST.replace("asks_idle = True", "")
+UNDECLARED = LOST.replace("needs = frozenset({Need.IDLE})", "")
 #: promises to do nothing, and makes the call where it is at work
-STUBBORN = LOST.replace("asks_idle = True", "asks_idle = does_nothing = True").replace(
-    "return call.idle", "return call.idle if call.payload is None else await proceed(call)"
-)
+STUBBORN = LOST.replace(
+    "needs = frozenset({Need.IDLE})", "needs, does_nothing = frozenset({Need.IDLE}), True"
+).replace("return call.idle", "return call.idle if call.payload is None else await proceed(call)")
 
 
 @pytest.fixture
@@ -369,5 +369,7 @@ def test_an_operator_that_asks_without_saying_so_is_told(
 ) -> None:
     plug_in(UNDECLARED)
     folder = project(tmp_path / "project", USES_HANDLE, TEST_OF_HANDLE, operation("start"))
-    with pytest.raises(OperatorError, match=r"'lost' answers with call.idle.*asks_idle = True"):
+    with pytest.raises(
+        OperatorError, match=r"'lost' answers with call.idle, but Need.IDLE is none of its needs"
+    ):
         plan_only(request_for(folder), Quiet())

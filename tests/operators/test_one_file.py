@@ -7,39 +7,50 @@ from typing import Any
 
 import pytest
 
+import mutabot_source
 from tests.campaign.project import write_project
 from tests.package_copy import copied, mutants, python
 
-#: comes in two sizes; acts on written values
-OFFSET = """
+#: two operators; one comes in two sizes and acts on written values, the other acts on commands
+TOO_MUCH = """
     from __future__ import annotations
 
     from typing import ClassVar
 
-    from mutabot.model import Kind, Operation, Path, Quantity
+    from mutabot.model import Kind, Operation
+    from mutabot.operators.command import CommandOperator
+    from mutabot.operators.examples import changed, writing
+    from mutabot.operators.magnitudes import Ladder
     from mutabot.operators.operator import Example, Subject
+    from mutabot.operators.value import ValueOperator
 
-    from ._values import WrittenValueOperator
-
-    _DX = Quantity("dx", Path("dx"), Kind.TRANSLATION, "x", "m")
-    _MOVE = Operation("robot:Arm.move_by", (_DX,))
+    _MOVE = writing("robot:Arm.move_by", "dx", Kind.TRANSLATION, axis="x", unit="m")
 
 
-    class BitOff(WrittenValueOperator):
+    class BitOff(ValueOperator):
         name = "bit-off"
         summary = "A translation goes a bit too far."
-        examples: ClassVar = (
-            Example(Subject(_MOVE, quantity=_DX, magnitude=0.5), {"dx": 1.0}, performed=({"dx": 1.5},)),
-        )
-
-        def fits(self, quantity):
-            return quantity.kind is Kind.TRANSLATION
+        kinds = frozenset({Kind.TRANSLATION})
+        of_read = False
+        examples: ClassVar = (changed(_MOVE, 1.0, 1.5, size=("", 0.5, None)),)
 
         def magnitudes(self, quantity):
-            return (quantity.from_unit(0.001, "m"), quantity.from_unit(0.5, "m"))
+            return Ladder(None, (quantity.from_unit(0.001, "m"), quantity.from_unit(0.5, "m")))
 
-        def change(self, subject, value, random):
-            return value + subject.magnitude
+        def change(self, value, context):
+            return value + context.subject.magnitude
+
+
+    class Thrice(CommandOperator):
+        name = "thrice"
+        summary = "A command is carried out three times."
+        fault = "do it three times"
+        examples: ClassVar = (Example(Subject(Operation("robot:Arm.home")), performed=({}, {}, {})),)
+
+        async def mutated(self, call, proceed, context):
+            await proceed(call)
+            await proceed(call)
+            return await proceed(call)
     """
 #: acts on program text
 ZERO = """
@@ -74,9 +85,10 @@ TESTS = """
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a copy of the package, into which two files were dropped."""
-    dropped = {"operators/robot/bit_off.py": OFFSET, "classical/operators/zero.py": ZERO}
-    return copied(tmp_path_factory.mktemp("site"), dropped)
+    """A folder with copies of two packages, into each of which a file was dropped."""
+    folder = tmp_path_factory.mktemp("site")
+    copied(folder, {"operators/zero.py": ZERO}, of=mutabot_source)
+    return copied(folder, {"operators/robot/too_much.py": TOO_MUCH})
 
 
 def of_both_families(site: Path, folder: Path, *arguments: str) -> dict[str, Any]:
@@ -88,7 +100,7 @@ def test_both_come_last_in_the_plan_and_the_others_keep_their_order(site: Path, 
     write_project(tmp_path, MISSION, TESTS)
     found = of_both_families(site, tmp_path, "list")
     names = [one["operator"] for one in found.values()]
-    assert [*dict.fromkeys(names)] == ["reverse", "skip", "repeat", "bit-off", "BSR", "UOI", "CZR"]
+    assert [*dict.fromkeys(names)] == ["reverse", "skip", "repeat", "bit-off", "thrice", "BSR", "UOI", "CZR"]
     assert {one["family"] for one in found.values() if one["operator"] == "bit-off"} == {"robot"}
     assert {one["family"] for one in found.values() if one["operator"] == "CZR"} == {"classical"}
 
@@ -96,12 +108,24 @@ def test_both_come_last_in_the_plan_and_the_others_keep_their_order(site: Path, 
 @pytest.mark.parametrize("engine", ["branch", "replay"])
 def test_both_get_verdicts_from_both_engines(engine: str, site: Path, tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS)
-    only = ("--only", "bit-off", "--only", "CZR", "--engine", engine, "-o", "repeats=false")
+    only = (
+        "--only",
+        "bit-off",
+        "--only",
+        "thrice",
+        "--only",
+        "CZR",
+        "--engine",
+        engine,
+        "-o",
+        "repeats=false",
+    )
     found = of_both_families(site, tmp_path, "run", *only)
     verdicts = {name: one["rounds"][0]["verdict"] for name, one in found.items()}
     assert verdicts == {
         "arm.move_by#1:dx:bit-off=0.001": "survived",
         "arm.move_by#1:dx:bit-off=0.5": "killed",
+        "arm.move_by#1:call:thrice": "killed",
         "0.25#1:CZR": "killed",
     }
     assert {one["rounds"][0]["engine"] for one in found.values()} == {engine}
@@ -109,7 +133,7 @@ def test_both_get_verdicts_from_both_engines(engine: str, site: Path, tmp_path: 
 
 @pytest.mark.parametrize(
     ("page", "before", "name"),
-    [("make_docs", "misread", "bit-off"), ("make_classical_page", "swap-characters", "CZR")],
+    [("make_docs", "bit-off", "thrice"), ("make_classical_page", "swap-characters", "CZR")],
 )
 def test_both_have_the_last_section_in_the_documentation(
     page: str, before: str, name: str, site: Path

@@ -71,18 +71,12 @@ BROKEN = {
     ),
     "has another name": (
         "late",
-        "from mutabot.operators.robot.skip import Skip\nclass Rule(Skip):\n    name = 'early'",
+        "from mutabot.operators.robot.commands import Skip\nclass Rule(Skip):\n    name = 'early'",
         "'early'",
-    ),
-    "asks for what no engine gives": (
-        "late",
-        "from mutabot.operators.robot.skip import Skip\nclass Rule(Skip):\n    name = 'late'\n"
-        "    asks_neighbours = True",
-        "asks for the calls before and after its own",
     ),
     ON_USE: (
         "late",
-        "from mutabot.operators.robot.skip import Skip\nclass Rule(Skip):\n    name = 'late'\n"
+        "from mutabot.operators.robot.commands import Skip\nclass Rule(Skip):\n    name = 'late'\n"
         "    def subjects(self, operation, pattern):\n        raise KeyError('frame')",
         "KeyError('frame')",
     ),
@@ -90,7 +84,7 @@ BROKEN = {
 
 #: repeats a call; breaks on a real answer, which the plan's rehearsal does not have
 BREAKS_LATE = """
-from mutabot.operators.robot.repeat import Repeat
+from mutabot.operators.robot.commands import Repeat
 from mutabot.operators import Subject
 
 class Rule(Repeat):
@@ -113,7 +107,7 @@ class Rule(Repeat):
 
 #: a family that mutabot itself does not have
 OF_ITS_OWN = """
-from mutabot.operators.robot.negate import Negate
+from mutabot.operators.robot.readings import Negate
 
 class Rule(Negate):
     name = "late"

@@ -137,7 +137,7 @@ class Call:
         current: tells where a written quantity is now, in that quantity's unit; raises LookupError when
             the vocabulary names no such reading, and NotToldError if that has told nothing yet.
         idle: what the operation answers while the robot does nothing; None unless the operator has declared
-            that it asks (``asks_idle``).
+            that it asks (``Need.IDLE``).
         payload: what the door needs to perform the call; operators never look inside.
         away: why the operator left it as it is; empty if it does not say so.
         mishaps: what befalls it, with seconds where it takes some.

@@ -1,6 +1,7 @@
-"""Mutation operators: one file each, ``operator.py`` is the contract."""
+"""Mutation operators: a file for each kind of fault, ``operator.py`` is the contract."""
 
 from .operator import Example as Example
+from .operator import Need as Need
 from .operator import Operator as Operator
 from .operator import Subject as Subject
 from .registry import load_all as load_all

@@ -3,9 +3,10 @@
 An operator answers four questions: where could it act, what does it do there, what does that look like
 to an engineer, and which examples show it. It sees quantities and their values, never Python syntax or
 a vendor's API, so that whatever can be turned into a ``Call`` can be mutated. What it needs for that it
-declares as class attributes, here and in ``rule.py``; there also stands where its file belongs.
+declares as a set of ``needs``, which the plan checks; ``rule.py`` says where its class belongs.
 
-``robot/skip.py`` is the shortest operator, ``robot/_values.py`` the shape of those that change one value.
+Nearly all operators have one of two shapes: they change a value (``value.py``), or do something with the call
+as a whole (``command.py``). ``robot/commands.py`` has the shortest ones.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from abc import abstractmethod
 from array import array
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from enum import Enum, auto
 from random import Random
 from typing import Any, ClassVar
 
@@ -22,6 +24,29 @@ from mutabot.model import Middleware, Operation, Pattern, Quantity
 from mutabot.model.values.quantity import Value
 
 from .rule import Rule
+
+
+class Need(Enum):
+    """What an operator asks for. Where it is not to be had, the plan leaves its mutants out and says why."""
+
+    #: where a written quantity is now (``call.current``): the vocabulary names a reading that tells
+    PLACE = auto()
+    #: a negative value among the recorded ones, without which nobody knows whether there is a direction
+    SIGN = auto()
+    #: what the command answers while the robot does nothing (``call.idle``), by baseline or vocabulary
+    IDLE = auto()
+    #: what time it is in the simulation (``call.time``): the vocabulary names a clock
+    CLOCK = auto()
+    #: to let the program's time pass (``call.wait``): the vocabulary says how, or a middleware does
+    WAIT = auto()
+    #: a call that raised in the baseline
+    ERROR = auto()
+    #: a call of the program: what the tests' own checks read is no place for it
+    PROGRAM = auto()
+    #: one middleware for all calls of a test, since what it does to one depends on those before
+    MEMORY = auto()
+    #: copies of the calls and replies that it remembers, which the program cannot change afterwards
+    COPIES = auto()
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +80,16 @@ class Subject:
     def read(self) -> tuple[Quantity, ...]:
         """Quantities the call reads."""
         return self.pattern.result if self.pattern is not None else self.operation.result
+
+    @property
+    def is_written(self) -> bool:
+        """Whether the quantity is one that the call writes."""
+        return self.quantity in self.written
+
+    @property
+    def side(self) -> tuple[Quantity, ...]:
+        """The quantities of the side on which the quantity stands."""
+        return self.written if self.is_written else self.read
 
     @property
     def is_command(self) -> bool:
@@ -130,55 +165,30 @@ class Operator(Rule):
     """A rule that makes mutants of calls.
 
     Class attributes, beside those of every ``Rule``:
-        asks_where: whether it asks where a written quantity is now (``call.current``); it is then used only
-            where the vocabulary names a reading that tells.
-        asks_idle: whether it asks what the command answers while the robot does nothing (``call.idle``); it
-            is then used only where that is known, from the baseline or from the vocabulary.
-        asks_neighbours: whether it acts on a call together with those before or after it. No engine can give
-            it these yet, so such an operator is refused.
+        needs: what it asks for, at every subject.
         does_nothing: whether it promises that no call reaches the robot. A call that would is a fault of the
             operator, and the mutant gets no verdict.
         draws: whether it adds a number that is drawn anew for each round, which reports then show.
-        remembers: whether what it does to a call depends on earlier ones of the same test. It is then given
-            copies, which the program cannot change afterwards, and one middleware for all calls of a test.
-        copies: whether it is to be given copies if it remembers; one that remembers nothing but values of its
-            own making says that it is not.
-        asks_time: whether it asks what time it is in the simulation (``call.time``); it is then used only
-            where the vocabulary names a clock.
-        asks_wait: whether it lets the program's time pass (``call.wait``); it is then used only where the
-            vocabulary says how (``wait``), or a middleware does.
-        needs_error: whether it acts only on calls that raise: it is left out where none did in the baseline.
         is_raced: whether it leaves to chance what the program's processes still get done, so that equal runs
             may end differently: survivors are run again as well as kills.
-        is_for_oracle: whether readings that the tests' own checks take are a place for it, too.
     """
 
     family: ClassVar[str] = ROBOT
     examples: ClassVar[tuple[Example, ...]] = ()
-    asks_where: ClassVar[bool] = False
-    asks_idle: ClassVar[bool] = False
-    asks_neighbours: ClassVar[bool] = False
+    needs: ClassVar[frozenset[Need]] = frozenset()
     does_nothing: ClassVar[bool] = False
-    remembers: ClassVar[bool] = False
-    copies: ClassVar[bool] = True
     draws: ClassVar[bool] = False
-    asks_time: ClassVar[bool] = False
-    asks_wait: ClassVar[bool] = False
-    needs_error: ClassVar[bool] = False
     is_raced: ClassVar[bool] = False
-    is_for_oracle: ClassVar[bool] = True
 
-    def needs_where(self, subject: Subject) -> bool:
-        """Whether it asks for this subject where a quantity is now; by default as ``asks_where`` says."""
-        return self.asks_where
-
-    def needs_sign(self, subject: Subject) -> bool:
-        """Whether the subject has a direction is known only if a negative value of it was recorded."""
-        return False
+    def needs_of(self, subject: Subject) -> frozenset[Need]:
+        """What it asks for at this subject."""
+        return self.needs
 
     def only_reads(self, subject: Subject) -> bool:
         """Whether all it changes is a value that the program reads: without effect where nobody uses that."""
-        return subject.quantity is not None and subject.quantity in subject.read and not self.asks_wait
+        return (
+            subject.quantity is not None and subject.quantity in subject.read and Need.WAIT not in self.needs
+        )
 
     def is_chance(self, subject: Subject) -> bool:
         """Whether only chance says at which calls it acts, so that nobody can tell beforehand."""
@@ -187,13 +197,6 @@ class Operator(Rule):
     def least_calls(self, subject: Subject) -> int:
         """How many calls it takes to be what it is; it is left out where the tests make fewer."""
         return 1
-
-    def magnitudes(self, quantity: Quantity) -> tuple[float, ...]:
-        """How big its fault is to be in a quantity, in that quantity's unit: a mutant each.
-
-        Empty for a fault without a size, as all are that do not say otherwise.
-        """
-        return ()
 
     @abstractmethod
     def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:

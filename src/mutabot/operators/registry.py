@@ -1,4 +1,4 @@
-"""Finding operators on calls by name: the built-in ones by their files, and those that packages bring."""
+"""Finding operators on calls by name: the built-in ones in their folders, and those that packages bring."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ _HERE = Path(__file__).parent
 
 def built_in() -> list[str]:
     """Names of mutabot's own operators that make mutants, in the order of the documentation."""
-    return [rule.name for rule in in_order(operator(name) for name in _files())]
+    found = [rule for module in _modules() for rule in _of_module(module).values()]
+    return [rule.name for rule in in_order(found)]
 
 
 def names() -> list[str]:
@@ -48,7 +49,7 @@ def load_all() -> list[Operator]:
 
 def preload(wanted: Iterable[str] | None = None) -> None:
     """Load these operators, or all built-in ones; who needs one that cannot be loaded is told then."""
-    for name in _files() if wanted is None else wanted:
+    for name in built_in() if wanted is None else wanted:
         with suppress(OperatorError):
             operator(name)
 
@@ -61,8 +62,9 @@ def operator(name: str) -> Operator:
     """
     if name in CONTROLS:
         return CONTROLS[name]()
-    if name in _files():
-        return _of_file(name, _files()[name])
+    for module, text in _modules().items():
+        if f'"{name}"' in text and name in _of_module(module):
+            return _of_module(module)[name]
     part = brought("operators").get(name)
     if part is not None:
         return _loaded(part)
@@ -70,31 +72,22 @@ def operator(name: str) -> Operator:
 
 
 @cache
-def _files() -> dict[str, str]:
-    """Module by name of operator, as the folders beside this file tell: nothing is loaded for it."""
+def _modules() -> dict[str, str]:
+    """The text of each module in the folders beside this file, by its name: nothing is loaded for it.
+
+    An operator is in a module whose text has its name in quotes, so that workers load no other.
+    """
     return {
-        module.replace("_", "-"): ".".join((__package__, *folder.relative_to(_HERE).parts, module))
+        f"{__package__}.{folder.name}.{module}": (folder / f"{module}.py").read_text(encoding="utf-8")
         for folder in folders_in(_HERE)
         for module in modules_in(folder)
     }
 
 
-def _of_file(name: str, module: str) -> Operator:
-    kinds: list[type[Operator]] = classes_in(import_module(module), Operator)
-    if len(kinds) != 1 or kinds[0].name != name:
-        found = ", ".join(repr(kind.name) for kind in kinds) or "none"
-        raise OperatorError(
-            f"{module} must hold one operator, named {name!r} as the file is, but has {found}", operator=name
-        )
-    return _checked(kinds[0](), f"operator {name!r}")
-
-
-def _checked(rule: Operator, where: str) -> Operator:
-    """Raises OperatorError for one that asks for more than there is."""
-    if rule.asks_neighbours:
-        text = f"{where} asks for the calls before and after its own, which no engine can give it yet"
-        raise OperatorError(text, operator=rule.name)
-    return rule
+@cache
+def _of_module(module: str) -> dict[str, Operator]:
+    """The operators that a module holds, by name."""
+    return {kind.name: kind() for kind in classes_in(import_module(module), Operator)}
 
 
 def _loaded(part: Part) -> Operator:
@@ -114,7 +107,7 @@ def _loaded(part: Part) -> Operator:
             f"{where} calls itself {getattr(made, 'name', None)!r}; extension and class must agree",
             operator=part.name,
         )
-    return _checked(made, where)
+    return made
 
 
 def modules_in(folder: Path) -> list[str]:
@@ -123,15 +116,18 @@ def modules_in(folder: Path) -> list[str]:
 
 
 def folders_in(folder: Path) -> list[Path]:
-    """The folders of packages below a folder; none of them is loaded."""
-    return sorted(file.parent for file in folder.glob("*/**/__init__.py"))
+    """The packages in a folder; none of them is loaded."""
+    return sorted(file.parent for file in folder.glob("*/__init__.py"))
 
 
 def classes_in(module: ModuleType, base: type[Any]) -> list[type[Any]]:
-    """The concrete subclasses of ``base`` that a module itself defines, in the order of its text."""
+    """The concrete subclasses of ``base`` that a module itself defines, in the order of its text.
+
+    None whose name begins with ``_``: that is what several of them have in common.
+    """
     return [
         kind
-        for kind in vars(module).values()
-        if isinstance(kind, type) and issubclass(kind, base)
+        for name, kind in vars(module).items()
+        if isinstance(kind, type) and issubclass(kind, base) and not name.startswith("_")
         if kind.__module__ == module.__name__ and not getattr(kind, "__abstractmethods__", None)
     ]

@@ -1,15 +1,15 @@
 """What every operator declares, whatever it acts on.
 
-An operator is one class in one file, and nothing else has to be edited: the registries find it there.
+An operator is one class, and nothing else has to be edited: the registries find it. A file holds those of one
+kind of fault.
 
-- One that acts on **calls** is a subclass of ``Operator`` (``operator.py``) in a folder below this file's,
-  one to a file, which has the operator's name: ``by-to`` is ``robot/by_to.py``. So workers find an operator
-  without loading the others.
+- One that acts on **calls** is a subclass of ``Operator`` (``operator.py``) in a file of a folder below this
+  file's, with its name as text: workers load only files in whose text the name is that they look for.
 - One that acts on **program text** is a subclass of ``ClassicalOperator`` (``mutabot_source/operator.py``)
-  in ``classical/operators/``; a file may hold several.
+  in ``classical/operators/``.
 
-What several share goes into a file whose name begins with ``_``. A third party names its class in its
-``mutabot.extensions.Extension``; that goes for operators on calls.
+What several share has a name that begins with ``_``, be it a class or a file. A third party names its class
+in its ``mutabot.extensions.Extension``; that goes for operators on calls.
 
 Engines, plan, reports and documentation know no operator by name: whatever they need to know of one stands
 here or in the two contracts that build on this one.

@@ -10,7 +10,7 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.places import Place
 from mutabot.model import LeftOut, Moment, Mutant, Vocabulary
 from mutabot.model.moment import When
-from mutabot.operators import operator
+from mutabot.operators import Need, operator
 
 from .planned import Plan
 
@@ -43,7 +43,7 @@ def _why_not(mutant: Mutant, vocabulary: Vocabulary, baseline: Baseline) -> str 
     moment = mutant.moment
     if moment is None:
         return None
-    if operator(mutant.operator).remembers:
+    if Need.MEMORY in operator(mutant.operator).needs:
         return "what it does to a call depends on earlier ones, so that it acts at all of them"
     if moment.asks_time and vocabulary.clock is None:
         return "the vocabulary names no clock"

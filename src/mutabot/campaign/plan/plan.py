@@ -29,7 +29,7 @@ from mutabot.model import (
 )
 from mutabot.model.graded.demand import Demand
 from mutabot.model.values.quantity import is_reading_of
-from mutabot.operators import Operator, Subject, load_all
+from mutabot.operators import Need, Operator, Subject, load_all
 from mutabot.operators.operator import with_operation
 from mutabot.operators.passage import Passage, rehearse
 
@@ -84,12 +84,12 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
         for subject, rule in _subjects(operators, operation, place):
             mutant = _mutant(len(mutants) + 1, rule, subject, place)
             mutant = _distinct(mutant, taken)
-            seen, reason = _foresee(rule, subject, hits)
-            reason = reason or _why_no_time(rule, vocabulary, operation)
-            if rule.needs_where(subject) and not _is_told(subject, vocabulary):
-                reason = f"{subject.current or 'no reading'} does not tell where it is"
-            if reason is None and rule.needs_sign(subject) and not has_negative(baseline, place, subject):
-                reason = NO_SIGN
+            seen, foreseen = _foresee(rule, subject, hits)
+            needs = rule.needs_of(subject)
+            unmet = {need: _why_unmet(need, subject, place, baseline, vocabulary) for need in needs}
+            later = (unmet.get(need) for need in (Need.CLOCK, Need.WAIT, Need.SIGN))
+            reasons = (unmet.get(Need.ERROR), unmet.get(Need.PLACE), foreseen, *later)
+            reason = next(filter(None, reasons), None)
             if reason is None and baseline.unread.get(place, False) and rule.only_reads(subject):
                 reason = "nobody reads what the call returns: it is a statement by itself"
             mutant = replace(
@@ -97,11 +97,9 @@ def _plan_of_calls(baseline: Baseline, vocabulary: Vocabulary, operators: Sequen
             )
             if place in baseline.written_through and _only_reads(subject):
                 reason = _LOST_WRITE
-            if rule.needs_error and not baseline.answers[place].has_raised:
-                reason = "no call raises in the baseline"
-            if rule.asks_idle and reason is None:
+            if Need.IDLE in rule.needs and reason is None:
                 try:
-                    answers = _answers(baseline, place, of_any=rule.needs_error)
+                    answers = _answers(baseline, place, of_any=Need.ERROR in rule.needs)
                     mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
                 except NoAnswerError as error:
                     reason = str(error)
@@ -135,7 +133,7 @@ def _subjects(
 ) -> Iterator[tuple[Subject, Operator]]:
     pattern = operation.pattern(place.pattern)
     for rule in operators:
-        if place.site.role is Role.ORACLE and not rule.is_for_oracle:
+        if place.site.role is Role.ORACLE and Need.PROGRAM in rule.needs:
             continue
         try:
             subjects = list(rule.subjects(operation, pattern))
@@ -196,7 +194,7 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, 
     where = None
     for hit in hits[:TRIED]:
         before = _value(subject, hit)
-        if not rule.remembers or hit.where != where:
+        if Need.MEMORY not in rule.needs or hit.where != where:
             where = hit.where
             middleware = rule.middleware(subject, Random(1))
         try:
@@ -213,12 +211,21 @@ def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, 
     return last, _reason(subject, last.before, len(hits))
 
 
-def _why_no_time(rule: Operator, vocabulary: Vocabulary, operation: Operation) -> str | None:
-    """Why an operator cannot have the time that it asks for, or let it pass; None if it can."""
-    if rule.asks_time and vocabulary.clock is None:
-        return "the vocabulary names no clock"
-    if rule.asks_wait and vocabulary.wait is None and operation.named is None:
-        return "the vocabulary does not say what lets the program's time pass (wait = …)"
+def _why_unmet(
+    need: Need, subject: Subject, place: Place, baseline: Baseline, vocabulary: Vocabulary
+) -> str | None:
+    """Why what an operator needs is not to be had; None if it is."""
+    match need:
+        case Need.ERROR if not baseline.answers[place].has_raised:
+            return "no call raises in the baseline"
+        case Need.PLACE if not _is_told(subject, vocabulary):
+            return f"{subject.current or 'no reading'} does not tell where it is"
+        case Need.CLOCK if vocabulary.clock is None:
+            return "the vocabulary names no clock"
+        case Need.WAIT if vocabulary.wait is None and subject.operation.named is None:
+            return "the vocabulary does not say what lets the program's time pass (wait = …)"
+        case Need.SIGN if not has_negative(baseline, place, subject):
+            return NO_SIGN
     return None
 
 
@@ -236,7 +243,7 @@ def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
 
 
 def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middleware) -> Passage:
-    payload = object() if rule.remembers else None  # no two messages need be the same
+    payload = object() if Need.MEMORY in rule.needs else None  # no two messages need be the same
     call = Call(subject.operation, subject.pattern, hit.written, idle=Reply(), payload=payload)
     try:
         passage = rehearse(middleware, call, hit.read, payload=payload, operator=rule.name)
@@ -254,8 +261,8 @@ def _check_promises(rule: Operator, subject: Subject, passage: Passage) -> None:
     broken = None
     if rule.does_nothing and passage.performed:
         broken = "declares does_nothing, but makes the call"
-    elif not rule.asks_idle and not passage.performed and passage.received is passage.call.idle:
-        broken = "answers with call.idle, but does not declare asks_idle = True"
+    elif Need.IDLE not in rule.needs and not passage.performed and passage.received is passage.call.idle:
+        broken = "answers with call.idle, but Need.IDLE is none of its needs"
     if broken is not None:
         text = f"operator {rule.name!r} {broken} (on {subject.operation.target})"
         raise OperatorError(text, operator=rule.name)

@@ -17,7 +17,7 @@ from mutabot.inside.targets.names import is_named
 from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Proceed, Reply, Role, Span
 from mutabot.model.named import Refused
 from mutabot.model.values.answer import restore
-from mutabot.operators import Operator, Subject, operator
+from mutabot.operators import Need, Operator, Subject, operator
 from mutabot.operators.control import FatalFault
 from mutabot.operators.operator import subject_of
 from mutabot.operators.passage import Carried, Passage, passed
@@ -94,7 +94,7 @@ class Activation:
         self.evidence = replace(self._early, away=dict(self._early.away))
         self.rule = operator(self.mutant.operator)
         self._middleware = self.rule.middleware(self._subject(), Random(seed))
-        self._idle = Idle.of(self.mutant.idle) if self.rule.asks_idle else None
+        self._idle = Idle.of(self.mutant.idle) if Need.IDLE in self.rule.needs else None
         self._test = (round, test)
         self._moment = moment
         self.watched = ()
@@ -192,7 +192,7 @@ class Activation:
 
     @property
     def _copies(self) -> bool:
-        return self.rule.remembers and self.rule.copies
+        return Need.COPIES in self.rule.needs
 
     def heard(self, name: str, message: Any) -> None:
         """A message came by, which may say that the robot refuses what it was told."""

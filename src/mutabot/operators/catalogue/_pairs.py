@@ -5,18 +5,19 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any
 
+from mutabot.families import CATALOGUE
 from mutabot.model import Operation, Pattern, Quantity
 from mutabot.model.values.quantity import Value
+from mutabot.operators.context import Context, quantity_of
 from mutabot.operators.operator import Subject
-from mutabot.operators.robot._values import label, quantity_of
-
-from ._shape import ValuesFault, given, is_written, side_of
+from mutabot.operators.value import ValuesOperator, given, label
 
 
-class Exchange(ValuesFault):
+class Exchange(ValuesOperator):
     """Exchanges two values of one kind; the variant names the second."""
+
+    family = CATALOGUE
 
     @abstractmethod
     def pairs(self, whole: Subject) -> Iterable[tuple[Quantity, Quantity]]:
@@ -27,21 +28,21 @@ class Exchange(ValuesFault):
         for one, other in self.pairs(whole):
             yield replace(whole, quantity=one, variant=other.name.lstrip("."))
 
-    def changed(self, subject: Subject, values: Mapping[str, Value], memory: Any) -> Mapping[str, Value]:
-        one, other = quantity_of(subject), other_of(subject)
-        first, second = given(values, one.name), given(values, other.name)
-        return {one.name: second, other.name: first}
+    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        one, other = context.quantity.name, _other_of(context.subject).name
+        first, second = given(values, one), given(values, other)
+        return {one: second, other: first}
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        one, other = quantity_of(subject), other_of(subject)
+        one, other = quantity_of(subject), _other_of(subject)
         told = f"{label(one)} {one.text(before)} and {label(other)} {other.text(after)} exchanged"
-        return told if is_written(subject) else f"reads {told}"
+        return told if subject.is_written else f"reads {told}"
 
 
-def other_of(subject: Subject) -> Quantity:
+def _other_of(subject: Subject) -> Quantity:
     """The second quantity of a pair."""
     name = subject.variant.partition("+")[0]
-    return next(one for one in side_of(subject) if one.name.lstrip(".") == name)
+    return next(one for one in subject.side if one.name.lstrip(".") == name)
 
 
 def is_alike(one: Quantity, other: Quantity) -> bool:

@@ -54,8 +54,3 @@ STAMP = Quantity("header.stamp", Path.parse("message.header.stamp", rooted=True)
 HEARD_STAMP = Quantity("header.stamp", Path.parse(".header.stamp", rooted=False), Kind.STAMP, unit="s")
 SEND_STAMP = operation(Form.PUBLISH, "/arm/target", (STAMP,))
 HEAR_STAMP = operation(Form.RECEIVE, "/scan", result=(HEARD_STAMP,))
-
-
-def setting_of(operation: Operation, name: str) -> Quantity:
-    """One of the settings of an operation."""
-    return next(one for one in operation.arguments if one.name == name)

@@ -1,1 +1,1 @@
-"""The operators of the family ``robot``, one file each."""
+"""The operators of the family ``robot``: those that are published."""

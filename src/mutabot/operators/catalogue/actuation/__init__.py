@@ -1,1 +1,0 @@
-"""Commands that are carried out too weakly, too strongly or not fully, one operator to a file."""

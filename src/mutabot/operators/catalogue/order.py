@@ -1,0 +1,303 @@
+"""Commands in the wrong order, at the wrong time, or not once."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import ClassVar
+
+from mutabot.families import CATALOGUE
+from mutabot.model import Call, Kind, Mode, Operation, Path, Proceed, Quantity, Reply
+from mutabot.model.values.quantity import WHOLE, Value
+from mutabot.model.values.sameness import are_same
+from mutabot.operators.command import CommandOperator, idle_of
+from mutabot.operators.context import Context, Unchanged
+from mutabot.operators.evidence import COMMANDS, TIMING
+from mutabot.operators.examples import GRIP, changed, unchanged, writing
+from mutabot.operators.operator import Example, Need, Subject, map_numbers
+from mutabot.operators.robot.commands import other_end
+from mutabot.operators.value import ValueOperator, given, like
+
+#: seconds: as long as a pneumatic gripper takes to open or close
+_LATE = 0.5
+_MOTIONS = WHOLE | {Kind.TRANSLATION, Kind.ROTATION}
+_GRIPPING = (
+    "commands with an opening, and commands without quantities that have an opposite, such as close and open"
+)
+_DX = Quantity("dx", Path("dx"), Kind.TRANSLATION, "x", "m", "base", Mode.BY)
+_MOVE_BY = Operation("robot:Arm.move_by", (_DX,))
+_REFUSED = replace(_MOVE_BY, refusals=("robot:Refused",))
+_X, _Y = (Quantity(name, Path(name), Kind.TRANSLATION, name, "m", "base", Mode.TO) for name in "xy")
+_MOVE_TO = Operation("robot:Arm.move_to", (_X, _Y))
+_CLOSE = Operation("robot:Gripper.close", opposite="robot:Gripper.open")
+_WAIT = writing("cell:wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 60.0))
+
+
+class _Timing(CommandOperator):
+    family = CATALOGUE
+    needs = frozenset({Need.PROGRAM})
+    stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
+
+
+class SwapNext(_Timing):
+    """Holds a command back until the next one is made."""
+
+    name = "swap-next"
+    summary = (
+        "A command changes places with the program's next one, whichever that is; if none follows, it is"
+        " never carried out. Meanwhile the program goes on as if it had been."
+    )
+    rank = 330
+    needs = frozenset({Need.IDLE, Need.PROGRAM})
+    where = "any command whose answer to doing nothing is known"
+    fault = "only after the next command"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(_MOVE_BY), {"dx": 0.1}, performed=(), afterwards=({"dx": 0.1},)),
+    )
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        reply = idle_of(call)
+        call.defer(call)
+        return reply
+
+
+class PreviousTarget(_Timing):
+    """Writes the motion that the call of this operation before wrote, wherever that stands."""
+
+    name = "previous-target"
+    summary = (
+        "A motion goes to the target of the one before it again, or as far: a waypoint that is out of date."
+    )
+    rank = 331
+    where = "commands that write a translation or rotation, from the second call of their operation on"
+    fault = "the motion of the call before it again"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(
+            Subject(_MOVE_TO),
+            {"x": 0.4, "y": 0.1},
+            previous={"x": 0.2, "y": 0.0},
+            performed=({"x": 0.2, "y": 0.0},),
+        ),
+        Example(Subject(_MOVE_TO), {"x": 0.4}, away="there is none before it"),
+        Example(Subject(_MOVE_TO), {"x": 0.4}, previous={"x": 0.4}, away="it went there before"),
+    )
+
+    def fits(self, whole: Subject) -> bool:
+        return whole.is_command and any(one.kind in _MOTIONS for one in whole.written)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        before, written = call.previous(), context.subject.written
+        if before is None:
+            raise Unchanged("there is none before it")
+        names = {one.name for one in written if one.kind in _MOTIONS} & before.keys()
+        values = {name: before[name] if name in names else value for name, value in call.values.items()}
+        if are_same(written, values, call.values):
+            raise Unchanged("the one before it was the same")
+        return await proceed(replace(call, values=values))
+
+
+class HalfWait(ValueOperator):
+    """Shortens a duration that is written."""
+
+    name = "half-wait"
+    family = CATALOGUE
+    summary = "A wait is half as long: the next command comes before what was waited for is over."
+    rank = 332
+    stands_for = _Timing.stands_for
+    where = "written quantities of kind duration"
+    kinds = frozenset({Kind.DURATION})
+    of_read = False
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(_WAIT, 0.8, 0.4),
+        unchanged(_WAIT, 0.0, "there is nothing to shorten"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        return map_numbers(value, lambda number: like(number, number / 2.0))
+
+
+class NoWait(HalfWait):
+    """Leaves out a duration that is written."""
+
+    name = "no-wait"
+    summary = "A wait is left out: the next command comes at once."
+    rank = 333
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(_WAIT, 0.8, 0.0),
+        unchanged(_WAIT, 0.0, "there is nothing to shorten"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        return map_numbers(value, lambda number: like(number, 0.0))
+
+
+class LateGrip(_Timing):
+    """Lets time pass before a gripper command is made."""
+
+    name = "late-grip"
+    summary = "A gripper command is carried out 0.5 s late, and the program waits for it."
+    rank = 336
+    needs = frozenset({Need.WAIT, Need.PROGRAM})
+    where = f"{_GRIPPING}; the vocabulary says how time passes: wait"
+    fault = f"{_LATE:g} s late"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(GRIP), {"position": 1}, waited=_LATE, performed=({"position": 1},)),
+    )
+
+    def fits(self, whole: Subject) -> bool:
+        return _is_gripping(whole)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        await call.wait(_LATE)
+        return await proceed(call)
+
+
+class EarlyRelease(_Timing):
+    """Takes a gripper command back after the next command of the program."""
+
+    name = "early-release"
+    summary = (
+        "A gripper command is taken back right after the program's next command: what was gripped is let"
+        " go too early. If no command follows, nothing happens."
+    )
+    rank = 337
+    where = _GRIPPING
+    fault = "and back after the next command"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(GRIP), {"position": 1}, performed=({"position": 1},), afterwards=({"position": 0},)),
+        Example(Subject(_CLOSE), performed=({},), afterwards=({"reversed": True},)),
+        Example(Subject(GRIP), {"position": 0.5}, away="half open has no opposite"),
+    )
+
+    def fits(self, whole: Subject) -> bool:
+        return _is_gripping(whole)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        back = _undone(context.subject, call)
+        reply = await proceed(call)
+        call.defer(back)
+        return reply
+
+
+def _is_gripping(whole: Subject) -> bool:
+    """Whether it is a command to a gripper."""
+    has_opening = any(one.kind is Kind.OPENING for one in whole.written)
+    return whole.is_command and (has_opening or (whole.opposite is not None and not whole.written))
+
+
+def _undone(subject: Subject, call: Call) -> Call:
+    """The call that takes a gripper command back. Raises Unchanged if its opening has no other end."""
+    for quantity in subject.written:
+        if quantity.kind is Kind.OPENING:
+            value = other_end(quantity, given(call.values, quantity.name))
+            if value is None:
+                raise Unchanged("the value is neither of the two ends")
+            return call.with_value(quantity, value)
+    return call.opposite()
+
+
+class _Chance(CommandOperator):
+    """Acts on one command in three, by chance; the variant says how likely it is."""
+
+    family = CATALOGUE
+    stands_for = f"A command that is lost, or comes twice: {COMMANDS}."
+    needs = frozenset({Need.MEMORY, Need.PROGRAM})
+    variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
+
+    def is_chance(self, subject: Subject) -> bool:
+        return True
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        if context.draw().random() >= context.option:
+            raise Unchanged("chance spares it")
+        return await self.struck(call, proceed)
+
+    @abstractmethod
+    async def struck(self, call: Call, proceed: Proceed) -> Reply:
+        """What becomes of a command that chance does not spare."""
+
+
+class LostCommand(_Chance):
+    """Does not proceed, by chance."""
+
+    name = "lost-command"
+    summary = (
+        "A command is not carried out, with a probability of 30 %; the program goes on as if it had been."
+    )
+    rank = 334
+    needs = frozenset({Need.IDLE, Need.MEMORY, Need.PROGRAM})
+    where = "any command whose answer to doing nothing is known"
+    fault = "do nothing, with a probability of {variant}"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(GRIP, variant="30%"), {"position": 1}, performed=()),
+        Example(
+            Subject(GRIP, variant="30%"),
+            {"position": 1},
+            earlier=({"position": 0},) * 3,
+            away="most commands are carried out",
+        ),
+    )
+
+    async def struck(self, call: Call, proceed: Proceed) -> Reply:
+        return idle_of(call)
+
+
+class DoubleCommand(_Chance):
+    """Proceeds twice, by chance."""
+
+    name = "double-command"
+    summary = (
+        "A command is carried out twice, with a probability of 30 %; the program sees the second answer."
+    )
+    rank = 335
+    where = "any command"
+    fault = "do it twice, with a probability of {variant}"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(_MOVE_BY, variant="30%"), {"dx": 0.1}, performed=({"dx": 0.1}, {"dx": 0.1})),
+        Example(
+            Subject(_MOVE_BY, variant="30%"),
+            {"dx": 0.1},
+            earlier=({"dx": 0.2},) * 3,
+            away="most commands are carried out once",
+        ),
+    )
+
+    async def struck(self, call: Call, proceed: Proceed) -> Reply:
+        await proceed(call)
+        return await proceed(call)
+
+
+class UnreportedRefusal(CommandOperator):
+    """Answers as if nothing were wrong where the robot raises one of its refusals."""
+
+    name = "unreported-refusal"
+    family = CATALOGUE
+    summary = (
+        "The robot refuses a command, or stops, and the program does not hear of it: it gets the answer"
+        " to doing nothing."
+    )
+    rank = 338
+    needs = frozenset({Need.IDLE, Need.ERROR, Need.PROGRAM})
+    stands_for = f"Errors that are swallowed on their way: {COMMANDS}."
+    where = (
+        "commands whose answer to doing nothing is known, where the tests make the robot raise one of"
+        " its refusals"
+    )
+    fault = "a refusal is not reported"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(_REFUSED), {"dx": 9.0}, refused=True, performed=({"dx": 9.0},), received={}),
+        Example(Subject(_REFUSED), {"dx": 0.1}, away="the robot does not refuse it"),
+    )
+
+    def is_chance(self, subject: Subject) -> bool:
+        return True  # what the robot refuses only the run can tell
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        try:
+            reply = await proceed(call)
+        except Exception as error:
+            if not call.is_refusal(error):
+                raise
+            return idle_of(call)
+        return reply.as_is("the robot does not refuse it")

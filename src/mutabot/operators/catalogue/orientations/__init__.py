@@ -1,1 +1,0 @@
-"""Orientations as a whole that are written or read in another way, one operator to a file."""

@@ -1,1 +1,0 @@
-"""What sensors and their drivers do wrong, one operator to a file."""

@@ -1,1 +1,0 @@
-"""Numbers that are taken for another unit, one operator to a file."""

@@ -1,0 +1,101 @@
+"""The shape of operators that do something with a call as a whole."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from random import Random
+from typing import Any, ClassVar
+
+from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
+from mutabot.model.named import COMING, Form
+from mutabot.model.values.quantity import Value
+
+from .context import Context, Unchanged
+from .magnitudes import Ladder, sized
+from .operator import Operator, Subject
+
+#: how descriptions call what goes its way under a form
+_CALLED = {
+    Form.PUBLISH: "message",
+    Form.RECEIVE: "message",
+    Form.CALL: "request",
+    Form.GOAL: "goal",
+    Form.FEEDBACK: "feedback",
+    Form.RESULT: "result",
+    Form.TICK: "tick",
+    Form.SLEEP: "turn",
+    Form.TRANSFORM: "transform",
+    Form.PARAMETER: "parameter",
+    Form.CANCEL: "cancellation",
+}
+
+
+class CommandOperator(Operator):
+    """Acts on whole calls: on commands, unless ``fits`` says otherwise.
+
+    Class attributes:
+        fault: the fault in words, with ``{what}`` for what is sent and ``{variant}`` for the variant.
+        variants: a mutant each, with what they mean (``context.option``).
+    """
+
+    fault: ClassVar[str]
+    variants: ClassVar[Mapping[str, Any]] = {"": None}
+
+    @abstractmethod
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        """The mutant at work. Raises Unchanged, before it proceeds, to leave the call alone."""
+
+    def fits(self, whole: Subject) -> bool:
+        """Whether it has something to do with this call."""
+        return whole.is_command
+
+    def magnitudes(self, whole: Subject) -> Ladder | None:
+        """How big the fault is to be, a mutant each; None for one without a size, which may have variants."""
+        return None
+
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
+        whole = Subject(operation, pattern)
+        if self.fits(whole):
+            ladder = self.magnitudes(whole)
+            variants = (replace(whole, variant=variant) for variant in self.variants)
+            yield from variants if ladder is None else sized(whole, ladder)
+
+    def middleware(self, subject: Subject, random: Random) -> Middleware:
+        context = Context(subject, random, self.variants.get(subject.variant))
+
+        async def mutated(call: Call, proceed: Proceed) -> Reply:
+            context.call, context.number = call, context.number + 1
+            try:
+                return await self.mutated(call, proceed, context)
+            except Unchanged as why:
+                return await proceed(call.as_is(str(why)))
+
+        return mutated
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        return self.words(subject)
+
+    def words(self, subject: Subject, **more: str) -> str:
+        """``fault``, filled in."""
+        form = form_of(subject.operation)
+        what = _CALLED.get(form, "call") if form is not None else "call"
+        return self.fault.format(what=what, variant=subject.variant, **more)
+
+
+def form_of(operation: Operation) -> Form | None:
+    """What is done under its name; None for what has none."""
+    return operation.named.form if operation.named is not None else None
+
+
+def comes_by_itself(operation: Operation) -> bool:
+    """Whether nobody asks for it: a message to a callback, a tick."""
+    return form_of(operation) in COMING
+
+
+def idle_of(call: Call) -> Reply:
+    """What the command answers while the robot does nothing. Raises LookupError if nobody knows."""
+    if call.idle is None:
+        raise LookupError(f"nobody knows what {call.operation.name} answers to doing nothing")
+    return call.idle

@@ -1,0 +1,65 @@
+"""Shorter ways to write worked examples of operators on values, and operations that several share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from mutabot.model import Kind, Operation, Path, Quantity
+from mutabot.model.values.quantity import Value
+
+from .context import quantity_of
+from .magnitudes import Ladder, sized
+from .operator import Example, Subject
+
+X = Quantity(".x", Path.parse(".x", rooted=False), Kind.POSITION, "x", "m", "world")
+LOCATE = Operation("camera:locate", result=(X,), command=False)
+GRIP = Operation(
+    "robot:Gripper.command",
+    (Quantity("position", Path("position"), Kind.OPENING, unit="fraction", values=(0, 1)),),
+)
+
+
+def reading(target: str, kind: Kind, **more: Any) -> Operation:
+    """An operation that returns one value and commands nothing."""
+    return Operation(target, result=(Quantity("result", Path(), kind, **more),), command=False)
+
+
+def writing(target: str, name: str, kind: Kind, **more: Any) -> Operation:
+    """An operation with one argument."""
+    return Operation(target, (Quantity(name, Path(name), kind, **more),))
+
+
+def changed(operation: Operation, before: Any, after: Any, variant: str = "", **more: Any) -> Example:
+    """A value that the operator changes: as the program writes or the robot answers it, and as it becomes.
+
+    The first quantity of the operation is meant, or that named ``quantity``; with ``size=("+", 20.0, "mm")``
+    the fault has a magnitude. ``before``, ``after`` and each of ``earlier`` may be all values of the call.
+    """
+    subject = _subject(operation, variant, more)
+    values, others = _values(subject, before), _values(subject, after)
+    if subject.is_written:
+        return Example(subject, values, performed=(others,), **more)
+    return Example(subject, replied=values, performed=({},), received=others, **more)
+
+
+def unchanged(operation: Operation, before: Any, away: str, variant: str = "", **more: Any) -> Example:
+    """A value that the operator leaves alone, and why; else as ``changed``."""
+    subject = _subject(operation, variant, more)
+    more["values" if subject.is_written else "replied"] = _values(subject, before)
+    return Example(subject, away=away, **more)
+
+
+def _subject(operation: Operation, variant: str, more: dict[str, Any]) -> Subject:
+    quantities = {one.name: one for one in (*operation.arguments, *operation.result)}
+    quantity = quantities[more.pop("quantity", next(iter(quantities)))]
+    subject = Subject(operation, quantity=quantity, variant=variant)
+    more["earlier"] = tuple(_values(subject, one) for one in more.get("earlier", ()))
+    if "size" not in more:
+        return subject
+    direction, size, unit = more.pop("size")
+    return next(sized(subject, Ladder(unit, (size,)), direction))
+
+
+def _values(subject: Subject, given: Any) -> Mapping[str, Value]:
+    return given if isinstance(given, Mapping) else {quantity_of(subject).name: given}

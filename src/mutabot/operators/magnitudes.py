@@ -1,0 +1,119 @@
+"""How big faults with a size are: a mutant for each magnitude of a ladder.
+
+Where a vocabulary names none, these are the 1-2-5 series over a range with a reason. Lengths begin at 1 mm,
+ten times the pose repeatability that makers of small arms state by ISO 9283 (0.02 to 0.1 mm): below, the
+arm itself would hide the fault. They end at 100 mm, beyond the parts that such an arm takes. Angles span
+what that is at 0.3 m from a joint. Times begin at 10 ms, a usual cycle of a controller, and end at 1 s, a
+usual step of a task. The others are 1 % to 50 % of what data sheets of grippers, small arms and their
+sensors give as the full scale (235 N and 0.15 m/s for a two-finger gripper, 2 kg payload, 24 V, 6 bar).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from mutabot.model import Kind, Quantity
+from mutabot.model.values.units import Dimension, dimension_of
+
+from .operator import Subject
+
+
+@dataclass(frozen=True, slots=True)
+class Ladder:
+    """The magnitudes of a fault, rising.
+
+    Attributes:
+        unit: their unit; None for those of what has none.
+        steps: the magnitudes.
+    """
+
+    unit: str | None
+    steps: tuple[float, ...]
+
+
+def sized(subject: Subject, ladder: Ladder, direction: str = "") -> Iterator[Subject]:
+    """The subject, once for each magnitude of a ladder in one direction."""
+    for size in ladder.steps:
+        variant = f"{direction}{size:g}{'%' if ladder.unit == 'percent' else ladder.unit or ''}"
+        yield replace(subject, variant=variant, magnitude=size, unit=ladder.unit, direction=direction)
+
+
+def series(first: float, count: int) -> tuple[float, ...]:
+    """So many numbers of the 1-2-5 series from ``first`` on, which is 1, 2 or 5 times a power of ten."""
+    lead = first
+    while lead >= 10.0:
+        lead /= 10.0
+    while lead < 1.0 - 1e-9:
+        lead *= 10.0
+    at = (1, 2, 5).index(round(lead))
+    scale = first / (1, 2, 5)[at]
+    numbers = ((1, 2, 5)[(at + n) % 3] * 10 ** ((at + n) // 3) * scale for n in range(count))
+    return tuple(float(f"{number:.6g}") for number in numbers)
+
+
+#: seven magnitudes over two decades, by what is measured
+LADDERS: dict[Dimension, Ladder] = {
+    Dimension.LENGTH: Ladder("mm", series(1, 7)),
+    Dimension.ANGLE: Ladder("deg", series(0.2, 7)),
+    Dimension.TIME: Ladder("ms", series(10, 7)),
+    Dimension.RATIO: Ladder("percent", series(1, 6)),
+    Dimension.SPEED: Ladder("mm/s", series(5, 7)),
+    Dimension.ANGULAR_SPEED: Ladder("deg/s", series(1, 7)),
+    Dimension.ACCELERATION: Ladder("mm/s^2", series(50, 7)),
+    Dimension.ANGULAR_ACCELERATION: Ladder("deg/s^2", series(5, 7)),
+    Dimension.JERK: Ladder("mm/s^3", series(500, 7)),
+    Dimension.ANGULAR_JERK: Ladder("deg/s^3", series(50, 7)),
+    Dimension.FORCE: Ladder("N", series(1, 7)),
+    Dimension.TORQUE: Ladder("Nm", series(0.1, 7)),
+    Dimension.MASS: Ladder("g", series(10, 7)),
+    Dimension.TEMPERATURE: Ladder("K", series(0.5, 7)),
+    Dimension.VOLTAGE: Ladder("mV", series(100, 7)),
+    Dimension.CURRENT: Ladder("mA", series(10, 7)),
+    Dimension.PRESSURE: Ladder("mbar", series(10, 7)),
+    Dimension.FREQUENCY: Ladder("Hz", series(0.1, 7)),
+}
+_COUNTED = Ladder(None, series(1, 7))
+#: drift per second: over a task of ten seconds it reaches the ladder of the offset
+_PER_SECOND = 0.1
+
+
+def measure_of(quantity: Quantity) -> Dimension | None:
+    """What a quantity's values measure; None for plain numbers. Orientations as a whole are angles."""
+    if quantity.is_whole:
+        return Dimension.ANGLE
+    return dimension_of(quantity.unit) if quantity.unit is not None else None
+
+
+def own_ladder(quantity: Quantity) -> Ladder | None:
+    """Of faults in the quantity's own measure; None where neither the vocabulary nor its kind says."""
+    measure = measure_of(quantity)
+    told = _told(quantity)
+    if told is not None and (told.unit is None or dimension_of(told.unit) is measure):
+        return told
+    if quantity.kind is Kind.COUNT:
+        return _COUNTED
+    return LADDERS.get(measure) if measure is not None else None
+
+
+def ladder_in(quantity: Quantity | None, measure: Dimension) -> Ladder:
+    """Of faults measured in time, or in a share of the value."""
+    told = _told(quantity) if quantity is not None else None
+    if told is not None and told.unit is not None and dimension_of(told.unit) is measure:
+        return told
+    return LADDERS[measure]
+
+
+def per_second(quantity: Quantity) -> Ladder | None:
+    """Of faults that grow with time, by the second."""
+    own = own_ladder(quantity)
+    if own is None:
+        return None
+    return Ladder(f"{own.unit or ''}/s", tuple(float(f"{step * _PER_SECOND:.6g}") for step in own.steps))
+
+
+def _told(quantity: Quantity) -> Ladder | None:
+    """What the vocabulary says."""
+    if quantity.ladder is None:
+        return None
+    return Ladder(quantity.ladder_unit or quantity.unit, quantity.ladder)

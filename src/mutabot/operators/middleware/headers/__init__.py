@@ -1,1 +1,0 @@
-"""What the headers of messages say wrongly, one operator to a file."""

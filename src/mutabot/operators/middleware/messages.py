@@ -1,0 +1,259 @@
+"""What befalls messages, requests and goals on their way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, TypeVar
+
+from mutabot.families import MIDDLEWARE
+from mutabot.model import Call, Mishap, Proceed, Reply
+from mutabot.model.named import COMING, WRITTEN, Form
+from mutabot.model.values.quantity import Value
+from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
+from mutabot.operators.context import Context, Unchanged
+from mutabot.operators.magnitudes import Ladder
+from mutabot.operators.operator import Example, Need, Subject
+
+from ._examples import CALL, CALL_TO, PUBLISH, RECEIVE
+
+_THIRD, _CHANCE = "every-3rd", "30%"
+_PROBABILITY = 0.3
+_FIRST, _PREVIOUS = "first", "previous"
+_NONE_BEFORE = "there is none before it"
+_EARLIER = frozenset({Need.MEMORY, Need.COPIES})
+Sent = TypeVar("Sent", Call, Reply)
+#: forms that write a message
+_SENT = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL})
+
+
+class MessageOperator(CommandOperator):
+    """Acts on whole calls of some forms.
+
+    Class attributes:
+        forms: the forms.
+    """
+
+    family = MIDDLEWARE
+    forms: ClassVar[frozenset[Form]]
+
+    def fits(self, whole: Subject) -> bool:
+        return form_of(whole.operation) in self.forms
+
+
+class Drop(MessageOperator):
+    """Lets the call, or what it brings, be lost."""
+
+    name = "drop"
+    summary = (
+        "A message, request or goal is lost on its way, a result or the tick of a timer never comes: each,"
+        " every third, or with a probability of 30 %."
+    )
+    rank = 110
+    needs = _EARLIER
+    forms = _SENT | COMING | {Form.RESULT}
+    variants: ClassVar[Mapping[str, str]] = {
+        "": "each",
+        _THIRD: "every third",
+        _CHANCE: "with a probability of 30 %, a",
+    }
+    fault = "{which} {what} is lost"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(PUBLISH), {"x": 0.4}, performed=(), note="nobody hears of it"),
+        Example(
+            Subject(RECEIVE),
+            replied={"gap": 0.02},
+            performed=({},),
+            lost=True,
+            note="the callback is not called; who waits, waits for the next one",
+        ),
+        Example(Subject(CALL), lost=True, note="the service does nothing and never answers"),
+        Example(Subject(PUBLISH, variant=_THIRD), {"x": 0.4}, earlier=({"x": 0.2}, {"x": 0.3}), performed=()),
+        Example(Subject(PUBLISH, variant=_THIRD), {"x": 0.3}, earlier=({"x": 0.2},), away="only the second"),
+    )
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        return self.words(subject, which=self.variants[subject.variant])
+
+    def least_calls(self, subject: Subject) -> int:
+        return 3 if subject.variant else 1
+
+    def is_chance(self, subject: Subject) -> bool:
+        return subject.variant == _CHANCE
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        if not self._is_meant(context):
+            return await proceed(call)
+        form = form_of(call.operation)
+        if form not in _SENT:  # the middleware has the message already when it is lost
+            return (await proceed(call)).never()
+        return Reply() if form is Form.PUBLISH else Reply().never()
+
+    def _is_meant(self, context: Context) -> bool:
+        if context.subject.variant == _CHANCE:
+            return context.random.random() < _PROBABILITY
+        return context.subject.variant != _THIRD or context.number % 3 == 0
+
+
+class Duplicate(MessageOperator):
+    """Proceeds twice, or lets the program receive twice."""
+
+    name = "duplicate"
+    summary = "A message, request or goal arrives twice, a callback is called twice."
+    rank = 120
+    forms = _SENT | COMING
+    fault = "each {what} arrives twice"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(PUBLISH), {"x": 0.4}, performed=({"x": 0.4}, {"x": 0.4})),
+        Example(
+            Subject(RECEIVE),
+            replied={"gap": 0.02},
+            performed=({},),
+            received={"gap": 0.02},
+            then=({"gap": 0.02},),
+        ),
+        Example(Subject(CALL), performed=({}, {}), note="the program sees the second answer"),
+    )
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        reply = await proceed(call)
+        return reply.followed_by(reply) if comes_by_itself(call.operation) else await proceed(call)
+
+
+class Stale(MessageOperator):
+    """Sends or receives an earlier message instead."""
+
+    name = "stale"
+    summary = (
+        "An old message is sent, or received, in the place of the new one: always the first, or always the"
+        " previous."
+    )
+    rank = 130
+    needs = _EARLIER
+    forms = _SENT | {Form.RECEIVE, Form.FEEDBACK, Form.TRANSFORM}
+    variants: ClassVar[Mapping[str, None]] = {_FIRST: None, _PREVIOUS: None}
+    fault = "the {variant} {what} again instead of the new one"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(
+            Subject(RECEIVE, variant=_FIRST),
+            replied={"gap": 0.02},
+            earlier=({"gap": 0.5}, {"gap": 0.3}),
+            performed=({},),
+            received={"gap": 0.5},
+            note="a sensor that is stuck",
+        ),
+        Example(
+            Subject(PUBLISH, variant=_PREVIOUS),
+            {"x": 0.4},
+            earlier=({"x": 0.2}, {"x": 0.3}),
+            performed=({"x": 0.3},),
+            note="always one behind",
+        ),
+        Example(
+            Subject(CALL_TO, variant=_FIRST),
+            {"x": 0.4},
+            earlier=({"x": 0.2}, {"x": 0.3}),
+            performed=({"x": 0.2},),
+            note="the service is asked for the same over and over",
+        ),
+        Example(Subject(PUBLISH, variant=_FIRST), {"x": 0.4}, away=_NONE_BEFORE),
+        Example(Subject(RECEIVE, variant=_PREVIOUS), replied={"gap": 0.02}, earlier=(), away=_NONE_BEFORE),
+    )
+
+    def least_calls(self, subject: Subject) -> int:
+        return 2
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        if form_of(call.operation) in _SENT:
+            return await proceed(self._old(call, context))
+        return self._old(await proceed(call), context)
+
+    def _old(self, one: Sent, context: Context) -> Sent:
+        """The earlier one to be taken instead, or the same with the reason why there is none."""
+        old = context.memory[0] if context.memory else one.as_is(_NONE_BEFORE)
+        if not context.memory or context.subject.variant != _FIRST:
+            context.memory[:] = [one]
+        return old
+
+
+class Delay(MessageOperator):
+    """Lets the call, or what it brings, come later."""
+
+    name = "delay"
+    summary = (
+        "A message, request, goal, result or transform comes 0.1 s or 1 s late, by the clock of the node. "
+        "What is published goes out late by itself; who waits for an answer waits longer."
+    )
+    rank = 140
+    forms = frozenset({*WRITTEN, *COMING, Form.RESULT, Form.TRANSFORM, Form.SLEEP})
+    fault = "each {what} comes {variant} s late"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(
+            Subject(PUBLISH, variant="0.1", magnitude=0.1), {"x": 0.4}, performed=({"x": 0.4, "late": 0.1},)
+        ),
+        Example(Subject(CALL, variant="1", magnitude=1.0), performed=({"late": 1.0},)),
+        Example(
+            Subject(RECEIVE, variant="1", magnitude=1.0),
+            replied={"gap": 0.02},
+            performed=({},),
+            received={"gap": 0.02},
+            late=1.0,
+            note="the callback is called later; messages that come meanwhile overtake it",
+        ),
+    )
+
+    def magnitudes(self, whole: Subject) -> Ladder | None:
+        return Ladder(None, (0.1, 1.0))  # seconds: a network that is busy, and one that has trouble
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        seconds = context.subject.magnitude or 0.0
+        why = call.cannot(Mishap.LATE)
+        if why:
+            raise Unchanged(why)
+        if form_of(call.operation) in WRITTEN:
+            return await proceed(call.with_mishap(Mishap.LATE, seconds))
+        return (await proceed(call)).later(seconds)
+
+
+class Reorder(MessageOperator):
+    """Holds every other message back until the next one is through."""
+
+    name = "reorder"
+    summary = (
+        "Messages change places, two by two: the second comes before the first. A last one alone is lost."
+    )
+    rank = 150
+    needs = _EARLIER
+    forms = frozenset({Form.PUBLISH, Form.RECEIVE, Form.FEEDBACK})
+    fault = "every other {what} comes after the next one"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(PUBLISH), {"x": 0.4}, earlier=({"x": 0.2},), performed=({"x": 0.4}, {"x": 0.2})),
+        Example(Subject(PUBLISH), {"x": 0.2}, performed=(), note="is held back for the next one"),
+        Example(
+            Subject(RECEIVE),
+            replied={"gap": 0.02},
+            earlier=({"gap": 0.5},),
+            performed=({},),
+            received={"gap": 0.02},
+            then=({"gap": 0.5},),
+        ),
+        Example(Subject(RECEIVE), replied={"gap": 0.5}, performed=({},), lost=True),
+    )
+
+    def least_calls(self, subject: Subject) -> int:
+        return 2
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        held = context.memory
+        if form_of(call.operation) is not Form.PUBLISH:
+            reply = await proceed(call)
+            if held:
+                return reply.followed_by(held.pop())
+            held.append(reply)
+            return reply.never()
+        if not held:
+            held.append(call)
+            return Reply()
+        old = held.pop()
+        reply = await proceed(call)
+        await proceed(old)
+        return reply

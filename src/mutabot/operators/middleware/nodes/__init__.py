@@ -1,1 +1,0 @@
-"""What befalls nodes, services and actions, one operator to a file."""

@@ -1,0 +1,258 @@
+"""What publishers, subscriptions, clients, timers, rates and parameters are set up with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from mutabot.model import Kind, Quantity
+from mutabot.model.named import DEFAULT, Form
+from mutabot.model.values.quantity import Value
+from mutabot.model.values.sameness import is_same
+from mutabot.operators.command import form_of
+from mutabot.operators.context import Context, Unchanged, quantity_of
+from mutabot.operators.examples import changed, unchanged
+from mutabot.operators.operator import Example, Subject, is_number
+
+from ._examples import ADVERTISE, CLIENT, RATE, SPEED, SUBSCRIBE, TIMER
+from .headers import FreeValueOperator
+
+_MISSPELT, _GLOBAL = "misspelt", "global"
+_TIGHT, _NONE = "tight", "none"
+_NO_DEFAULT = "the program gives no default"
+_IS_DEFAULT = "it has its default"
+
+
+class _Setting(FreeValueOperator):
+    """Changes one thing that something is set up with.
+
+    Class attributes:
+        setting: its name.
+    """
+
+    setting: ClassVar[str]
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.kind is Kind.SETTING and quantity.name == self.setting
+
+    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        if self.setting not in values:  # a middleware need not have all that others have
+            raise Unchanged("its middleware has no such setting, or chooses it itself")
+        return super().changes(values, context)
+
+
+class WrongName(_Setting):
+    """Gives another name."""
+
+    name = "wrong-name"
+    summary = (
+        "A publisher, subscription or client is set up under another name: one that nobody else has, or "
+        "without the namespace of its node, as a wrong remapping does."
+    )
+    rank = 310
+    setting = "name"
+    variants: ClassVar[Mapping[str, None]] = {_MISSPELT: None, _GLOBAL: None}
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(SUBSCRIBE, "gap", "gap_misspelt", _MISSPELT, quantity="name"),
+        changed(
+            ADVERTISE,
+            "target",
+            "/target",
+            _GLOBAL,
+            quantity="name",
+            note="the node stands in the namespace /arm",
+        ),
+        unchanged(CLIENT, "/arm/follow", "its name is a global one", _GLOBAL, quantity="name"),
+        unchanged(SUBSCRIBE, "gap", "its node has no namespace", _GLOBAL, quantity="name"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if context.subject.variant == _MISSPELT:
+            return f"{value}_misspelt"
+        if str(value).startswith("/"):
+            raise Unchanged("its name is a global one")
+        found = "/" + str(value).removeprefix("~").removeprefix("/")
+        named = context.subject.operation.named
+        if named is not None and named.name == found:
+            raise Unchanged("its node has no namespace")
+        return found
+
+
+class ShortQueue(_Setting):
+    """Sets up a queue of depth 1."""
+
+    name = "short-queue"
+    summary = (
+        "The queue of a publisher or subscription holds one message, so that the next one pushes it out."
+    )
+    rank = 320
+    setting = "depth"
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(SUBSCRIBE, {"name": "gap", "depth": 10}, {"name": "gap", "depth": 1}, quantity="depth"),
+        unchanged(
+            ADVERTISE, {"name": "target", "depth": 1}, "the value would stay the same", quantity="depth"
+        ),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        return 1
+
+
+class FlipLatch(_Setting):
+    """Latches what is not latched, and the other way round."""
+
+    name = "flip-latch"
+    summary = (
+        "A publisher that keeps its last message for subscribers who come later does not, or one that does"
+        " not does."
+    )
+    rank = 330
+    setting = "latch"
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(ADVERTISE, True, False, quantity="latch"),
+        changed(ADVERTISE, False, True, quantity="latch"),
+        unchanged(ADVERTISE, {"name": "target"}, "its middleware latches nothing", quantity="latch"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if not isinstance(value, bool):
+            raise Unchanged(f"{value} is neither true nor false")
+        return not value
+
+
+class _OtherOfTwo(_Setting):
+    """Sets the other of two values."""
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        values = context.quantity.values or ()
+        if value not in values:
+            raise Unchanged(f"{value} is neither {' nor '.join(map(str, values))}")
+        return values[1 - values.index(value)]
+
+
+class WrongReliability(_OtherOfTwo):
+    """Swaps reliable and best effort."""
+
+    name = "wrong-reliability"
+    summary = (
+        "A publisher or subscription is best effort instead of reliable, or the other way round. A "
+        "subscription that asks for more than is offered hears nothing."
+    )
+    rank = 340
+    setting = "reliability"
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(ADVERTISE, "reliable", "best_effort", quantity="reliability"),
+        changed(SUBSCRIBE, "best_effort", "reliable", quantity="reliability"),
+        unchanged(
+            SUBSCRIBE,
+            "system_default",
+            "system_default is neither reliable nor best_effort",
+            quantity="reliability",
+        ),
+    )
+
+
+class WrongDurability(_OtherOfTwo):
+    """Swaps volatile and transient local."""
+
+    name = "wrong-durability"
+    summary = (
+        "A publisher or subscription is volatile instead of transient local, or the other way round. A "
+        "subscription that asks for more than is offered hears nothing."
+    )
+    rank = 350
+    setting = "durability"
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(ADVERTISE, "transient_local", "volatile", quantity="durability"),
+        changed(SUBSCRIBE, "volatile", "transient_local", quantity="durability"),
+        unchanged(
+            SUBSCRIBE,
+            "system_default",
+            "system_default is neither volatile nor transient_local",
+            quantity="durability",
+        ),
+    )
+
+
+class WrongDeadline(_Setting):
+    """Sets a deadline that nobody keeps, or takes one away; 0 is none."""
+
+    name = "wrong-deadline"
+    summary = (
+        "A publisher or subscription has a deadline of 1 ms, or none where it had one. A subscription that"
+        " asks for more than is offered hears nothing."
+    )
+    rank = 360
+    setting = "deadline"
+    #: seconds: more often than any of the programs this is for publishes
+    variants: ClassVar[Mapping[str, float]] = {_TIGHT: 0.001, _NONE: 0.0}
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(SUBSCRIBE, 0.0, 0.001, _TIGHT, quantity="deadline"),
+        changed(ADVERTISE, 0.1, 0.0, _NONE, quantity="deadline"),
+        unchanged(ADVERTISE, 0.0, "it has none", _NONE, quantity="deadline"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if not value and context.subject.variant == _NONE:
+            raise Unchanged("it has none")
+        return context.option
+
+
+class WrongPeriod(_Setting):
+    """Doubles or halves the period."""
+
+    name = "wrong-period"
+    summary = "A timer or rate has twice the period, or half of it."
+    rank = 370
+    setting = "period"
+    variants: ClassVar[Mapping[str, float]] = {"x2": 2.0, "x0.5": 0.5}
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(TIMER, 0.1, 0.2, "x2", quantity="period"),
+        changed(RATE, 0.1, 0.05, "x0.5", quantity="period"),
+        unchanged(TIMER, 0.0, "it has no period", "x2", quantity="period"),
+    )
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        if not is_number(value) or not value:
+            raise Unchanged("it has no period")
+        return value * context.option
+
+
+class UseDefault(FreeValueOperator):
+    """Reads the default of a parameter."""
+
+    name = "use-default"
+    summary = "A parameter has the default that the program gives, instead of what was set."
+    rank = 380
+    of_written = False
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(
+            Subject(SPEED, quantity=SPEED.result[0]),
+            {"default": 1.0},
+            {"value": 0.25},
+            performed=({"default": 1.0},),
+            received={"value": 1.0},
+        ),
+        Example(Subject(SPEED, quantity=SPEED.result[0]), {}, {"value": 0.25}, away=_NO_DEFAULT),
+        Example(
+            Subject(SPEED, quantity=SPEED.result[0]), {"default": 0.25}, {"value": 0.25}, away=_IS_DEFAULT
+        ),
+    )
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return form_of(whole.operation) is Form.PARAMETER and not quantity.path.steps
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        default = context.call.values[DEFAULT.name]
+        if is_same(context.quantity, default, value):
+            raise Unchanged(_IS_DEFAULT)
+        return default
+
+    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        if DEFAULT.name not in context.call.values:
+            raise Unchanged(_NO_DEFAULT)
+        return super().changes(values, context)
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        one, other = quantity_of(subject).texts(before, after)
+        return f"the default {other} instead of {one}"

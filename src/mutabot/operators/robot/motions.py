@@ -1,0 +1,219 @@
+"""Motions: the other way, or a relative amount taken for an absolute target."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from random import Random
+from typing import ClassVar
+
+from mutabot.model import (
+    Call,
+    Kind,
+    Middleware,
+    Mode,
+    NotToldError,
+    Operation,
+    Path,
+    Pattern,
+    Quantity,
+)
+from mutabot.model.values.direction import EITHER, has_direction
+from mutabot.model.values.quantity import READING_OF, Value
+from mutabot.operators.context import Context, Unchanged, quantity_of
+from mutabot.operators.examples import changed, unchanged, writing
+from mutabot.operators.operator import Example, Need, Operator, Subject, is_number, map_numbers
+from mutabot.operators.orientation import the_other_way
+from mutabot.operators.rule import Published
+from mutabot.operators.value import NOT_GIVEN, NOT_TOLD, ValueOperator, checked, label, on_call
+
+_PATH = Path.parse("message.pose.x", rooted=True)
+_GOAL = Quantity("pose.x", _PATH, Kind.TRANSLATION, "x", "m", mode=Mode.TO, relative=True)
+_HIDDEN = Operation("publish /arm/goal", (_GOAL,), current="receive /arm/pose")
+_MOVE = Operation(
+    "robot:Arm.move_by",
+    (
+        Quantity("dy", Path("dy"), Kind.TRANSLATION, "y", "m", "base", Mode.BY),
+        Quantity("yaw", Path("yaw"), Kind.ROTATION, "z", "deg", "base", Mode.BY),
+    ),
+)
+_TURN = Quantity("angle", Path("angle"), Kind.ROTATION, "z", "deg", None, Mode.TO, range=(0.0, 360.0))
+_TURN_TO = Operation("robot:Arm.turn_to", (_TURN,))
+_FACE = Operation("robot:Arm.face", (replace(_TURN, range=None),))
+_PUSH = Quantity("push", Path("push"), Kind.TRANSLATION, "x", "m", None, Mode.BY, range=(-1.0, 1.0))
+_STEP = Operation("env:Env.step", (_PUSH,))
+_CLIPPED = Operation("env:Env.step", (replace(_PUSH, clip=(-1.0, 1.0)),))
+_ORIENT = writing("robot:Arm.orient", "rotation", Kind.ROTATION_VECTOR, unit="rad")
+_LIFT = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.5))
+_LIFT_TO = Operation("robot:Arm.lift_to", (_LIFT,))
+_AHEAD = Quantity("linear.x", Path.parse("message.linear.x", rooted=True), Kind.SPEED, "x", "m/s")
+_DRIVE = Operation("publish /cmd_vel", (_AHEAD,))
+_GO = writing("base:Base.go", "speed", Kind.SPEED, unit="m/s", range=(-0.2, 1.0))
+_DX = Quantity("dx", Path("dx"), Kind.TRANSLATION, "x", "m", "base", Mode.BY)
+_X = Quantity("x", Path("x"), Kind.TRANSLATION, "x", "m", "base", Mode.TO)
+_BY = Operation("robot:Arm.move_by", (_DX,), current="robot:Arm.tool_pose")
+_TO = Operation("robot:Arm.move_to", (_X,), current="robot:Arm.tool_pose")
+_NEAR = replace(_TO, arguments=(replace(_X, range=(0.0, 0.6)),))
+
+
+class Reverse(ValueOperator):
+    """Negates one component of a motion, or mirrors a target at where the robot is."""
+
+    name = "reverse"
+    summary = "A translation, rotation or speed goes the other way: one component is negated."
+    rank = 10
+    where = "written translations, rotations, orientations as a whole, and speeds and ratios with a direction"
+    published = (
+        Published(1, "rotate left by θ", "rotate right by θ"),
+        Published(2, "rotate right by θ", "rotate left by θ"),
+        Published(3, "translate forward by δ", "translate backwards by δ"),
+        Published(4, "translate backwards by δ", "translate forward by δ"),
+    )
+    of_read = False
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(
+            _MOVE,
+            {"dy": 0.2, "yaw": 0.0},
+            {"dy": -0.2, "yaw": 0.0},
+            note="translate forward by δ: translate backwards by δ",
+        ),
+        changed(_MOVE, -0.9, 0.9),
+        changed(
+            _MOVE,
+            {"dy": 0.0, "yaw": 80},
+            {"dy": 0.0, "yaw": -80},
+            quantity="yaw",
+            note="rotate left by θ: rotate right by θ",
+        ),
+        changed(_MOVE, [0.1, -0.2], [-0.1, 0.2]),
+        changed(_TURN_TO, 90, 270, note="an angle limited to a full turn stays within it"),
+        changed(
+            _ORIENT, [0.0, 0.5, 0.0], [0.0, -0.5, 0.0], note="an orientation as a whole: the inverse rotation"
+        ),
+        changed(_CLIPPED, 1.7, -1.7, note="the vocabulary says that the robot limits it: clip = [−1, 1]"),
+        unchanged(_STEP, 1.7, "−1.7 m is outside the range [−1, 1]"),
+        unchanged(_ORIENT, [0.0, math.pi, 0.0], "half a turn the other way is the same orientation"),
+        unchanged(_FACE, 180, "the targets 180 and −180 degrees are the same"),
+        changed(
+            _HIDDEN,
+            0.5,
+            0.1,
+            current={"pose.x": 0.3},
+            note="a relative move that is hidden in an absolute target: 2 · current − target",
+        ),
+        unchanged(_HIDDEN, 0.5, "the target is where the robot is", current={"pose.x": 0.5}),
+        changed(_DRIVE, 0.4, -0.4, note="a speed along an axis: the robot drives the wrong way"),
+        unchanged(_GO, 0.5, "−0.5 m/s is outside the range [−0.2, 1]"),
+        unchanged(_MOVE, 0.0, "a zero has no other way"),
+        unchanged(_MOVE, {"yaw": 80}, "the call does not give this component"),
+        unchanged(_LIFT_TO, 0.3, "−0.3 m is outside the allowed range"),
+    )
+
+    def needs_of(self, subject: Subject) -> frozenset[Need]:
+        quantity = quantity_of(subject)
+        found = {Need.PLACE} if quantity.relative else set()
+        if quantity.kind in EITHER and has_direction(quantity) is None:
+            found.add(Need.SIGN)
+        return frozenset(found)
+
+    def middleware(self, subject: Subject, random: Random) -> Middleware:
+        quantity = quantity_of(subject)
+        if not quantity.relative:
+            return super().middleware(subject, random)
+        return _by_place(quantity, lambda value, here: _within_turn(quantity, 2.0 * here - value))
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        if not quantity.relative:
+            return super().describe(subject, before, after)
+        return f"{label(quantity)} {quantity.text(before)} → as far to the other side of where it is"
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        if quantity.kind in EITHER:
+            return has_direction(quantity) is not False
+        return quantity.kind in (Kind.TRANSLATION, Kind.ROTATION) or quantity.is_whole
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        quantity = context.quantity
+        if quantity.is_whole:
+            return the_other_way(quantity, value)
+        return map_numbers(value, lambda number: _within_turn(quantity, -number))
+
+
+class ByTo(Operator):
+    """Confuses relative and absolute."""
+
+    name = "by-to"
+    needs = frozenset({Need.PLACE})
+    summary = "A relative amount is taken for an absolute target, and the other way round."
+    rank = 20
+    where = "written translations and rotations whose operation has a current that tells them"
+    published = (
+        Published(5, "translate forward by δ", "translate forward *to* δ"),
+        Published(6, "translate backwards by δ", "translate backwards *to* δ"),
+    )
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(_BY, 0.5, 0.25, current={"dx": 0.25}, note="translate forward by δ: translate forward to δ"),
+        changed(_BY, -0.5, -0.75, current={"dx": 0.25}),
+        changed(_TO, 0.5, 0.75, current={"x": 0.25}),
+        unchanged(_BY, 0.5, "by and to agree at zero", current={"dx": 0.0}),
+        changed(
+            _HIDDEN,
+            0.5,
+            0.2,
+            current={"pose.x": 0.3},
+            note="a relative move that is hidden in an absolute target: its change is taken for the target",
+        ),
+        unchanged(_NEAR, 0.5, "0.75 is out of range", current={"x": 0.25}),
+    )
+
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
+        whole = Subject(operation, pattern)
+        moved = whole.written if whole.current is not None else ()
+        return [replace(whole, quantity=quantity) for quantity in moved if quantity.kind in READING_OF]
+
+    def middleware(self, subject: Subject, random: Random) -> Middleware:
+        quantity = quantity_of(subject)
+        # the relative move that is hidden in an absolute target is that target less the place
+        sign = -1.0 if quantity.mode is Mode.BY or quantity.relative else 1.0
+        return _by_place(quantity, lambda value, here: value + sign * here)
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        if quantity.relative:
+            return f"{label(quantity)} {quantity.text(before)} → the change alone, taken for the target"
+        was, becomes = ("by", "to") if quantity.mode is Mode.BY else ("to", "by")
+        amount = quantity.text(before)
+        return f"{label(quantity)} {was} {amount} → {becomes} {amount}"
+
+
+def _by_place(quantity: Quantity, change: Callable[[float, float], float]) -> Middleware:
+    """A mutant at work that asks where the robot is; ``change`` is given the value and the place."""
+
+    async def moved(call: Call) -> Call:
+        value = call.values.get(quantity.name)
+        if value is None or not is_number(value):
+            raise Unchanged(NOT_GIVEN)
+        if quantity.mode is Mode.BY and value == 0:
+            raise Unchanged("the amount is zero")
+        try:
+            after = change(value, await call.current(quantity))
+        except NotToldError:
+            raise Unchanged(NOT_TOLD) from None
+        checked([quantity], call.values, {quantity.name: after})
+        return call.with_value(quantity, after)
+
+    return on_call(moved)
+
+
+def _within_turn(quantity: Quantity, angle: float) -> float:
+    if quantity.kind is not Kind.ROTATION or quantity.range is None or quantity.allows(angle):
+        return angle
+    turn = quantity.from_unit(2.0 * math.pi, "rad")
+    turn = round(turn, 9) if quantity.unit == "deg" else turn
+    low, high = quantity.range
+    if abs((high - low) - turn) > 1e-6 * turn:
+        return angle
+    wrapped = angle + (turn if angle < low else -turn)
+    return int(wrapped) if isinstance(angle, int) and wrapped.is_integer() else wrapped

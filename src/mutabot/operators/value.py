@@ -1,0 +1,225 @@
+"""The shape of operators that change values of one call, written or read."""
+
+from __future__ import annotations
+
+import re
+from abc import abstractmethod
+from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
+from random import Random
+from typing import Any, ClassVar
+
+from mutabot.model import Call, Kind, Middleware, Operation, Pattern, Proceed, Quantity, Reply
+from mutabot.model.values.quantity import Value
+from mutabot.model.values.sameness import is_same
+
+from .context import Context, Unchanged, quantity_of
+from .magnitudes import Ladder, sized
+from .operator import Operator, Subject
+
+_NAMES = re.compile(r"[._]")
+#: why an operator leaves a call without a value alone
+NOT_GIVEN = "the call gives no such value"
+#: why an operator that asks where the robot is leaves a call alone
+NOT_TOLD = "nothing has told yet where the robot is"
+SAME = "the value would stay the same"
+
+
+class ValuesOperator(Operator):
+    """Changes values that a call writes, or values that it reads."""
+
+    variants: ClassVar[Mapping[str, Any]] = {"": None}
+
+    @abstractmethod
+    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        """The values that are others than before, by quantity. Raises Unchanged to leave the call alone.
+
+        ``values`` are those of the side on which the subject's quantity stands.
+        """
+
+    def middleware(self, subject: Subject, random: Random) -> Middleware:
+        context = Context(subject, random, self.variants.get(subject.variant))
+
+        async def written(call: Call, proceed: Proceed) -> Reply:
+            context.call = call
+            try:
+                changed = self._checked(call.values, context)
+            except Unchanged as why:
+                return await proceed(call.as_is(str(why)))
+            return await proceed(replace(call, values={**call.values, **changed}))
+
+        async def read(call: Call, proceed: Proceed) -> Reply:
+            context.call = call
+            reply = await proceed(call)
+            try:
+                changed = self._checked(reply.values, context)
+            except Unchanged as why:
+                return reply.as_is(str(why))
+            return replace(reply, values={**reply.values, **changed})
+
+        return written if subject.is_written else read
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        quantity = quantity_of(subject)
+        if subject.is_written:
+            return f"{label(quantity)} {' → '.join(quantity.texts(before, after))}"
+        return f"reads {label(quantity)} {' instead of '.join(quantity.texts(after, before))}"
+
+    def why_unchanged(self, quantity: Quantity, before: Value, after: Value | None) -> str:
+        """Why a new value is not put in place of another one; empty if it can be."""
+        return why_unchanged(quantity, before, after)
+
+    def _checked(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        changed = self.changes(values, context)
+        return checked(context.subject.side, values, changed, self.why_unchanged)
+
+
+class ValueOperator(ValuesOperator):
+    """Changes the value of one quantity.
+
+    Class attributes:
+        kinds: the kinds of quantities on which it acts, unless ``fits`` says otherwise.
+        of_written, of_read: on which sides it acts.
+        variants: a mutant each, with what they mean (``context.option``).
+        directions: which ways a fault with magnitudes goes: a ladder each.
+    """
+
+    kinds: ClassVar[frozenset[Kind]] = frozenset()
+    of_written: ClassVar[bool] = True
+    of_read: ClassVar[bool] = True
+    directions: ClassVar[tuple[str, ...]] = ("",)
+
+    @abstractmethod
+    def change(self, value: Value, context: Context) -> Value | None:
+        """The new value; None if it is none that can be changed. Raises Unchanged to leave it alone."""
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        """Whether the operator has something to say about this quantity of a call."""
+        return quantity.kind in self.kinds
+
+    def variants_of(self, quantity: Quantity) -> Iterable[str]:
+        """The variants for a quantity."""
+        return self.variants
+
+    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+        """How big the fault is to be, a mutant each; None for one without a size, which may have variants."""
+        return None
+
+    def directions_of(self, quantity: Quantity) -> Iterable[str]:
+        """The directions for a quantity."""
+        return self.directions
+
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
+        whole = Subject(operation, pattern)
+        for is_on, side in ((self.of_written, whole.written), (self.of_read, whole.read)):
+            for quantity in side if is_on else ():
+                if self.fits(quantity, whole):
+                    yield from self._subjects_of(quantity, replace(whole, quantity=quantity))
+
+    def _subjects_of(self, quantity: Quantity, subject: Subject) -> Iterator[Subject]:
+        ladder = self.magnitudes(quantity)
+        if ladder is None:
+            yield from (replace(subject, variant=variant) for variant in self.variants_of(quantity))
+        else:
+            for direction in self.directions_of(quantity):
+                yield from sized(subject, ladder, direction)
+
+    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        name = context.quantity.name
+        value = given(values, name)
+        context.number += 1
+        return {name: self.change(value, context)}
+
+
+def on_call(change: Callable[[Call], Awaitable[Call]]) -> Middleware:
+    """A mutant at work that makes another call of a call, unless ``change`` raises Unchanged."""
+
+    async def mutated(call: Call, proceed: Proceed) -> Reply:
+        try:
+            other = await change(call)
+        except Unchanged as why:
+            other = call.as_is(str(why))
+        return await proceed(other)
+
+    return mutated
+
+
+def label(quantity: Quantity) -> str:
+    """How descriptions call a quantity: its axis where it has one, and its name."""
+    name = quantity.name.lstrip(".")
+    if quantity.axis is None or quantity.axis in _NAMES.split(name):
+        return name
+    return f"{name} ({quantity.axis})"
+
+
+def given(values: Mapping[str, Value], name: str) -> Value:
+    """A value of a call. Raises Unchanged if the call does not give it."""
+    if name not in values:
+        raise Unchanged(NOT_GIVEN)
+    return values[name]
+
+
+def next_of(value: Value, quantity: Quantity, by: int = 1) -> Value:
+    """The value that comes so many places after another one. Raises Unchanged if it is none of the values."""
+    values = quantity.values or ()
+    if value not in values:
+        raise Unchanged("it is none of those that are known")
+    return values[(values.index(value) + by) % len(values)]
+
+
+def like(before: float, after: float) -> float:
+    """A number in the type of the one in whose place it comes, where that loses nothing."""
+    is_whole = isinstance(before, int) and not isinstance(before, bool) and float(after).is_integer()
+    return int(after) if is_whole else after
+
+
+def within(value: float, limits: tuple[float, float] | None) -> float:
+    """A number, or the end of the limits that is nearest to it."""
+    return value if limits is None else min(max(value, limits[0]), limits[1])
+
+
+def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:
+    """The ends of the middle share of what a quantity may be. Raises Unchanged if nobody knows its range."""
+    limits = quantity.range or quantity.clip
+    if limits is None:
+        raise Unchanged("the vocabulary gives no range")
+    low, high = limits
+    cut = (high - low) * (1.0 - share) / 2.0
+    return low + cut, high - cut
+
+
+def checked(
+    quantities: Iterable[Quantity],
+    before: Mapping[str, Value],
+    changed: Mapping[str, Value],
+    why: Callable[[Quantity, Value, Value | None], str] | None = None,
+) -> Mapping[str, Value]:
+    """The changed values of a call. Raises Unchanged if one may not be put there, or all stay the same."""
+    known = {one.name: one for one in quantities}
+    reasons = [(why or why_unchanged)(known[name], before[name], value) for name, value in changed.items()]
+    serious = [reason for reason in reasons if reason and reason != SAME]
+    if serious or all(reasons):
+        raise Unchanged((serious or [SAME])[0])
+    return changed
+
+
+def why_unchanged(quantity: Quantity, before: Value, after: Value | None) -> str:
+    """Why a new value is not put in place of another one; empty if it can be."""
+    if after is None:
+        return "its value is none that can be changed"
+    if not _allowed(quantity, after):
+        if quantity.range is None:
+            return "the value would be none of those that the vocabulary allows"
+        return "the value would leave the range [{:g}, {:g}]".format(*quantity.range)
+    if is_same(quantity, before, after):
+        return SAME
+    if quantity.clip is not None and is_same(quantity, quantity.clipped(before), quantity.clipped(after)):
+        return "both values are limited to the same one by clip = [{:g}, {:g}]".format(*quantity.clip)
+    return ""
+
+
+def _allowed(quantity: Quantity, value: Value) -> bool:
+    """Whether the robot API takes the value, or each component of a vector."""
+    if hasattr(value, "__len__") and not isinstance(value, str | bytes):
+        return all(quantity.allows(item) for item in value)
+    return quantity.allows(value)
