@@ -64,6 +64,11 @@ class Context:
         self._draws = self._draws or Draws(self.random)
         return self._draws.of(self.number)
 
+    def by_chance(self) -> None:
+        """Raises Unchanged unless chance wants this call; the option is how likely that is."""
+        if self.draw().random() >= self.option:
+            raise Unchanged("chance spares it")
+
 
 def quantity_of(subject: Subject) -> Quantity:
     """The subject's quantity; an operator on values never gets a subject without one."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from random import Random
+from collections.abc import Mapping
 from typing import ClassVar
 
 from mutabot.families import CONTROL
-from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
-from mutabot.model.values.quantity import Value
+from mutabot.model import Call, Operation, Proceed, Reply
 
+from .command import CommandOperator
+from .context import Context
 from .operator import Example, Operator, Subject
 
 _HOME = Operation("robot:Arm.home")
@@ -19,47 +19,33 @@ class FatalFault(BaseException):
     """Raised by the fatal control. Not an ``Exception``, so that no program handles it by mistake."""
 
 
-class Identity(Operator):
+class Identity(CommandOperator):
     """Goes through all the machinery and changes nothing."""
 
     name = "identity"
     family = CONTROL
     summary = "Control: proceeds unchanged, so it must survive."
+    fault = "unchanged"
     examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), away="that is its purpose"),)
 
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
-        return [Subject(operation, pattern)]
+    def fits(self, whole: Subject) -> bool:
+        return True
 
-    def middleware(self, subject: Subject, random: Random) -> Middleware:
-        async def mutated(call: Call, proceed: Proceed) -> Reply:
-            return await proceed(call)
-
-        return mutated
-
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        return "unchanged"
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        return await proceed(call)
 
 
-class Fatal(Operator):
+class Fatal(Identity):
     """Raises instead of proceeding."""
 
     name = "fatal"
     does_nothing = True
-    family = CONTROL
     summary = "Control: the operation raises, so it must die."
+    fault = "fails"
     examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), raises=FatalFault),)
 
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
-        return [Subject(operation, pattern)]
-
-    def middleware(self, subject: Subject, random: Random) -> Middleware:
-        async def mutated(call: Call, proceed: Proceed) -> Reply:
-            raise FatalFault(f"control: {call.operation.name} fails")
-
-        return mutated
-
-    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
-        return "fails"
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        raise FatalFault(f"control: {call.operation.name} fails")
 
 
 #: both, by name; they make no mutants of their own

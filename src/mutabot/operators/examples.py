@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from mutabot.model import Kind, Operation, Path, Quantity
+from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
 
 from .context import quantity_of
@@ -18,6 +18,9 @@ GRIP = Operation(
     "robot:Gripper.command",
     (Quantity("position", Path("position"), Kind.OPENING, unit="fraction", values=(0, 1)),),
 )
+_X, _Y = (Quantity(name, Path(name), Kind.TRANSLATION, name, "m", "base", Mode.TO) for name in "xy")
+MOVE_TO = Operation("robot:Arm.move_to", (_X, _Y))
+CLOSE = Operation("robot:Gripper.close", opposite="robot:Gripper.open")
 
 
 def reading(target: str, kind: Kind, **more: Any) -> Operation:
@@ -63,3 +66,6 @@ def _subject(operation: Operation, variant: str, more: dict[str, Any]) -> Subjec
 
 def _values(subject: Subject, given: Any) -> Mapping[str, Value]:
     return given if isinstance(given, Mapping) else {quantity_of(subject).name: given}
+
+
+MOVE_BY = writing("robot:Arm.move_by", "dx", Kind.TRANSLATION, axis="x", unit="m", frame="base", mode=Mode.BY)

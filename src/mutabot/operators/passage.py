@@ -173,9 +173,5 @@ def rehearse(
         return Reply(dict(replied), payload)
 
     passage = Passage(replace(call, current=where))
-    run(_rehearsed(passage, middleware, answer), operator=operator)
+    run(passed(passage, middleware, answer), operator=operator)
     return passage
-
-
-async def _rehearsed(passage: Passage, middleware: Middleware, answer: Proceed) -> Reply:
-    return await passed(passage, middleware, answer)

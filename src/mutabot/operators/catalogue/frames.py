@@ -10,22 +10,13 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.families import CATALOGUE
-from mutabot.model import (
-    Call,
-    Kind,
-    Middleware,
-    Mode,
-    NotToldError,
-    Operation,
-    Path,
-    Pattern,
-    Quantity,
-)
+from mutabot.model import Call, Kind, Middleware, Mode, NotToldError, Operation, Path, Pattern, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import Quaternion, from_euler, inverse, product
+from mutabot.model.values.units import convert
 from mutabot.operators.context import Context, Unchanged, quantity_of
 from mutabot.operators.evidence import FRAMES
-from mutabot.operators.examples import changed, unchanged
+from mutabot.operators.examples import MOVE_TO, changed, unchanged
 from mutabot.operators.operator import Example, Need, Operator, Subject, is_number, map_numbers
 from mutabot.operators.value import (
     NOT_GIVEN,
@@ -44,8 +35,6 @@ _BASE, _TOOL = "base", "tool"
 _AXES = "xyz"
 #: how three angles about x, y and z are read: one after the other about axes that stay
 _ORDER = "xyz"
-_X, _Y = (Quantity(name, Path(name), Kind.TRANSLATION, name, "m", "base", Mode.TO) for name in "xy")
-_MOVE_TO = Operation("robot:Arm.move_to", (_X, _Y))
 _MOVES = tuple(Quantity(axis, Path(axis), Kind.TRANSLATION, axis, "m", _BASE, Mode.BY) for axis in _AXES)
 _MOVE_BY = Operation("robot:Arm.move_by", _MOVES, current="robot:Arm.tool_pose")
 _DOWN = {"theta_x": 180.0, "theta_y": 0.0, "theta_z": 90.0}
@@ -60,8 +49,8 @@ _J6 = Quantity("joints[5]", Path("joints"), Kind.ROTATION, "j6", "deg", mode=Mod
 _SET_J6 = Operation("robot:Arm.move_joints", (_J6,))
 _YAW = Quantity("yaw", Path("yaw"), Kind.ROTATION, "z", "deg", "base", Mode.TO)
 _TURNED = Quantity("turned", Path("turned"), Kind.QUATERNION, order="wxyz")
-_POSE = Operation("robot:Arm.move_to", (_Y, _YAW))
-_PUT = Operation("robot:Arm.put", (_Y, _TURNED))
+_POSE = Operation("robot:Arm.move_to", (MOVE_TO.arguments[1], _YAW))
+_PUT = Operation("robot:Arm.put", (MOVE_TO.arguments[1], _TURNED))
 #: 12 cm of gripper that looks down
 _TIP = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.6), tcp=-0.12)
 _MOVE_TIP = Operation("robot:Arm.move_to", (_TIP,))
@@ -76,9 +65,9 @@ class AxisSwap(Exchange):
     stands_for = f"A wrong axis: {FRAMES}."
     where = "commands that write two of the axes x, y, z of one translation or rotation"
     examples: ClassVar[tuple[Example, ...]] = (
-        changed(_MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.1, "y": 0.4}, "y"),
-        unchanged(_MOVE_TO, {"x": 0.2, "y": 0.2}, "both are the same", "y"),
-        unchanged(_MOVE_TO, {"x": 0.2}, "the call gives no y", "y"),
+        changed(MOVE_TO, {"x": 0.4, "y": 0.1}, {"x": 0.1, "y": 0.4}, "y"),
+        unchanged(MOVE_TO, {"x": 0.2, "y": 0.2}, "both are the same", "y"),
+        unchanged(MOVE_TO, {"x": 0.2}, "the call gives no y", "y"),
     )
 
     def pairs(self, whole: Subject) -> Iterator[tuple[Quantity, Quantity]]:
@@ -135,9 +124,7 @@ class LeftHanded(ValuesOperator):
     examples: ClassVar[tuple[Example, ...]] = (
         changed(_POSE, {"y": 0.2, "yaw": 30.0}, {"y": -0.2, "yaw": -30.0}),
         changed(
-            _PUT,
-            {"y": 0.2, "turned": [0.8, 0.0, 0.0, 0.6]},
-            {"y": -0.2, "turned": [0.8, 0.0, 0.0, -0.6]},
+            _PUT, {"y": 0.2, "turned": [0.8, 0.0, 0.0, 0.6]}, {"y": -0.2, "turned": [0.8, 0.0, 0.0, -0.6]}
         ),
         unchanged(_POSE, {"y": 0.0, "yaw": 0.0}, "a mirror changes nothing here"),
     )
@@ -263,9 +250,7 @@ def _moved(subject: Subject) -> list[Quantity]:
 async def _orientation(call: Call, moved: Quantity) -> Quaternion:
     """How the tool is turned in the base's frame, by its three angles."""
     asked = (Quantity(f"theta_{axis}", Path(), Kind.ROTATION, axis, "deg", _BASE, Mode.TO) for axis in _AXES)
-    angles = [one.from_unit(await call.current(one), "deg") for one in asked]
-    radians = Quantity("angle", Path(), Kind.ROTATION, unit="rad")
-    return from_euler([radians.from_unit(angle, "deg") for angle in angles], _ORDER)
+    return from_euler([convert(await call.current(one), "deg", "rad") for one in asked], _ORDER)
 
 
 def _turned(values: Mapping[str, Value], by: Quaternion) -> dict[str, float]:

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import ClassVar
 
 from mutabot.families import CATALOGUE
-from mutabot.model import Call, Kind, Mode, Operation, Path, Proceed, Quantity, Reply
+from mutabot.model import Call, Kind, Proceed, Reply
 from mutabot.model.values.quantity import WHOLE, Value
 from mutabot.model.values.sameness import are_same
 from mutabot.operators.command import CommandOperator, idle_of
 from mutabot.operators.context import Context, Unchanged
 from mutabot.operators.evidence import COMMANDS, TIMING
-from mutabot.operators.examples import GRIP, changed, unchanged, writing
+from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, writing
 from mutabot.operators.operator import Example, Need, Subject, map_numbers
 from mutabot.operators.robot.commands import other_end
 from mutabot.operators.value import ValueOperator, given, like
@@ -25,12 +24,7 @@ _MOTIONS = WHOLE | {Kind.TRANSLATION, Kind.ROTATION}
 _GRIPPING = (
     "commands with an opening, and commands without quantities that have an opposite, such as close and open"
 )
-_DX = Quantity("dx", Path("dx"), Kind.TRANSLATION, "x", "m", "base", Mode.BY)
-_MOVE_BY = Operation("robot:Arm.move_by", (_DX,))
-_REFUSED = replace(_MOVE_BY, refusals=("robot:Refused",))
-_X, _Y = (Quantity(name, Path(name), Kind.TRANSLATION, name, "m", "base", Mode.TO) for name in "xy")
-_MOVE_TO = Operation("robot:Arm.move_to", (_X, _Y))
-_CLOSE = Operation("robot:Gripper.close", opposite="robot:Gripper.open")
+_REFUSED = replace(MOVE_BY, refusals=("robot:Refused",))
 _WAIT = writing("cell:wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 60.0))
 
 
@@ -53,7 +47,7 @@ class SwapNext(_Timing):
     where = "any command whose answer to doing nothing is known"
     fault = "only after the next command"
     examples: ClassVar[tuple[Example, ...]] = (
-        Example(Subject(_MOVE_BY), {"dx": 0.1}, performed=(), afterwards=({"dx": 0.1},)),
+        Example(Subject(MOVE_BY), {"dx": 0.1}, performed=(), afterwards=({"dx": 0.1},)),
     )
 
     async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
@@ -74,13 +68,13 @@ class PreviousTarget(_Timing):
     fault = "the motion of the call before it again"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
-            Subject(_MOVE_TO),
+            Subject(MOVE_TO),
             {"x": 0.4, "y": 0.1},
             previous={"x": 0.2, "y": 0.0},
             performed=({"x": 0.2, "y": 0.0},),
         ),
-        Example(Subject(_MOVE_TO), {"x": 0.4}, away="there is none before it"),
-        Example(Subject(_MOVE_TO), {"x": 0.4}, previous={"x": 0.4}, away="it went there before"),
+        Example(Subject(MOVE_TO), {"x": 0.4}, away="there is none before it"),
+        Example(Subject(MOVE_TO), {"x": 0.4}, previous={"x": 0.4}, away="it went there before"),
     )
 
     def fits(self, whole: Subject) -> bool:
@@ -166,7 +160,7 @@ class EarlyRelease(_Timing):
     fault = "and back after the next command"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(Subject(GRIP), {"position": 1}, performed=({"position": 1},), afterwards=({"position": 0},)),
-        Example(Subject(_CLOSE), performed=({},), afterwards=({"reversed": True},)),
+        Example(Subject(CLOSE), performed=({},), afterwards=({"reversed": True},)),
         Example(Subject(GRIP), {"position": 0.5}, away="half open has no opposite"),
     )
 
@@ -190,15 +184,13 @@ def _undone(subject: Subject, call: Call) -> Call:
     """The call that takes a gripper command back. Raises Unchanged if its opening has no other end."""
     for quantity in subject.written:
         if quantity.kind is Kind.OPENING:
-            value = other_end(quantity, given(call.values, quantity.name))
-            if value is None:
-                raise Unchanged("the value is neither of the two ends")
-            return call.with_value(quantity, value)
+            value = given(call.values, quantity.name)
+            return call.with_value(quantity, other_end(quantity, value))
     return call.opposite()
 
 
 class _Chance(CommandOperator):
-    """Acts on one command in three, by chance; the variant says how likely it is."""
+    """Acts on a command by chance; the variant says how likely that is."""
 
     family = CATALOGUE
     stands_for = f"A command that is lost, or comes twice: {COMMANDS}."
@@ -207,15 +199,6 @@ class _Chance(CommandOperator):
 
     def is_chance(self, subject: Subject) -> bool:
         return True
-
-    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
-        if context.draw().random() >= context.option:
-            raise Unchanged("chance spares it")
-        return await self.struck(call, proceed)
-
-    @abstractmethod
-    async def struck(self, call: Call, proceed: Proceed) -> Reply:
-        """What becomes of a command that chance does not spare."""
 
 
 class LostCommand(_Chance):
@@ -239,7 +222,8 @@ class LostCommand(_Chance):
         ),
     )
 
-    async def struck(self, call: Call, proceed: Proceed) -> Reply:
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        context.by_chance()
         return idle_of(call)
 
 
@@ -254,16 +238,17 @@ class DoubleCommand(_Chance):
     where = "any command"
     fault = "do it twice, with a probability of {variant}"
     examples: ClassVar[tuple[Example, ...]] = (
-        Example(Subject(_MOVE_BY, variant="30%"), {"dx": 0.1}, performed=({"dx": 0.1}, {"dx": 0.1})),
+        Example(Subject(MOVE_BY, variant="30%"), {"dx": 0.1}, performed=({"dx": 0.1}, {"dx": 0.1})),
         Example(
-            Subject(_MOVE_BY, variant="30%"),
+            Subject(MOVE_BY, variant="30%"),
             {"dx": 0.1},
             earlier=({"dx": 0.2},) * 3,
             away="most commands are carried out once",
         ),
     )
 
-    async def struck(self, call: Call, proceed: Proceed) -> Reply:
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        context.by_chance()
         await proceed(call)
         return await proceed(call)
 

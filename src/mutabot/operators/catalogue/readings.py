@@ -7,17 +7,16 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
-from random import Random
 from typing import ClassVar
 
 from mutabot.families import CATALOGUE
-from mutabot.model import Call, Kind, Middleware, Operation, Path, Pattern, Proceed, Quantity, Reply
-from mutabot.model.values.quantity import Value
+from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
+from mutabot.model.values.quantity import MEASURED, WHOLE, Value
 from mutabot.operators.command import CommandOperator, comes_by_itself
 from mutabot.operators.context import Context, Unchanged, quantity_of
 from mutabot.operators.evidence import SENSORS, TIMING
 from mutabot.operators.examples import changed, reading, unchanged
-from mutabot.operators.operator import Example, Need, Operator, Subject, is_number, map_numbers
+from mutabot.operators.operator import Example, Need, Subject, is_number, map_numbers
 from mutabot.operators.value import NOT_GIVEN, ValueOperator, label, like, middle_of, next_of, within
 
 from ._pairs import Exchange, is_alike
@@ -42,7 +41,7 @@ _LOCATE = Operation("camera:locate", result=_CHANNELS, command=False)
 _LATE = 0.5
 
 
-class Dropout(Operator):
+class Dropout(CommandOperator):
     """Gives what the vocabulary says that a reading gives which is not there."""
 
     name = "dropout"
@@ -76,23 +75,18 @@ class Dropout(Operator):
     def only_reads(self, subject: Subject) -> bool:
         return quantity_of(subject).missing in (_NONE, _NAN)
 
-    def middleware(self, subject: Subject, random: Random) -> Middleware:
-        quantity = quantity_of(subject)
-
-        async def mutated(call: Call, proceed: Proceed) -> Reply:
-            reply = await proceed(call)
-            if quantity.name not in reply.values:
-                return reply.as_is(NOT_GIVEN)
-            if quantity.missing == _NONE:
-                return reply.with_value(quantity, None)
-            if quantity.missing != _NAN:
-                return reply.failing(quantity.missing or "")
-            nothing = map_numbers(reply.values[quantity.name], lambda _: math.nan)
-            if nothing is None:
-                return reply.as_is("its value is no number")
-            return reply.with_value(quantity, nothing)
-
-        return mutated
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        quantity, reply = context.quantity, await proceed(call)
+        if quantity.name not in reply.values:
+            return reply.as_is(NOT_GIVEN)
+        if quantity.missing == _NONE:
+            return reply.with_value(quantity, None)
+        if quantity.missing != _NAN:
+            return reply.failing(quantity.missing or "")
+        nothing = map_numbers(reply.values[quantity.name], lambda _: math.nan)
+        if nothing is None:
+            return reply.as_is("its value is no number")
+        return reply.with_value(quantity, nothing)
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         quantity = quantity_of(subject)
@@ -117,14 +111,12 @@ class OldReading(_Reading):
     summary = "A reading is old: the value of the call before, or of five calls before, at the same place."
     rank = 341
     where = "read quantities, at places that a test calls more than once"
+    kinds = frozenset(Kind)
     variants: ClassVar[Mapping[str, int]] = {"1": 1, "5": 5}
     examples: ClassVar[tuple[Example, ...]] = (
         changed(_MEASURE, 0.2, 0.3, "1", earlier=(0.5, 0.3)),
         unchanged(_MEASURE, 0.2, "there is none so old yet", "5", earlier=(0.5,)),
     )
-
-    def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        return True
 
     def least_calls(self, subject: Subject) -> int:
         return self.variants[subject.variant] + 1
@@ -148,13 +140,11 @@ class StuckReading(_Reading):
     summary = "A sensor is stuck: from the second call on a place reads what it read first in the test."
     rank = 342
     where = "read quantities, at places that a test calls more than once"
+    kinds = frozenset(Kind)
     examples: ClassVar[tuple[Example, ...]] = (
         changed(_MEASURE, 0.2, 0.5, earlier=(0.5, 0.3)),
         unchanged(_MEASURE, 0.2, "it is the first reading"),
     )
-
-    def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        return True
 
     def least_calls(self, subject: Subject) -> int:
         return 2
@@ -184,6 +174,7 @@ class Spike(_Reading):
     )
     rank = 343
     where = "read numbers on a scale, but for orientations as a whole"
+    kinds = MEASURED - WHOLE
     variants: ClassVar[Mapping[str, float]] = {"10%": 0.1}
     examples: ClassVar[tuple[Example, ...]] = (
         changed(_MEASURE, 0.2, 2.0, "10%", earlier=(0.2,)),
@@ -194,12 +185,8 @@ class Spike(_Reading):
     def is_chance(self, subject: Subject) -> bool:
         return True
 
-    def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        return quantity.is_measured and not quantity.is_whole
-
     def change(self, value: Value, context: Context) -> Value | None:
-        if context.draw().random() >= context.option:
-            raise Unchanged("chance spares it")
+        context.by_chance()
         limits = context.quantity.range
         if limits is None:
             return map_numbers(value, lambda number: like(number, 10.0 * number))
@@ -221,15 +208,13 @@ class SaturatedReading(_Reading):
     )
     rank = 344
     where = "read numbers on a scale, but for orientations as a whole"
+    kinds = MEASURED - WHOLE
     examples: ClassVar[tuple[Example, ...]] = (
         changed(_NEAR, 1.9, 1.8),
         changed(_MEASURE, -0.5, -0.4, earlier=(0.5,)),
         unchanged(_NEAR, 1.0, "it is in the middle"),
         unchanged(_MEASURE, 0.1, "it is less than 80 % of the first", earlier=(0.5,)),
     )
-
-    def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        return quantity.is_measured and not quantity.is_whole
 
     def change(self, value: Value, context: Context) -> Value | None:
         quantity, memory = context.quantity, context.memory
@@ -308,8 +293,7 @@ class ConfusedLabel(_Reading):
         return quantity.kind in (Kind.LABEL, Kind.FLAG) and len(quantity.values or ()) > 1
 
     def change(self, value: Value, context: Context) -> Value | None:
-        if context.draw().random() >= context.option:
-            raise Unchanged("chance spares it")
+        context.by_chance()
         return next_of(value, context.quantity)
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:

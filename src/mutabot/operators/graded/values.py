@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 from typing import ClassVar
 
@@ -9,7 +10,7 @@ from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.units import Dimension, convert
 from mutabot.operators.context import Context, Draws
 from mutabot.operators.evidence import PARAMETERS, SENSORS
-from mutabot.operators.examples import LOCATE, changed, reading, unchanged, writing
+from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, writing
 from mutabot.operators.magnitudes import Ladder, ladder_in, own_ladder, per_second
 from mutabot.operators.operator import Example, Need, Subject
 
@@ -17,11 +18,9 @@ from ._number import NumberOperator
 
 #: angles that say where something is: a share of them means nothing, as their zero is anywhere
 _ANY_ZERO = frozenset({Kind.ORIENTATION, Kind.ANGLE, Kind.TEMPERATURE})
-_DY = Quantity("dy", Path("dy"), Kind.TRANSLATION, "y", "m", "base", Mode.BY)
-_X = Quantity("x", Path("x"), Kind.TRANSLATION, "x", "m", "base", Mode.TO)
 _Z = Quantity("z", Path("z"), Kind.TRANSLATION, "z", "m", "base", Mode.TO, range=(0.0, 0.5))
-_MOVE = Operation("robot:Arm.move_by", (_DY,))
-_GO = Operation("robot:Arm.move_to", (_X,))
+_MOVE = writing("robot:Arm.move_by", "dy", Kind.TRANSLATION, axis="y", unit="m", frame="base", mode=Mode.BY)
+_GO = replace(MOVE_TO, arguments=MOVE_TO.arguments[:1])
 _LIFT = Operation("robot:Arm.lift_to", (_Z,))
 _ORIENT = writing("robot:Arm.orient", "rotation", Kind.ROTATION_VECTOR, unit="deg")
 _FEEL = reading("sensor:gap", Kind.DISTANCE, unit="m")

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from random import Random
+from collections.abc import Iterator
 from typing import ClassVar
 
-from mutabot.model import Call, Kind, Middleware, Mode, Operation, Path, Pattern, Proceed, Quantity, Reply
+from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Reply
 from mutabot.model.values.notation import Notation
 from mutabot.model.values.quantity import Value
 from mutabot.operators.command import CommandOperator, idle_of
-from mutabot.operators.context import Context
-from mutabot.operators.examples import GRIP, changed, unchanged, writing
-from mutabot.operators.operator import Example, Need, Operator, Subject
+from mutabot.operators.context import Context, Unchanged
+from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, changed, unchanged, writing
+from mutabot.operators.operator import Example, Need, Subject
 from mutabot.operators.rule import Published
 
 _HOME = Operation("robot:Arm.home")
-_DX = Quantity("dx", Path("dx"), Kind.TRANSLATION, "x", "m", "base", Mode.BY)
-_MOVE = Operation("robot:Arm.move_by", (_DX,))
 _OPEN_TO = writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))
-_CLOSE = Operation("robot:Gripper.close", opposite="robot:Gripper.open")
 _LAMP = writing("robot:Lamp.set", "lit", Kind.OUTPUT, values=(False, True))
 _FAN = writing("robot:Fan.set", "mode", Kind.OUTPUT, values=("off", "slow", "fast"))
 _LIFT = Pattern("lift/{height:g}", opposite="drop/{height:g}")
@@ -57,7 +53,7 @@ class Repeat(CommandOperator):
     fault = "do it twice"
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
-            Subject(_MOVE),
+            Subject(MOVE_BY),
             {"dx": 0.1},
             performed=({"dx": 0.1}, {"dx": 0.1}),
             note="do command x: do command x twice",
@@ -69,7 +65,7 @@ class Repeat(CommandOperator):
         return await proceed(call)
 
 
-class Opposite(Operator):
+class Opposite(CommandOperator):
     """Does the opposite of a two-state command, or the operation named as the opposite."""
 
     name = "opposite"
@@ -81,7 +77,7 @@ class Opposite(Operator):
         changed(GRIP, 1, 0, note="grasp: release"),
         changed(_LAMP, False, True),
         changed(_OPEN_TO, 85.0, 0.0, note="an opening at one end of its range goes to the other end"),
-        Example(Subject(_CLOSE), performed=({"reversed": True},), note="calls the opposite operation"),
+        Example(Subject(CLOSE), performed=({"reversed": True},), note="calls the opposite operation"),
         Example(
             Subject(_SEND, _LIFT),
             {"height": 5},
@@ -93,7 +89,7 @@ class Opposite(Operator):
         unchanged(_FAN, "slow", "three states have no opposite"),
     )
 
-    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterable[Subject]:
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
         whole = Subject(operation, pattern)
         for quantity in whole.written:
             if quantity.kind in (Kind.OPENING, Kind.OUTPUT) and _ends(quantity) is not None:
@@ -101,18 +97,11 @@ class Opposite(Operator):
         if whole.opposite is not None:
             yield whole
 
-    def middleware(self, subject: Subject, random: Random) -> Middleware:
-        quantity = subject.quantity
-
-        async def mutated(call: Call, proceed: Proceed) -> Reply:
-            if quantity is None:
-                return await proceed(call.opposite())
-            value = other_end(quantity, call.values.get(quantity.name))
-            if value is None:
-                return await proceed(call.as_is("the value is neither of the two ends"))
-            return await proceed(call.with_value(quantity, value))
-
-        return mutated
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        quantity = context.subject.quantity
+        if quantity is None:
+            return await proceed(call.opposite())
+        return await proceed(call.with_value(quantity, other_end(quantity, call.values.get(quantity.name))))
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         if subject.quantity is not None:
@@ -129,10 +118,10 @@ def _ends(quantity: Quantity) -> tuple[Value, Value] | None:
     return quantity.range or quantity.clip
 
 
-def other_end(quantity: Quantity, value: Value) -> Value | None:
-    """The other of a quantity's two states, or None if the value is neither."""
+def other_end(quantity: Quantity, value: Value) -> Value:
+    """The other of a quantity's two states. Raises Unchanged if the value is neither."""
     ends = _ends(quantity)
     value = quantity.clipped(value)
     if ends is None or value is None or value not in ends:
-        return None
+        raise Unchanged("the value is neither of the two ends")
     return ends[1] if value == ends[0] else ends[0]

@@ -8,21 +8,11 @@ from dataclasses import replace
 from random import Random
 from typing import ClassVar
 
-from mutabot.model import (
-    Call,
-    Kind,
-    Middleware,
-    Mode,
-    NotToldError,
-    Operation,
-    Path,
-    Pattern,
-    Quantity,
-)
+from mutabot.model import Call, Kind, Middleware, Mode, NotToldError, Operation, Path, Pattern, Quantity
 from mutabot.model.values.direction import EITHER, has_direction
 from mutabot.model.values.quantity import READING_OF, Value
 from mutabot.operators.context import Context, Unchanged, quantity_of
-from mutabot.operators.examples import changed, unchanged, writing
+from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
 from mutabot.operators.operator import Example, Need, Operator, Subject, is_number, map_numbers
 from mutabot.operators.orientation import the_other_way
 from mutabot.operators.rule import Published
@@ -50,10 +40,9 @@ _LIFT_TO = Operation("robot:Arm.lift_to", (_LIFT,))
 _AHEAD = Quantity("linear.x", Path.parse("message.linear.x", rooted=True), Kind.SPEED, "x", "m/s")
 _DRIVE = Operation("publish /cmd_vel", (_AHEAD,))
 _GO = writing("base:Base.go", "speed", Kind.SPEED, unit="m/s", range=(-0.2, 1.0))
-_DX = Quantity("dx", Path("dx"), Kind.TRANSLATION, "x", "m", "base", Mode.BY)
-_X = Quantity("x", Path("x"), Kind.TRANSLATION, "x", "m", "base", Mode.TO)
-_BY = Operation("robot:Arm.move_by", (_DX,), current="robot:Arm.tool_pose")
-_TO = Operation("robot:Arm.move_to", (_X,), current="robot:Arm.tool_pose")
+_X = MOVE_TO.arguments[0]
+_BY = replace(MOVE_BY, current="robot:Arm.tool_pose")
+_TO = replace(MOVE_TO, arguments=(_X,), current="robot:Arm.tool_pose")
 _NEAR = replace(_TO, arguments=(replace(_X, range=(0.0, 0.6)),))
 
 

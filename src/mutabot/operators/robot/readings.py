@@ -8,7 +8,7 @@ from random import Random
 from typing import ClassVar
 
 from mutabot.model import Kind, Quantity
-from mutabot.model.values.quantity import PLAIN, Value
+from mutabot.model.values.quantity import MEASURED, PLAIN, Value
 from mutabot.operators.context import Context, quantity_of
 from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged
 from mutabot.operators.operator import Example, Subject, map_numbers
@@ -44,6 +44,7 @@ class Negate(ValueOperator):
     summary = "A position, distance or angle is read with the wrong sign."
     rank = 60
     where = "read positions, distances, angles and orientations"
+    kinds = MEASURED - PLAIN
     published = (Published(9, "distance value is x", "distance value is −x"),)
     of_written = False
     examples: ClassVar[tuple[Example, ...]] = (
@@ -59,9 +60,6 @@ class Negate(ValueOperator):
         unchanged(LOCATE, {}, "the reading has no such part this time"),
     )
 
-    def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        return quantity.is_measured and quantity.kind not in PLAIN
-
     def change(self, value: Value, context: Context) -> Value | None:
         if context.quantity.is_whole:
             return the_other_way(context.quantity, value)
@@ -75,6 +73,7 @@ class Noise(ValueOperator):
     summary = "A position, distance or angle is read with Gaussian noise added."
     rank = 70
     where = "read positions, distances, angles and orientations"
+    kinds = frozenset(DEFAULT_DEVIATION)
     draws = True
     published = (
         Published(10, "distance value is x", "distance value is x + noise"),
@@ -91,9 +90,6 @@ class Noise(ValueOperator):
         ),
         unchanged(_NOISY, None, "there is no number to disturb"),
     )
-
-    def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        return quantity.is_measured and quantity.kind in DEFAULT_DEVIATION
 
     def change(self, value: Value, context: Context) -> Value | None:
         quantity, random = context.quantity, context.random
