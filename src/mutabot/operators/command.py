@@ -66,11 +66,12 @@ class CommandOperator(Operator):
         context = Context(subject, random, self.variants.get(subject.variant))
 
         async def mutated(call: Call, proceed: Proceed) -> Reply:
-            context.call, context.number = call, context.number + 1
+            context.number += 1
             try:
                 return await self.mutated(call, proceed, context)
             except Unchanged as why:
-                return await proceed(call.as_is(str(why)))
+                call = call.as_is(str(why))
+            return await proceed(call)  # outside of the clause: what the robot raises has no such context
 
         return mutated
 

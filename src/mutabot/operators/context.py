@@ -41,8 +41,8 @@ class Context:
         subject: what it acts on.
         random: its generator for this round and test; ``draw`` is the one of a call.
         option: what the operator's table of variants says of the subject's; None if that has none.
-        call: the call that it is about to act on.
-        number: of that call, from 1.
+        call: the call of the value that it is about to change, for operators on values.
+        number: of the call, from 1.
         memory: what the operator keeps from one call for later ones.
     """
 

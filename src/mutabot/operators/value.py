@@ -7,7 +7,7 @@ from abc import abstractmethod
 from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from random import Random
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 from mutabot.model import Call, Kind, Middleware, Operation, Pattern, Proceed, Quantity, Reply
 from mutabot.model.values.quantity import Value
@@ -17,6 +17,7 @@ from .context import Context, Unchanged, quantity_of
 from .magnitudes import Ladder, sized
 from .operator import Operator, Subject
 
+CallOrReply = TypeVar("CallOrReply", Call, Reply)
 _NAMES = re.compile(r"[._]")
 #: why an operator leaves a call without a value alone
 NOT_GIVEN = "the call gives no such value"
@@ -41,21 +42,10 @@ class ValuesOperator(Operator):
         context = Context(subject, random, self.variants.get(subject.variant))
 
         async def written(call: Call, proceed: Proceed) -> Reply:
-            context.call = call
-            try:
-                changed = self._checked(call.values, context)
-            except Unchanged as why:
-                return await proceed(call.as_is(str(why)))
-            return await proceed(replace(call, values={**call.values, **changed}))
+            return await proceed(self._changed(call, call, context))
 
         async def read(call: Call, proceed: Proceed) -> Reply:
-            context.call = call
-            reply = await proceed(call)
-            try:
-                changed = self._checked(reply.values, context)
-            except Unchanged as why:
-                return reply.as_is(str(why))
-            return replace(reply, values={**reply.values, **changed})
+            return self._changed(await proceed(call), call, context)
 
         return written if subject.is_written else read
 
@@ -69,9 +59,15 @@ class ValuesOperator(Operator):
         """Why a new value is not put in place of another one; empty if it can be."""
         return why_unchanged(quantity, before, after)
 
-    def _checked(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
-        changed = self.changes(values, context)
-        return checked(context.subject.side, values, changed, self.why_unchanged)
+    def _changed(self, one: CallOrReply, call: Call, context: Context) -> CallOrReply:
+        """The call, or the reply to it, with the new values in it."""
+        context.call = call  # others may have been made while this one waited for its reply
+        try:
+            changed = self.changes(one.values, context)
+            checked(context.subject.side, one.values, changed, self.why_unchanged)
+        except Unchanged as why:
+            return one.as_is(str(why))
+        return replace(one, values={**one.values, **changed})
 
 
 class ValueOperator(ValuesOperator):

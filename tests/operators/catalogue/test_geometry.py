@@ -49,6 +49,18 @@ def test_a_move_in_the_other_frame_is_turned_as_the_tool_is(frame: str, angles: 
     assert list(turned.values()) == pytest.approx(expected.tolist())
 
 
+def test_a_move_in_the_other_frame_stays_within_the_range_of_each_axis() -> None:
+    moves = tuple(
+        quantity(axis, Kind.TRANSLATION, axis, "m", frame="base", mode=Mode.BY, range=(-0.1, 0.5))
+        for axis in AXES
+    )
+    where = Operation("robot:Arm.move", moves, current="robot:Arm.pose")
+    move = dict(zip(AXES, (0.1, 0.2, 0.3), strict=True))
+    told = {"theta_x": 10.0, "theta_y": 20.0, "theta_z": 90.0}
+    assert rotation_from_euler(*told.values())[0] @ np.array([*move.values()]) < -0.1
+    assert written("base-for-tool", Subject(where, quantity=moves[0]), move, **told) == move
+
+
 @pytest.mark.parametrize("angles", ANGLES)
 def test_a_left_handed_pose_is_mirrored_whichever_way_its_orientation_is_written(angles: list[float]) -> None:
     mirror = np.diag([1.0, -1.0, 1.0])

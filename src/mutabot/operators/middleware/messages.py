@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, TypeVar
+from typing import ClassVar
 
 from mutabot.families import MIDDLEWARE
 from mutabot.model import Call, Mishap, Proceed, Reply
@@ -13,6 +13,7 @@ from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
 from mutabot.operators.context import Context, Unchanged
 from mutabot.operators.magnitudes import Ladder
 from mutabot.operators.operator import Example, Need, Subject
+from mutabot.operators.value import CallOrReply
 
 from ._examples import CALL, CALL_TO, PUBLISH, RECEIVE
 
@@ -21,7 +22,6 @@ _PROBABILITY = 0.3
 _FIRST, _PREVIOUS = "first", "previous"
 _NONE_BEFORE = "there is none before it"
 _EARLIER = frozenset({Need.MEMORY, Need.COPIES})
-Sent = TypeVar("Sent", Call, Reply)
 #: forms that write a message
 _SENT = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL})
 
@@ -167,7 +167,7 @@ class Stale(MessageOperator):
             return await proceed(self._old(call, context))
         return self._old(await proceed(call), context)
 
-    def _old(self, one: Sent, context: Context) -> Sent:
+    def _old(self, one: CallOrReply, context: Context) -> CallOrReply:
         """The earlier one to be taken instead, or the same with the reason why there is none."""
         old = context.memory[0] if context.memory else one.as_is(_NONE_BEFORE)
         if not context.memory or context.subject.variant != _FIRST:
