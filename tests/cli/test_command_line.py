@@ -221,7 +221,7 @@ def test_a_key_of_the_configuration_can_be_set_for_one_command(fake: Campaign) -
         ("=3", "-o =3: write KEY=VALUE"),
         ("a.b.c=1", "write KEY=VALUE"),
         ("when=onc", "'onc' is no moment"),
-        ("cluster.cacert=x", "unknown key 'cacert'"),
+        pytest.param("cluster.cacert=x", "unknown key 'cacert'", marks=pytest.mark.needs("dask")),
         ("program=nowhere.py", "there is no 'nowhere.py'"),
         (f"rounds={'[' * 5000}", "rounds"),
         (f"rounds={'9' * 5000}", "rounds"),
@@ -259,6 +259,7 @@ def test_an_option_that_there_is_not_is_no_part_of_a_request(project: Path) -> N
         request_of(project, rouns=3)  # type: ignore[call-arg]
 
 
+@pytest.mark.needs("dask")
 def test_every_option_that_went_away_is_none_of_todays() -> None:
     group: Any = typer.main.get_command(app)
     context = group.context_class(group, info_name="mutabot")

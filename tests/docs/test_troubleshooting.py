@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "troubleshooting.md"
-SOURCES = ROOT / "src" / "mutabot"
+SOURCES = ROOT / "src"
 #: stands on the page and in templates for what differs from project to project
 _ANYTHING = "…"
 

@@ -16,6 +16,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "configuration.md"
 LEAST = {"program": ["mission.py"], "vocabulary": ["robot.toml"]}
 
 
+@pytest.mark.needs("dask")
 def test_docs_configuration_md_is_up_to_date() -> None:
     assert PAGE.read_text(encoding="utf-8") == configuration_page.page(), "run python tools/make_docs.py"
 

@@ -145,6 +145,10 @@ def test_the_option_of_an_executor_chooses_it_and_its_table_is_read(site: Path, 
 def test_a_wrong_value_of_an_executor_is_refused_before_anything_runs(site: Path, project: Path) -> None:
     done = mutabot_with(site, project, "run", "--toy", "wildly")
     assert (done.returncode, done.stderr) == (USAGE, "mutabot: --toy wildly: only gently\n")
+
+
+@pytest.mark.needs("dask")
+def test_a_campaign_has_one_executor(site: Path, project: Path) -> None:
     both = mutabot_with(site, project, "run", "--toy", "gently", "--cluster", "local:1")
     assert both.returncode == USAGE
     assert "--cluster and --toy: a campaign has one executor" in both.stderr
