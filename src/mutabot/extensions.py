@@ -38,6 +38,7 @@ class Extension:
         middlewares: modules with hooks, by the name of the module whose import puts them in place.
         vocabularies: files ``package:file.toml``, by the names that projects use for them.
         versions: distributions whose versions decide how tests end; a campaign's journal notes them.
+        faults: subclasses of ``mutabot.faults.FaultProvider``, by the providers' names.
     """
 
     interface: int
@@ -45,6 +46,7 @@ class Extension:
     middlewares: Mapping[str, str] = field(default_factory=dict)
     vocabularies: Mapping[str, str] = field(default_factory=dict)
     versions: tuple[str, ...] = ()
+    faults: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

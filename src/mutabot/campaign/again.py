@@ -6,15 +6,16 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.second_look import Looker
+from mutabot.campaign.faults.providers import prepare
 from mutabot.campaign.plan.second_order import pair
 from mutabot.errors import SelectionError
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import Replayed
 from mutabot.model import Mutant
+from mutabot.model.place import Place
 
 from .beginning import open_executor, plan_of
 from .campaign import Campaign
@@ -39,7 +40,8 @@ def replay_one(
     request = replace(request, rounds=rounds[-1] + 1)
     first = {(one.mutant, one.round): one for one in journal.outcomes()}
     with open_executor(request, progress) as opened:
-        baseline, _ = take_baseline(request, opened, progress, repetitions=1)
+        prepared = prepare(request.project)
+        baseline, _ = take_baseline(request, opened, progress, prepared=prepared, repetitions=1)
         mutant = as_it_is_now(request, baseline, mutant)
         looker = Looker(Campaign(request, baseline, opened, progress))
         for _ in run_controls(looker.campaign, [mutant]):

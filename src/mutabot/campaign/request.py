@@ -11,6 +11,7 @@ from typing import Any, Protocol
 from mutabot.border.job import Job
 from mutabot.campaign.workers.pause import Pause
 from mutabot.families import USUAL
+from mutabot.faults import Project
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
 from mutabot.settings.configuration import Configuration
@@ -84,6 +85,18 @@ class Request:
     def root(self) -> Path:
         """The project's folder."""
         return self.configuration.root
+
+    @property
+    def project(self) -> Project:
+        """What is asked of providers of faults; what is demanded of magnitudes is so of single faults."""
+        return Project(
+            self.root,
+            self.configuration.program,
+            self.vocabulary,
+            self.families,
+            self.moments,
+            self.configuration.demands if self.order == 1 else (),
+        )
 
     @property
     def arguments(self) -> tuple[str, ...]:

@@ -9,7 +9,6 @@ from typing import Annotated
 import typer
 
 from mutabot import __version__, limits
-from mutabot.families import FAMILIES
 
 _KINDS = Path(__file__).parent.parent / "campaign" / "engines" / "kinds"
 #: an engine is a file; its name is told without loading it, so that `--help` is fast
@@ -20,6 +19,12 @@ def _print_version(wanted: bool) -> None:
     if wanted:
         typer.echo(f"mutabot {__version__}")
         raise typer.Exit
+
+
+def _families() -> list[str]:
+    from mutabot.settings.families import known_families  # noqa: PLC0415  # so that `--help` is fast
+
+    return list(known_families())
 
 
 def _number(value: float | None) -> float | None:
@@ -57,8 +62,8 @@ Families = Annotated[
     typer.Option(
         "--family",
         metavar="NAME",
-        help=f"Families of mutants: {', '.join(FAMILIES)}. Repeatable, or with commas.",
-        autocompletion=lambda: list(FAMILIES),
+        help="Families of mutants, as `mutabot operators` lists them. Repeatable, or with commas.",
+        autocompletion=_families,
     ),
 ]
 Sample = Annotated[

@@ -8,12 +8,13 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal, get_origin
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
 from mutabot import limits
 from mutabot.errors import ConfigurationError, nearest_name
-from mutabot.families import FAMILIES, OF_TEXT, USUAL
+from mutabot.families import USUAL
+from mutabot.faults import families_brought, need_vocabulary
 from mutabot.limits import shortened
 from mutabot.model import Moment
 from mutabot.model.graded.demand import Demand
@@ -22,14 +23,13 @@ from mutabot_dask.settings import ClusterTable
 
 from .demands import check_demands
 from .document import Document
-from .families import need_vocabulary, why_unknown
+from .families import why_unknown
 from .mistakes import Check, raise_errors
 from .overrides import overridden
 from .toml_lines import KeyPath
 
 _NO_VOCABULARY = (
-    "the key 'vocabulary' is missing or empty; mutants of calls need one, those of the program text "
-    f"({', '.join(OF_TEXT)}) do not"
+    "the key 'vocabulary' is missing or empty; mutants of calls need one, those of other families ({}) do not"
 )
 _PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
 _INIT = "run `mutabot init` to propose one"
@@ -97,7 +97,7 @@ def _node_name(name: str) -> str:
 _NodeName = Annotated[str, AfterValidator(_node_name)]
 _Texts = Annotated[tuple[str, ...], Field(strict=False)]
 _SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
-_Family = Annotated[str, AfterValidator(_known_family), WithJsonSchema({"enum": list(FAMILIES)})]
+_Family = Annotated[str, AfterValidator(_known_family)]
 _Families = Annotated[tuple[_Family, ...], Field(strict=False, min_length=1)]
 _Moment = Annotated[str, AfterValidator(_moment)]
 _Moments = Annotated[tuple[_Moment, ...], Field(strict=False, min_length=1)]
@@ -341,7 +341,9 @@ def _checked(
     paths.check_tests(settings.tests, "tests" in raw)
     paths.check_rest(settings)
     if not settings.vocabulary and need_vocabulary(families or settings.families):
-        check.error((*place, *(("vocabulary",) if "vocabulary" in raw else ())), _NO_VOCABULARY)
+        others = ", ".join(families_brought(without_vocabulary=True)) or "there are none"
+        key = ("vocabulary",) if "vocabulary" in raw else ()
+        check.error((*place, *key), _NO_VOCABULARY.format(others))
     cluster = check.table(ClusterTable, settings.cluster, (*place, "cluster"))
     if cluster is not None:
         paths.check_shipped(cluster.files)

@@ -10,12 +10,12 @@ import pytest
 
 from mutabot.campaign.baseline.answers import RecordedAnswers
 from mutabot.campaign.baseline.baseline import Baseline, Hit
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.plan.planned import Plan
 from mutabot.families import CATALOGUE, GRADED, MIDDLEWARE, ROBOT
 from mutabot.model import Kind, Mode, Operation, Path, Quantity, Role, Site, Span, Vocabulary
 from mutabot.model.named import Form, Named
+from mutabot.model.place import Place
 
 SPEED = Quantity("speed", Path("speed"), Kind.SPEED, unit="m/s")
 RATIO = Quantity("power", Path("power"), Kind.RATIO, unit="percent")

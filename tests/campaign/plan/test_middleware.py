@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from mutabot.campaign.baseline.baseline import Baseline, Hit
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.plan.planned import Plan
 from mutabot.families import MIDDLEWARE, ROBOT
 from mutabot.model import Operation, Role, Site, Span, Vocabulary
 from mutabot.model.named import Form
+from mutabot.model.place import Place
 from mutabot.operators.middleware._examples import (
     ADVERTISE,
     HEARD_FRAME,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from mutabot.campaign.baseline.answers import RecordedAnswers
 from mutabot.campaign.baseline.baseline import Baseline, Hit
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.families import ROBOT
 from mutabot.model import Kind, Mode, Mutant, Operation, Path, Quantity, Role, Site, Span, Vocabulary
 from mutabot.model.named import Form, Named
+from mutabot.model.place import Place
 
 Y = Quantity(
     *("pose.position.y", Path.parse("message.pose.position.y", rooted=True), Kind.TRANSLATION, "y", "m"),

@@ -50,6 +50,7 @@ class GradedOperator(Operator):
     """
 
     family = GRADED
+    has_sizes = True
     directions: ClassVar[tuple[str, ...]] = ("+", "-")
 
     @abstractmethod
