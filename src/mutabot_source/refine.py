@@ -70,7 +70,7 @@ def _variables(
     if not place.variable or seen is None:
         return []
     names = [name for name in seen.variables if name not in declared]
-    return [alternative for rule in asking for alternative in rule.with_variables(names)]
+    return [replace(one, family=rule.family) for rule in asking for one in rule.with_variables(names)]
 
 
 def _reason(alternative: Alternative, seen: Sighting | None) -> str | None:
