@@ -8,7 +8,6 @@ from textwrap import dedent
 from typing import Any
 
 import pytest
-
 from tests.plugins.test_plugins import ERRORS, USAGE, mutabot, mutants, python
 
 PROJECT = {
@@ -43,7 +42,7 @@ PROJECT = {
 ENDS = {
     "gravity": (5.0, "killed"),
     "colour": (0.75, "survived"),
-    "mass": (1.0, "no-effect"),
+    "mass": (1.0, "no effect"),
     "wind": (1.0, "error"),
 }
 PACKAGE = {
@@ -106,6 +105,9 @@ PACKAGE = {
 }
 
 
+FORMATS = ("csv", "github", "junit", "markdown", "mutation-testing", "sarif")
+
+
 def write(folder: Path, files: dict[str, str]) -> Path:
     for name, text in files.items():
         file = folder / name
@@ -153,9 +155,6 @@ def test_parameters_get_verdicts_in_processes_of_their_own(site: Path, project: 
     assert by_parameter(json.loads(again.stdout))["colour"]["rounds"][0]["verdict"] == "survived"
 
 
-FORMATS = ("csv", "github", "html", "junit", "markdown", "mutation-testing", "sarif")
-
-
 def test_what_only_forks_may_judge_is_handed_on_with_the_reason(site: Path, project: Path) -> None:
     done = mutabot(site, project, "run", "--json", "--engine", "branch", "--only", "1")
     (found,) = mutants(done, code=ERRORS).values()
@@ -190,14 +189,14 @@ def test_a_provider_that_is_of_no_use_is_named(code: str, told: str, project: Pa
 
 
 def test_mutants_of_calls_need_nothing_that_parses_program_text(project: Path) -> None:
-    vocabulary = '[[operation]]\ncall = "world:seconds_to_fall"\nresult = { kind = "duration", unit = "s" }\n'
+    vocabulary = '[[operation]]\ncall = "world:seconds_to_fall"\nresult = { kind = "distance", unit = "m" }\n'
     configuration = PROJECT["pyproject.toml"].replace('families = ["world"]', 'vocabulary = ["world.toml"]')
     write(project, {"pyproject.toml": configuration, "world.toml": vocabulary})
-    (project / "world.py").write_text(
-        dedent(PROJECT["world.py"]) + "\ndef run():\n    return seconds_to_fall(1.0)\n"
-    )
+    run = "\ndef run():\n    return seconds_to_fall(1.0)\n"
+    (project / "world.py").write_text(dedent(PROJECT["world.py"]) + run)
     (project / "tests" / "test_world.py").write_text(
-        "import sys\nimport world\n\ndef test_it():\n    assert world.run() > 0.4\n    assert 'libcst' not in sys.modules\n"
+        "import sys\nimport world\n\ndef test_it():\n    assert world.run() > 0.4\n"
+        "    assert 'libcst' not in sys.modules\n"
     )
     code = (
         "import sys\nfrom mutabot.cli.app import main\ncode = main()\n"

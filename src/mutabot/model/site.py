@@ -31,6 +31,11 @@ class Span:
     end_column: int
     function: str
 
+    @property
+    def place(self) -> str:
+        """``file:line``; what stands in no line is told by its file alone."""
+        return f"{self.file}:{self.line}" if self.line else self.file
+
 
 @dataclass(frozen=True, slots=True, order=True)
 class Site:

@@ -8,8 +8,8 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal, get_origin
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
-from pydantic_core import PydanticCustomError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError
 
 from mutabot import limits
 from mutabot.errors import ConfigurationError, nearest_name
@@ -23,7 +23,7 @@ from mutabot_dask.settings import ClusterTable
 
 from .demands import check_demands
 from .document import Document
-from .families import why_unknown
+from .families import known_families, why_unknown
 from .mistakes import Check, raise_errors
 from .overrides import overridden
 from .toml_lines import KeyPath
@@ -80,6 +80,13 @@ def _known_family(name: str) -> str:
     return name
 
 
+class _FamilyNames:
+    """What a schema says of them: packages are asked only where it is made."""
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"enum": list(known_families())}
+
+
 def _moment(text: str) -> str:
     try:
         Moment.parse_any(text)
@@ -97,7 +104,7 @@ def _node_name(name: str) -> str:
 _NodeName = Annotated[str, AfterValidator(_node_name)]
 _Texts = Annotated[tuple[str, ...], Field(strict=False)]
 _SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
-_Family = Annotated[str, AfterValidator(_known_family)]
+_Family = Annotated[str, AfterValidator(_known_family), _FamilyNames()]
 _Families = Annotated[tuple[_Family, ...], Field(strict=False, min_length=1)]
 _Moment = Annotated[str, AfterValidator(_moment)]
 _Moments = Annotated[tuple[_Moment, ...], Field(strict=False, min_length=1)]

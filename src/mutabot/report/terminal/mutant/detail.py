@@ -97,7 +97,7 @@ def _facts(result: MutantResult) -> Table:
     table.add_column(overflow="fold")
     facts = {
         "id": mutant.id,
-        "place": "; ".join(f"{one.site.place} in {one.site.span.function}" for one in mutant.singles),
+        "place": "; ".join(map(_place_text, mutant.singles)),
         "role": mutant.site.role.value,
         "operator": f"{mutant.operator} ({mutant.family})",
         "operation": mutant.operation + (f", command {mutant.pattern_name}" if mutant.pattern else ""),
@@ -110,6 +110,11 @@ def _facts(result: MutantResult) -> Table:
         if text:
             table.add_row(name, plain(text))
     return table
+
+
+def _place_text(single: Mutant) -> str:
+    function = single.site.span.function
+    return f"{single.site.place} in {function}" if function else single.site.place
 
 
 def _interval_text(rate: KillRate) -> str:
