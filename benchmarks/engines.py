@@ -190,7 +190,7 @@ def measure(example: str, engine: str, limit: int | None, rate: float | None) ->
                 request, workers, Silent(), repetitions=1 if shared else 2, may_share=shared
             )
             campaign = Campaign(request, baseline, workers, Silent())
-            mutants = selected(campaign, make_plan(baseline, request.vocabulary)).mutants[:limit]
+            mutants = selected(campaign, make_plan(baseline, request.project)).mutants[:limit]
             trials = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
             outcomes = list(run_pairs(engine, campaign, trials))
         wall, cpu = time.monotonic() - started, cpu_seconds() - before

@@ -21,7 +21,8 @@ from mutabot.inside.text.import_hook import ImportHook
 from mutabot.inside.text.instrument import instrumented
 from mutabot.inside.text.loading import compile_tree
 from mutabot.model import Instrumentation, ProgramText
-from mutabot_source import find_texts, names
+from mutabot_source.registry import names
+from mutabot_source.texts import find_texts
 
 #: many places per line and nothing else: the worst there is
 DENSE = """

@@ -137,7 +137,8 @@ def compare(module: str, *, record: bool = False) -> bool:
 
 
 def _job(module: str, *, record: bool) -> tuple[int, int, dict[str, Any]]:
-    from mutabot_source import find_texts, names  # noqa: PLC0415  # not wanted inside
+    from mutabot_source.registry import names  # noqa: PLC0415  # not wanted inside
+    from mutabot_source.texts import find_texts  # noqa: PLC0415  # likewise
 
     file = Path(os.__file__).parent / (module.replace(".", "/") + ".py")
     if not file.exists():

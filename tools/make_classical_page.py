@@ -10,7 +10,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from mutabot_source import ClassicalOperator, Example, names, operator
+from mutabot_source.operator import ClassicalOperator, Example
+from mutabot_source.registry import names, operator
 
 PAGE = Path(__file__).parents[1] / "docs" / "classical.md"
 

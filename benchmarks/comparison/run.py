@@ -23,19 +23,20 @@ from mutabot.analysis.results import Results, read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.request import request_of
-from mutabot.families import FAMILIES, GRADED
+from mutabot.families import GRADED
 from mutabot.journal.files import HOME
 from mutabot.journal.reader import JournalReader
 from mutabot.report.as_json import dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.progress import make_progress
+from mutabot.settings.families import known_families
 
 from . import without_checks
 from .data import comparison_data
 from .families import compare_families
 
 #: graded mutants have thresholds and no score
-COMPARED = tuple(name for name in FAMILIES if name != GRADED)
+COMPARED = tuple(name for name in known_families() if name != GRADED)
 
 
 def main() -> int:

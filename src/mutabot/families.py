@@ -1,7 +1,8 @@
-"""Families of mutants: their names, said once.
+"""Families of the core's own mutants, and the providers that make them: their names, said once.
 
 A family is what a user asks for by ``--family`` or ``families``, and what has a score of its own. Operators
-name the one they belong to. A plug-in may name one that is not listed here: it is one of mutants of calls.
+name the one they belong to. Families of packages are those of their providers (``mutabot.faults``), and an
+operator on calls that a package brings may have one of its own.
 """
 
 from __future__ import annotations
@@ -10,15 +11,12 @@ ROBOT = "robot"
 GRADED = "graded"
 CATALOGUE = "catalogue"
 MIDDLEWARE = "middleware"
-CLASSICAL = "classical"
-TEXT = "text"
 #: mutabot's own mutants, which nobody asks for
 CONTROL = "control"
 
-#: families of mutants of calls, and of the program text; in the order of their numbers
+#: the core's own providers: faults of calls, and of messages and what else goes over a middleware
+CALLS, MESSAGES = "calls", "messages"
+#: their families, in the order in which they are listed
 OF_CALLS = (ROBOT, GRADED, CATALOGUE, MIDDLEWARE)
-OF_TEXT = (CLASSICAL, TEXT)
-#: all that can be asked for without a plug-in
-FAMILIES = (*OF_CALLS, *OF_TEXT)
 #: what is planted if nobody asks
 USUAL = (ROBOT,)

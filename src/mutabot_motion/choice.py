@@ -51,7 +51,7 @@ def choose(
         mutant.number,
         mutant.id,
         mutant.description,
-        f"{mutant.site.span.file}:{mutant.site.span.line}",
+        mutant.site.span.place,
         name,
         where,
         pair.original,

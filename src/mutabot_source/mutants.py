@@ -3,53 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
-from mutabot.model import LeftOut, Mutant
+from mutabot.border.codec import to_data
+from mutabot.faults import Planted
+from mutabot.model import Mutant
 from mutabot.model.alternative import Alternative, Choice, ProgramText, TextPlace
 
+from .families import PROVIDER
 from .rendering import shortened
 
 
-@dataclass(frozen=True, slots=True)
-class Planted:
-    """A mutant of the program text, and the choice that turns it on."""
-
-    mutant: Mutant
-    choice: Choice
-    place: TextPlace
-
-
-@dataclass(frozen=True, slots=True)
-class LeftOutText:
-    """An alternative that is not used, with the reason."""
-
-    place: TextPlace
-    alternative: Alternative
-    reason: str
-
-    @property
-    def as_left_out(self) -> LeftOut:
-        """The same as the plan lists it."""
-        mutant = mutant_of(0, self.place, self.alternative)
-        return LeftOut(mutant.id, mutant.description, self.reason)
+def plant(texts: Iterable[ProgramText]) -> list[Planted]:
+    """All mutants of these texts, in the order of the text."""
+    return [
+        planted_of(place, index)
+        for text in texts
+        for place in text.places
+        for index in range(len(place.alternatives))
+    ]
 
 
-def plant(texts: Iterable[ProgramText], *, first: int = 1) -> list[Planted]:
-    """All mutants of these texts, numbered from ``first``, in the order of the text."""
-    planted: list[Planted] = []
-    for text in texts:
-        for place in text.places:
-            for index, alternative in enumerate(place.alternatives):
-                mutant = mutant_of(first + len(planted), place, alternative)
-                planted.append(Planted(mutant, Choice(place.number, index), place))
-    return planted
+def planted_of(place: TextPlace, index: int, reason: str | None = None) -> Planted:
+    """The mutant that an alternative at a place is, or would be were it not left out for a reason."""
+    alternative = place.alternatives[index]
+    return Planted(
+        _mutant_of(place, alternative),
+        reason,
+        does=to_data(alternative),
+        mentions=alternative.template,
+        choice=Choice(place.number, index),
+    )
 
 
-def mutant_of(number: int, place: TextPlace, alternative: Alternative) -> Mutant:
-    """The mutant that an alternative is."""
+def _mutant_of(place: TextPlace, alternative: Alternative) -> Mutant:
     return Mutant(
-        number=number,
+        number=0,
         family=alternative.family,
         operator=alternative.operator,
         site=place.site,
@@ -58,4 +46,5 @@ def mutant_of(number: int, place: TextPlace, alternative: Alternative) -> Mutant
         quantity=None,
         variant=alternative.variant,
         description=f"{place.text} → {shortened(alternative.text)}",
+        provider=PROVIDER,
     )

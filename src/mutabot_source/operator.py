@@ -14,9 +14,10 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot.families import CLASSICAL
 from mutabot.model.alternative import Alternative
 from mutabot.operators.rule import Rule
+
+from .families import CLASSICAL
 
 #: what the helper object is called in templates; an operator may call, and names what it raises by itself:
 #: ``absolute(value)``, whatever the program calls ``abs``; ``fail(name, text)``, which raises; and

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+from mutabot.faults import Planted
 from mutabot.model.alternative import Alternative, ProgramText, Sighting, TextPlace
 
 from . import registry
-from .mutants import LeftOutText
+from .mutants import planted_of
 from .operator import ClassicalOperator
 
 #: kinds of values that fit what an alternative needs
@@ -35,7 +36,7 @@ def merge(sightings: Iterable[Sighting]) -> dict[int, Sighting]:
 
 def refine(
     texts: Iterable[ProgramText], seen: Mapping[int, Sighting], operators: Iterable[str] | None = None
-) -> tuple[tuple[ProgramText, ...], list[LeftOutText]]:
+) -> tuple[tuple[ProgramText, ...], list[Planted]]:
     """The texts with alternatives for variables added, and what does not fit the types left out.
 
     ``operators``: names of those whose alternatives these are; all if left out.
@@ -44,17 +45,17 @@ def refine(
     """
     asking = [rule for rule in registry.chosen(operators) if rule.asks_variables]
     refined: list[ProgramText] = []
-    left_out: list[LeftOutText] = []
+    left_out: list[Planted] = []
     for text in texts:
         places: list[TextPlace] = []
         for place in text.places:
             alternatives: list[Alternative] = []
-            for alternative in place.alternatives:
+            for index, alternative in enumerate(place.alternatives):
                 reason = _reason(alternative, seen.get(place.number))
                 if reason is None:
                     alternatives.append(alternative)
                 else:
-                    left_out.append(LeftOutText(place, alternative, reason))
+                    left_out.append(planted_of(place, index, reason))
             declared = text.declared.get(place.span.function, ())
             alternatives += _variables(asking, place, seen.get(place.number), declared)
             if alternatives:
@@ -69,7 +70,7 @@ def _variables(
     if not place.variable or seen is None:
         return []
     names = [name for name in seen.variables if name not in declared]
-    return [alternative for rule in asking for alternative in rule.with_variables(names)]
+    return [replace(one, family=rule.family) for rule in asking for one in rule.with_variables(names)]
 
 
 def _reason(alternative: Alternative, seen: Sighting | None) -> str | None:

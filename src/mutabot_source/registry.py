@@ -8,10 +8,10 @@ from importlib import import_module
 from pathlib import Path
 
 from mutabot.errors import OperatorError, unknown_name_text
-from mutabot.families import OF_TEXT
 from mutabot.operators.registry import classes_in, modules_in
 from mutabot.operators.rule import in_order
 
+from .families import OF_TEXT
 from .operator import ClassicalOperator
 
 _PACKAGE = f"{__package__}.operators"

@@ -16,12 +16,13 @@ from libcst.metadata import MetadataWrapper, ParentNodeProvider, PositionProvide
 
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import extent_of
-from mutabot.languages.registry import front_end_of, front_ends
+from mutabot.languages.registry import front_end_of
 from mutabot.model.alternative import Alternative, Extent, ProgramText, TextPlace
 from mutabot.model.site import Span
 
 from . import registry
 from .extents import Extents
+from .families import CLASSICAL
 from .index import Found, Index
 from .operator import ClassicalOperator, Draft
 from .rendering import shortened, shown, template
@@ -31,30 +32,16 @@ from .surroundings import is_variable, surroundings
 LONGEST = 1000
 
 
-def program_files(root: Path, program: Iterable[str]) -> list[str]:
-    """The program's files among the configured files and folders, relative to ``root``, each once."""
-    suffixes = {suffix for one in front_ends() for suffix in one.suffixes}
-    files: dict[str, None] = {}
-    for name in program:
-        path = root / name
-        found = (
-            {file for suffix in suffixes for file in path.rglob(f"*{suffix}")} if path.is_dir() else [path]
-        )
-        for file in sorted(found):
-            files.setdefault(file.relative_to(root).as_posix())
-    return list(files)
-
-
 def find_texts(
     root: Path, files: Iterable[str], operators: Iterable[str] | None = None, *, first: int = 1
 ) -> tuple[ProgramText, ...]:
     """The places of these files (relative to ``root``), numbered from ``first`` on over all of them.
 
-    ``operators``: names; all of family ``mutabot_source`` if left out.
+    ``operators``: names; all of family ``classical`` if left out.
 
     Raises SyntaxError for a file that is no Python, OperatorError for an unknown operator.
     """
-    rules = registry.chosen(registry.names("classical") if operators is None else operators)
+    rules = registry.chosen(registry.names(CLASSICAL) if operators is None else operators)
     texts: list[ProgramText] = []
     number = first - 1
     for file in files:

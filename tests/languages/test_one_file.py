@@ -108,8 +108,13 @@ def test_its_text_has_no_mutants_and_that_is_told(site: Path, tmp_path: Path) ->
     (tmp_path / "program" / "mission.steps").write_text(MISSION)
     code = (
         "import sys, pathlib\n"
-        "from mutabot.campaign.baseline.program_text import read_texts\n"
-        "print(read_texts(pathlib.Path(sys.argv[1]), ['program'], ['classical']))\n"
+        "from mutabot.faults import Project\n"
+        "from mutabot_source.provider import SourceFaults\n"
+        "project = Project(pathlib.Path(sys.argv[1]), ('program',), families=('classical',))\n"
+        "prepared = SourceFaults().prepare(project, 1)\n"
+        "print(prepared.texts, *prepared.notes)\n"
     )
     told = python(site, "-c", code, str(tmp_path))
-    assert told.startswith("((), {'program/mission.steps': 'it cannot be read: it is no Python")
+    assert told.startswith(
+        "() no mutants of the text of program/mission.steps: it cannot be read: it is no Python"
+    )

@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 import mutabot
-import mutabot_source
 from mutabot import operators
 from mutabot.operators.control import CONTROLS
+from mutabot_source import registry as of_text
 
 SOURCE = Path(mutabot.__file__).parent
 ROOMS = {"operators", "classical"}
-NAMES = {*operators.names(), *mutabot_source.names(), *CONTROLS}
+NAMES = {*operators.names(), *of_text.names(), *CONTROLS}
 #: words that name something else as well, where they do: keys of vocabularies, an option of the command line
 OTHERWISE = {
     "opposite": {"proposal", "vocabulary"},

@@ -8,7 +8,6 @@ from typing import Any
 
 from mutabot.border.codec import from_data
 from mutabot.errors import SelectionError, unknown_name_text
-from mutabot.families import GRADED
 from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
@@ -256,7 +255,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         mutants = sorted([*mutants, *old.mutants], key=lambda mutant: mutant.number)
         outcomes = [*outcomes, *old.outcomes]
         groups = groups_of(mutants, outcomes, rounds, None)
-    graded = {mutant.id for mutant in mutants if mutant.family == GRADED}
+    graded = {mutant.id for mutant in mutants if mutant.has_sizes}
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
     def result(mutant: Mutant) -> MutantResult:
@@ -360,7 +359,7 @@ def _attempt(journal: JournalReader) -> str | None:
 def _is_whole(mutants: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: int) -> bool:
     """Whether each mutant has an outcome in each round; those of ladders need not be run."""
     known = {(outcome.mutant, outcome.round) for outcome in outcomes}
-    alone = (mutant.id for mutant in mutants if mutant.family != GRADED)
+    alone = (mutant.id for mutant in mutants if not mutant.has_sizes)
     return all((name, round) in known for name in alone for round in range(rounds))
 
 

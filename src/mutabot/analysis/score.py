@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from statistics import fmean
 
-from mutabot.families import GRADED
 from mutabot.journal.records import Drawing
 from mutabot.model import By, Mutant, Outcome, Verdict
 
@@ -180,7 +179,7 @@ def groups_of(
     ``drawing`` says how the mutants were drawn, if they were.
     """
     key_of = {
-        mutant.id: (mutant.family, mutant.site.role.value) for mutant in mutants if mutant.family != GRADED
+        mutant.id: (mutant.family, mutant.site.role.value) for mutant in mutants if not mutant.has_sizes
     }
     sizes = Counter(key_of.values())
     found: dict[tuple[str, str], list[Outcome]] = {key: [] for key in key_of.values()}

@@ -11,6 +11,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from mutabot.model.alternative import Choice, Instrumentation
 from mutabot.model.mutant import Mutant
@@ -54,6 +55,19 @@ class RefusedAt:
 
 
 @dataclass(frozen=True, slots=True)
+class InProcess:
+    """What puts a fault in place that is neither one of calls nor an alternative in the program text.
+
+    Attributes:
+        reference: ``module:attribute`` of a ``mutabot.inside.process_fault.ProcessFault``.
+        data: what it is told, as plain data.
+    """
+
+    reference: str
+    data: Any = None
+
+
+@dataclass(frozen=True, slots=True)
 class Branching:
     """How a trunk branches: which mutants, with how many processes, for how long.
 
@@ -64,7 +78,7 @@ class Branching:
         gate: descriptor that can be read while mutants may begin, filled in likewise; None: always.
         walls: wall-clock seconds that a branch may take, by test.
         wall: the same for tests that are missing there.
-        choices: for mutants of the program text, by id: the alternatives that they are.
+        choices: of mutants that are alternatives in the program text: which, by id.
         every_test: whether to branch a mutant also in tests after one that decided about it.
     """
 
@@ -121,6 +135,7 @@ class Job:
         evidence: whether to record what the world does while tests run.
         pictures: which test is filmed; None for none.
         extensions: references to what packages bring, by kind and name, see ``extensions.use``.
+        faults: what puts the mutant in place, or parts of it, if it does so by itself: by the part's id.
         key: of the seals on its report lines, see ``frame``.
     """
 
@@ -147,6 +162,7 @@ class Job:
     evidence: bool = False
     pictures: Pictures | None = None
     extensions: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    faults: Mapping[str, InProcess] = field(default_factory=dict)
     key: str = ""
 
 

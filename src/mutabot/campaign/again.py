@@ -7,15 +7,16 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.second_look import Looker
+from mutabot.campaign.faults.providers import prepare
 from mutabot.campaign.plan.second_order import pair
 from mutabot.errors import SelectionError
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import Replayed
 from mutabot.model import Mutant
+from mutabot.model.place import Place
 
 from .beginning import open_executor, plan_of
 from .campaign import Campaign
@@ -51,7 +52,8 @@ def anew(
     """
     request = replace(request, rounds=last + 1)
     with open_executor(request, progress) as opened:
-        baseline, _ = take_baseline(request, opened, progress, repetitions=1)
+        prepared = prepare(request.project)
+        baseline, _ = take_baseline(request, opened, progress, prepared=prepared, repetitions=1)
         yield Campaign(request, baseline, opened, progress), as_it_is_now(request, baseline, mutant)
 
 

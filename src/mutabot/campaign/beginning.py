@@ -11,6 +11,7 @@ from mutabot.campaign.baseline.ranges import note_ranges
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import refuse_unfit, refuse_unhooked
 from mutabot.campaign.engines.choice import first_engine, repetitions_for
+from mutabot.campaign.faults.providers import prepare
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.plan.sampling import draw
@@ -67,7 +68,7 @@ def begin(
     refuse_typos(request)
     refuse_unhooked(request.vocabulary)
     baseline, results = take_baseline(
-        request, executor, progress,
+        request, executor, progress, prepared=prepare(request.project),
         repetitions=repetitions_for(request), may_share=first_engine(request).may_share,
     )  # fmt: skip
     refuse_unfit(baseline, request.vocabulary)
@@ -77,13 +78,7 @@ def begin(
 
 def plan_of(request: Request, baseline: Baseline) -> Plan:
     """All mutants that a request may be about."""
-    return make_plan(
-        baseline,
-        request.vocabulary,
-        request.families,
-        request.moments,
-        request.configuration.demands if request.order == 1 else (),
-    )
+    return make_plan(baseline, request.project)
 
 
 def selected(campaign: Campaign, plan: Plan) -> Plan:
@@ -108,9 +103,9 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
 
 
 def _why_no_mutants(request: Request, plan: Plan, baseline: Baseline) -> str:
-    of_text = Counter(item.reason for item in baseline.program.left_out)
-    if of_text:
-        reason, count = of_text.most_common(1)[0]
+    reasons = Counter(one.reason for one in baseline.faults.left_out_beforehand)
+    if reasons:
+        reason, count = reasons.most_common(1)[0]
         return f"no mutants: all {len(plan.left_out)} are left out, {count} of them because {reason}"
     if not baseline.hits:
         files = ", ".join((*request.configuration.program, *request.configuration.oracle))

@@ -102,7 +102,7 @@ def _report(
 
 
 def _why_left_out(baseline: Baseline) -> str:
-    return "cannot matter" if baseline.program.left_out else "would change nothing"
+    return "cannot matter" if baseline.faults.left_out_beforehand else "would change nothing"
 
 
 def _nowhere(plan: Plan, families: Collection[str]) -> Iterator[tuple[str, str]]:

@@ -15,6 +15,7 @@ from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.pause import Pause
 from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
+from mutabot.faults import Project
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
 from mutabot.settings.configuration import Configuration
@@ -132,6 +133,18 @@ class Request:
     def root(self) -> Path:
         """The project's folder."""
         return self.configuration.root
+
+    @property
+    def project(self) -> Project:
+        """What is asked of providers of faults; what is demanded of magnitudes is so of single faults."""
+        return Project(
+            self.root,
+            self.configuration.program,
+            self.vocabulary,
+            self.families,
+            self.moments,
+            self.configuration.demands if self.order == 1 else (),
+        )
 
     @property
     def arguments(self) -> tuple[str, ...]:

@@ -14,14 +14,14 @@ from typing import Any
 from mutabot import __version__, extensions
 from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.program_text import family_of
 from mutabot.campaign.budget.budget import OUT_OF_TIME, run_within
 from mutabot.campaign.engines.choice import first_engine, run_mutants
 from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
-from mutabot.campaign.plan.demanded import demanded_of
+from mutabot.campaign.faults.demanded import demanded_of
+from mutabot.campaign.faults.ladders import apart
+from mutabot.campaign.faults.providers import family_of
 from mutabot.campaign.plan.earlier import carry, note_outdated
-from mutabot.campaign.plan.ladders import apart
 from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.plan.told import drawing, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies
@@ -206,9 +206,9 @@ def _run_mutants(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tu
 def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
     """Forget mutants that the program has no longer; of other families and orders nothing is known now."""
     if request.order == 1:
-        known = {mutant.id for mutant, _ in journal.known()}
-        others = {mutant for mutant, _ in journal.kept() if family_of(mutant) not in request.families}
-        journal.tidy([*others, *known, *(mutant.id for mutant in whole.mutants)])
+        there = {mutant.id for mutant, _ in journal.known()} | {mutant.id for mutant in whole.mutants}
+        rest = {mutant for mutant, _ in journal.kept()} - there
+        journal.tidy([*there, *(one for one in rest if family_of(one) not in request.families)])
 
 
 def _collected(results: Sequence[Result]) -> set[str]:

@@ -13,7 +13,6 @@ import typer
 
 from mutabot import __version__, limits
 from mutabot.errors import UsageError
-from mutabot.families import FAMILIES
 
 if TYPE_CHECKING:
     from mutabot.extensions import Part
@@ -27,6 +26,12 @@ def _print_version(wanted: bool) -> None:
     if wanted:
         typer.echo(f"mutabot {__version__}")
         raise typer.Exit
+
+
+def _families() -> list[str]:
+    from mutabot.settings.families import known_families  # noqa: PLC0415  # so that `--help` is fast
+
+    return list(known_families())
 
 
 def _number(value: float | None) -> float | None:
@@ -64,8 +69,8 @@ Families = Annotated[
     typer.Option(
         "--family",
         metavar="NAME",
-        help=f"Families of mutants: {', '.join(FAMILIES)}. Repeatable, or with commas.",
-        autocompletion=lambda: list(FAMILIES),
+        help="Families of mutants, as `mutabot operators` lists them. Repeatable, or with commas.",
+        autocompletion=_families,
     ),
 ]
 Sample = Annotated[

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
+from random import Random
 from types import CodeType, FrameType
 from typing import Any
 
@@ -39,6 +40,7 @@ from .evidence import Evidence, together
 from .inspection import Inspection
 from .limits import Meter
 from .pipe import Sink
+from .process_fault import ProcessFaults
 from .seeds import derive
 
 
@@ -62,8 +64,9 @@ class Session:
         refused_calls: in the baseline, calls of the running test that the robot refused: see ``TestEnd``.
         live: in the baseline, sites that returned the robot's own memory: see ``TestEnd``.
         on_refused, on_live: told of each of them; None if nobody asks.
-        parts: the mutants of which its own consists that changed something in it; that of the text has no
-            name.
+        parts: the mutants of which its own consists that changed something in it; what is of the program text
+            has no name.
+        placed: faults that their providers put in place before each test.
     """
 
     job: Job
@@ -74,6 +77,7 @@ class Session:
     interception: Interception = field(init=False)
     passing: Passing = field(init=False)
     inspection: Inspection = field(init=False)
+    placed: ProcessFaults = field(init=False)
     recording: TestRecording = field(init=False)
     instances: Instances = field(default_factory=Instances)
     along: Along = field(init=False)
@@ -99,6 +103,7 @@ class Session:
         self.recorder.clock = self.recording.clock
         self.along = Along(partial(self._read_probes, along=True))
         self.inspection = Inspection(self.job.vocabulary, self.job.inspect, self._send)
+        self.placed = ProcessFaults(self._acted)
         self.interception = Interception(self.inspection.target_is_wrong)
         self.passing = Passing(
             self.locate,
@@ -205,7 +210,7 @@ class Session:
         found = [activation.evidence for activation in self.activations]
         if self.text is not None and self.text.is_mutant:
             found.append(self.text.evidence)
-        return together(found)
+        return together([*found, *self.placed.evidence])
 
     def look_back(self, *, at_all: bool = False) -> None:
         """Look whether the program has written to copies that mutants handed out; ``at_all`` of them."""
@@ -218,10 +223,12 @@ class Session:
         return sum(door.commands for door in self._doors)
 
     def activate(self, mutant: Mutant) -> None:
-        """Take on a mutant; those of the program text are alternatives there."""
+        """Take on a mutant. What of it is an alternative in the program text stands there already."""
         for single in mutant.singles:
             operation = self.job.vocabulary.operation(single.operation)
-            if operation is not None:
+            if single.id in self.job.faults:
+                self.placed.add(single, self.job.faults[single.id])
+            elif operation is not None:
                 refusals = self._refusals(operation)
                 on_act = partial(self._acted, single.id)
                 made = Activation(single, operation, refusals, on_act, self._in_mutated_call)
@@ -280,6 +287,7 @@ class Session:
             branch = trunk.fork_at_place if trunk is not None else None
             self.text.start_test(test, branch, trunk.places() if trunk is not None else {})
         self._start_activations()
+        self.placed.start_test(test, self._random_of)
         has_clock = self.job.vocabulary.clock is not None
         self.recording.start(self.job.evidence, test, self._simulated, self._aside, is_simulated=has_clock)
 
@@ -296,12 +304,17 @@ class Session:
             for targets in self.interception.kinds:
                 targets.wrap_bypasses((one.target for one in operations), self._bypasses.handler)
 
+    def _seed_of(self, mutant: Mutant) -> int:
+        """All magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger."""
+        return derive(self.job.seed, self.job.round, self.test, mutant.ladder or mutant.id)
+
+    def _random_of(self, mutant: Mutant) -> Random:
+        return Random(self._seed_of(mutant))
+
     def _start_activations(self) -> None:
         for activation in self.activations:
-            # all magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger
-            name = activation.mutant.ladder or activation.mutant.id
-            seed = derive(self.job.seed, self.job.round, self.test, name)
             mutant = activation.mutant
+            seed = self._seed_of(mutant)
             usual = self.passing.refused.at(mutant.site.span, mutant.operation, mutant.pattern)
             activation.start(seed, self.job.round, self.test, self._moment_of(mutant), usual)
 
@@ -320,6 +333,7 @@ class Session:
     def end_test(self) -> None:
         """The test and its fixtures are over."""
         self.passing.meter = None
+        self.placed.end_test()
         if self.text is not None:
             if self.trunk is not None:
                 self.trunk.tell_undiverged(self.text.hits)
@@ -420,15 +434,21 @@ class Session:
             self.pipe.send(site)
 
     def _acted(self, part: str) -> None:
-        """A part of the mutant changed something; the one of the program text has no name."""
+        """A part of the mutant changed something; what is of the program text has no name."""
         self.parts.add(part)
         self.recording.note_fault(
             len(self.recorder.trace), self.recorder.began if part else self.recording.clock()
         )
         if self.text is not None and self.text.is_mutant and not self.text.has_acted:
             return
-        if all(activation.mutant.id in self.parts for activation in self.activations):
+        if self.part_names - {""} <= self.parts:
             self.pipe.send(Acted(self.test, self.branch))
+
+    @property
+    def part_names(self) -> set[str]:
+        """What all parts of the mutant at work are called in ``parts``."""
+        of_text = {""} if self.text is not None and self.text.is_mutant else set()
+        return {one.mutant.id for one in self.activations} | self.placed.ids | of_text
 
     def _simulated(self) -> float | None:
         return self.meter.simulated if self.meter is not None else None

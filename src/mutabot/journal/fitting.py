@@ -156,8 +156,8 @@ def mutant_in(text: Any) -> Mutant:
     found = from_data(Mutant, load(text))
     for one in found.singles:
         span = one.site.span
-        for number, least in ((span.line, 1), (span.end_line, 1), (span.column, 0), (span.end_column, 0)):
-            _check_number(number, least)
+        for number in (span.line, span.end_line, span.column, span.end_column):
+            _check_number(number)
         _check_number(one.magnitude, least=-math.inf)
     if found.number < 0 or any(one.parts for one in found.parts):
         raise ValueError

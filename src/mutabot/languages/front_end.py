@@ -7,7 +7,7 @@ the file's language, and nothing else is.
 A language is one file in this folder with its front end as ``FRONT_END``; it is found there. It runs beside
 the robot program too, so it may import the standard library and ``mutabot.model`` only. ``python.py`` is the
 one there is; a program in another language is run by an interpreter in Python, whose frames its front end
-knows. Mutants of the program text are Python's alone, as their operators are (``mutabot_source``).
+knows. Mutants of the program text are Python's alone, as the operators on it are.
 """
 
 from __future__ import annotations

@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from mutabot.families import CLASSICAL
-
 from .site import Role, Site, Span
 
 #: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes), as in ``ast``
@@ -52,7 +50,7 @@ class Alternative:
     template: str
     text: str
     needs: str = ""
-    family: str = CLASSICAL
+    family: str = ""
     raises: bool = False
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from mutabot.families import GRADED
+from mutabot.families import CALLS
 from mutabot.model.values.notation import Notation
 
 from .moment import Moment
@@ -21,7 +21,7 @@ class Mutant:
         family: the family of its operator (``mutabot.families``).
         operator: name of the operator.
         site: where it acts.
-        operation: target of the operation it acts on; empty for a mutant of the program text.
+        operation: target of the operation whose calls it acts on; empty if it acts on none.
         pattern: notation of the text command it acts on; None where that does not apply.
         quantity: name of the quantity it changes; None if it concerns the call as a whole.
         variant: which of several mutants of the same operator here; empty if there is only one.
@@ -31,8 +31,10 @@ class Mutant:
         parts: the mutants that this one is at once; empty for a mutant of the first order.
         magnitude: how big its fault is, in ``unit``; None for a fault without a size.
         unit: the unit of the magnitude; None where it has none.
-        direction: which way a graded fault goes: ``+``, ``-``, or empty if it goes one way only.
+        has_sizes: whether the same fault is planted in several magnitudes, of which a threshold is sought.
+        direction: which way a fault with sizes goes: ``+``, ``-``, or empty if it goes one way only.
         moment: at which of its calls it acts; None for all of them.
+        provider: name of the provider that made it (``mutabot.faults``).
     """
 
     number: int
@@ -50,6 +52,8 @@ class Mutant:
     unit: str | None = None
     direction: str = ""
     moment: Moment | None = None
+    has_sizes: bool = False
+    provider: str = CALLS
 
     @property
     def id(self) -> str:
@@ -67,8 +71,8 @@ class Mutant:
 
     @property
     def ladder(self) -> str:
-        """What all magnitudes of one graded fault share: its id without the magnitude; else empty."""
-        if self.magnitude is None or self.family != GRADED:
+        """What all magnitudes of a fault with sizes share: its id without the magnitude; else empty."""
+        if not self.has_sizes:
             return ""
         return replace(self, variant=self.direction).id
 

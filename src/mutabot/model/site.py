@@ -19,7 +19,7 @@ class Span:
 
     Attributes:
         file: path relative to the project's root, with forward slashes.
-        line, end_line: 1-based.
+        line, end_line: 1-based; 0 for what does not stand in the program text, such as a parameter.
         column, end_column: 0-based, in UTF-8 bytes, as in ``ast`` and ``code.co_positions()``.
         function: qualified name of the enclosing code object (``<module>`` at the top level).
     """
@@ -31,10 +31,15 @@ class Span:
     end_column: int
     function: str
 
+    @property
+    def place(self) -> str:
+        """``file:line``; what stands in no line is told by its file alone."""
+        return f"{self.file}:{self.line}" if self.line else self.file
+
 
 @dataclass(frozen=True, slots=True, order=True)
 class Site:
-    """A call expression in the source.
+    """Where a fault acts: mostly a call expression in the source.
 
     Attributes:
         span: its exact place.
@@ -48,12 +53,21 @@ class Site:
     occurrence: int
     role: Role
 
+    @classmethod
+    def of_parameter(cls, owner: str, name: str) -> Site:
+        """A parameter, which stands nowhere in the program text: ``of_parameter("world", "gravity")``."""
+        return cls(Span(owner, 0, 0, 0, 0, ""), name, 1, Role.PROGRAM)
+
     @property
     def id(self) -> str:
         """The part of a mutant's id that names the site; stable under edits elsewhere."""
+        if not self.span.line:
+            return f"{self.span.file}:{self.text}"
         return f"{self.span.file}:{self.span.function}:{self.text}#{self.occurrence}"
 
     @property
     def place(self) -> str:
         """``file:line:column`` with the 1-based column that editors show."""
+        if not self.span.line:
+            return f"{self.span.file}:{self.text}"
         return f"{self.span.file}:{self.span.line}:{self.span.column + 1}"

@@ -5,14 +5,14 @@ kind of fault.
 
 - One that acts on **calls** is a subclass of ``Operator`` (``operator.py``) in a file of a folder below this
   file's, with its name as text: workers load only files in whose text the name is that they look for.
-- One that acts on **program text** is a subclass of ``ClassicalOperator`` (``mutabot_source/operator.py``)
-  in ``classical/operators/``.
+- What acts on anything else belongs to a provider of its own (``mutabot/faults.py``), which says where its
+  operators are and what else they have to declare.
 
 What several share has a name that begins with ``_``, be it a class or a file. A third party names its class
 in its ``mutabot.extensions.Extension``; that goes for operators on calls.
 
 Engines, plan, reports and documentation know no operator by name: whatever they need to know of one stands
-here or in the two contracts that build on this one.
+here or in the contract of its provider.
 """
 
 from __future__ import annotations
@@ -49,6 +49,7 @@ class Rule(ABC):
         stands_for: the bug class that it stands for and the evidence of it, in one sentence; may be empty for
             those that are published.
         where: where it applies, in the words of vocabularies.
+        has_sizes: whether it plants each fault in several magnitudes, of which a threshold is sought.
     """
 
     name: ClassVar[str]
@@ -59,6 +60,7 @@ class Rule(ABC):
     published: ClassVar[tuple[Published, ...]] = ()
     stands_for: ClassVar[str] = ""
     where: ClassVar[str] = ""
+    has_sizes: ClassVar[bool] = False
 
 
 R = TypeVar("R", bound=Rule)

@@ -8,13 +8,14 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema
-from pydantic_core import PydanticCustomError
+from pydantic import AfterValidator, BeforeValidator, Field, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError
 
 from mutabot import limits
 from mutabot.errors import ConfigurationError, nearest_name
 from mutabot.extensions import brought, not_installed
-from mutabot.families import FAMILIES, OF_TEXT, USUAL
+from mutabot.families import USUAL
+from mutabot.faults import families_brought, need_vocabulary
 from mutabot.limits import shortened
 from mutabot.model import Moment
 from mutabot.model.graded.demand import Demand
@@ -22,15 +23,14 @@ from mutabot.model.moment import EVERY
 
 from .demands import check_demands
 from .document import Document
-from .families import need_vocabulary, why_unknown
+from .families import known_families, why_unknown
 from .mistakes import Check, raise_errors
 from .overrides import overridden
 from .table import Table
 from .toml_lines import KeyPath
 
 _NO_VOCABULARY = (
-    "the key 'vocabulary' is missing or empty; mutants of calls need one, those of the program text "
-    f"({', '.join(OF_TEXT)}) do not"
+    "the key 'vocabulary' is missing or empty; mutants of calls need one, those of other families ({}) do not"
 )
 _PYPROJECT, _OWN = "pyproject.toml", "mutabot.toml"
 _INIT = "run `mutabot init` to propose one"
@@ -81,6 +81,13 @@ def _known_family(name: str) -> str:
     return name
 
 
+class _FamilyNames:
+    """What a schema says of them: packages are asked only where it is made."""
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"enum": list(known_families())}
+
+
 def _moment(text: str) -> str:
     try:
         Moment.parse_any(text)
@@ -98,7 +105,7 @@ def _node_name(name: str) -> str:
 _NodeName = Annotated[str, AfterValidator(_node_name)]
 _Texts = Annotated[tuple[str, ...], Field(strict=False)]
 _SomeTexts = Annotated[tuple[str, ...], Field(strict=False, min_length=1)]
-_Family = Annotated[str, AfterValidator(_known_family), WithJsonSchema({"enum": list(FAMILIES)})]
+_Family = Annotated[str, AfterValidator(_known_family), _FamilyNames()]
 _Families = Annotated[tuple[_Family, ...], Field(strict=False, min_length=1)]
 _Moment = Annotated[str, AfterValidator(_moment)]
 _Moments = Annotated[tuple[_Moment, ...], Field(strict=False, min_length=1)]
@@ -334,7 +341,9 @@ def _checked(
     paths.check_tests(settings.tests, "tests" in raw)
     paths.check_rest(settings)
     if not settings.vocabulary and need_vocabulary(families or settings.families):
-        check.error((*place, *(("vocabulary",) if "vocabulary" in raw else ())), _NO_VOCABULARY)
+        others = ", ".join(families_brought(without_vocabulary=True)) or "there are none"
+        key = ("vocabulary",) if "vocabulary" in raw else ()
+        check.error((*place, *key), _NO_VOCABULARY.format(others))
     tables = {}
     for name, model in models.items():
         table = check.table(model, raw[name], (*place, name)) if name in raw else None

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from mutabot.errors import unknown_name_text
-from mutabot.families import GRADED
 from mutabot.model import Kind
 from mutabot.model.graded.demand import OFFSET, Demand, parse_amount
 from mutabot.model.values.quantity import DIMENSIONS, MEASURED, WHOLE
@@ -94,7 +93,7 @@ def _kind(table: DemandTable, check: Check, place: KeyPath) -> Kind | None:
 def _check_operator(name: str, check: Check, place: KeyPath) -> None:
     from mutabot.operators import load_all  # noqa: PLC0415  # few configurations name one
 
-    known = [rule.name for rule in load_all() if rule.family == GRADED]
+    known = [rule.name for rule in load_all() if rule.has_sizes]
     if name not in known:
         check.error((*place, "operator"), unknown_name_text("graded operator", name, [*known, OFFSET]))
 

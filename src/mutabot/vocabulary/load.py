@@ -9,9 +9,9 @@ from pathlib import Path
 from mutabot.errors import ConfigurationError, UnknownNameError
 from mutabot.extensions import brought
 from mutabot.families import OF_CALLS
+from mutabot.faults import need_vocabulary
 from mutabot.model import Clock, Operation, Probe, Vocabulary, Wait
 from mutabot.settings.document import Document
-from mutabot.settings.families import need_vocabulary
 from mutabot.settings.mistakes import Check, raise_errors
 from mutabot.settings.toml_lines import KeyPath
 
@@ -27,8 +27,8 @@ def load(names: Sequence[str], root: Path, families: Iterable[str] = OF_CALLS) -
     """The vocabulary in these files, put together.
 
     Each name is a file relative to ``root``, or the name of a vocabulary that mutabot ships. What a file
-    says of a callable, the clock or a probe goes before what a shipped vocabulary says of it. Only mutants of
-    the program text do without: ``families`` are those that are asked for.
+    says of a callable, the clock or a probe goes before what a shipped vocabulary says of it. ``families``,
+    those that are asked for, may do without any.
 
     Raises ConfigurationError, VocabularyError or UnknownNameError: the first mistake, with a message that
     tells about all of them.

@@ -58,7 +58,7 @@ class Rungs:
         return Mutant(
             number, GRADED, self.operator, self.site, self.operation, None, self.quantity, variant,
             f"{self.site.text}: {self.quantity} {variant}", magnitude=size, unit=self.unit,
-            direction=self.direction,
+            direction=self.direction, has_sizes=True,
         )  # fmt: skip
 
 

@@ -11,7 +11,6 @@ from mutabot.analysis.chance import false_kills
 from mutabot.analysis.results import Results, read_results
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.baseline.sharing import Sharing
 from mutabot.campaign.engines import repeats
 from mutabot.campaign.engines.doubt import Doubts
@@ -19,6 +18,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import Repeated
 from mutabot.model import By, Mutant, Outcome, Role, Site, Span, Verdict
+from mutabot.model.place import Place
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
 
 #: the test fails once for one of the mutants: in its branch, or in the first fresh process that runs it

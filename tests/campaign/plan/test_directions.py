@@ -10,12 +10,13 @@ import pytest
 
 from mutabot.campaign.baseline.answers import RecordedAnswers
 from mutabot.campaign.baseline.baseline import Baseline, Hit
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.plan.planned import Plan
 from mutabot.families import CATALOGUE, GRADED, MIDDLEWARE, ROBOT
+from mutabot.faults import Project
 from mutabot.model import Kind, Mode, Operation, Path, Quantity, Role, Site, Span, Vocabulary
 from mutabot.model.named import Form, Named
+from mutabot.model.place import Place
 
 SPEED = Quantity("speed", Path("speed"), Kind.SPEED, unit="m/s")
 RATIO = Quantity("power", Path("power"), Kind.RATIO, unit="percent")
@@ -38,7 +39,8 @@ def plan_of(
     ]
     hits = {place: [Hit(call, {})] for place, call in zip(places, calls, strict=True)}
     answers = {place: RecordedAnswers() for place in hits}
-    return make_plan(Baseline(hits=hits, answers=answers), Vocabulary((operation,)), set(families))
+    project = Project(vocabulary=Vocabulary((operation,)), families=tuple(families))
+    return make_plan(Baseline(hits=hits, answers=answers), project)
 
 
 def reversals(plan: Plan) -> list[str]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from mutabot.campaign.baseline.baseline import Baseline, Hit
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.campaign.plan.planned import Plan
 from mutabot.families import MIDDLEWARE, ROBOT
+from mutabot.faults import Project
 from mutabot.model import Operation, Role, Site, Span, Vocabulary
 from mutabot.model.named import Form
+from mutabot.model.place import Place
 from mutabot.operators.middleware._examples import (
     ADVERTISE,
     HEARD_FRAME,
@@ -25,7 +26,7 @@ def planned(operation: Operation, *hits: Hit, role: Role = Role.PROGRAM, family:
     """The plan for calls at one site."""
     site = Site(Span("mission.py", 3, 0, 3, 9, "run"), "client.do", 1, role)
     baseline = Baseline(hits={Place(site, operation.target): list(hits)})
-    return make_plan(baseline, Vocabulary((operation,)), {family})
+    return make_plan(baseline, Project(vocabulary=Vocabulary((operation,)), families=(family,)))
 
 
 def kinds(plan: Plan) -> list[str]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from mutabot.campaign.baseline.answers import RecordedAnswers
 from mutabot.campaign.baseline.baseline import Baseline, Hit
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.families import ROBOT
+from mutabot.faults import Project
 from mutabot.model import Kind, Mode, Mutant, Operation, Path, Quantity, Role, Site, Span, Vocabulary
 from mutabot.model.named import Form, Named
+from mutabot.model.place import Place
 
 Y = Quantity(
     *("pose.position.y", Path.parse("message.pose.position.y", rooted=True), Kind.TRANSLATION, "y", "m"),
@@ -25,13 +26,17 @@ def operation(form: Form, name: str, node: str | None = None) -> Operation:
     return Operation(named.target, arguments, result, is_command, kind="messages", named=named)
 
 
+def project(vocabulary: Vocabulary) -> Project:
+    return Project(vocabulary=vocabulary, families=(ROBOT,))
+
+
 def mutants(text: str, *operations: Operation, role: Role = Role.PROGRAM) -> dict[str, str]:
     """The descriptions of mutants of calls at one site, by id."""
     site = Site(SPAN, text, 1, role)
     values = {"pose.position.y": 0.2}
     hits = {Place(site, one.target): [Hit(values, values)] for one in operations}
     answers = {place: RecordedAnswers() for place in hits}
-    plan = make_plan(Baseline(hits=hits, answers=answers), Vocabulary(operations), {ROBOT})
+    plan = make_plan(Baseline(hits=hits, answers=answers), project(Vocabulary(operations)))
     wanted: list[Mutant] = [one for one in plan.mutants if one.operator in ("reverse", "negate")]
     return {one.id: one.description for one in wanted}
 
@@ -69,6 +74,6 @@ def test_one_site_of_both_roles_has_mutants_of_both() -> None:
     places = [Place(Site(SPAN, "publish", 1, role), publish.target) for role in Role]
     hits = {place: [Hit({"pose.position.y": 0.2}, {})] for place in places}
     answers = {place: RecordedAnswers() for place in places}
-    plan = make_plan(Baseline(hits=hits, answers=answers), Vocabulary((publish,)), {ROBOT})
+    plan = make_plan(Baseline(hits=hits, answers=answers), project(Vocabulary((publish,))))
     assert {one.site.role for one in plan.mutants} == set(Role)
     assert len({one.id for one in plan.mutants}) == len(plan.mutants)

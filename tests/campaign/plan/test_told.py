@@ -8,9 +8,10 @@ from mutabot import operators
 from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.campaign import open as open_campaign
 from mutabot.campaign.run import run_campaign
-from mutabot.families import CLASSICAL, ROBOT
+from mutabot.families import ROBOT
 from mutabot.report.as_json import results_data
 from mutabot_source import registry
+from mutabot_source.families import CLASSICAL
 from tests.campaign.project import Quiet, request_for, write_project
 
 MISSION = """

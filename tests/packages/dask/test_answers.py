@@ -28,10 +28,10 @@ from mutabot.border.lines import (
 )
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.observed import observation
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.comparing.observation import compare
 from mutabot.campaign.workers.task import Result, Task
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
+from mutabot.model.place import Place
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.checked import MOST_BYTES, Misfit
 from mutabot_dask.dispatch import Dispatch

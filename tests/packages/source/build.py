@@ -14,8 +14,11 @@ from typing import Any
 
 from mutabot.inside.text.import_hook import ImportHook
 from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
-from mutabot_source import Example, find_texts, names, refine
+from mutabot_source.operator import Example
+from mutabot_source.refine import refine
+from mutabot_source.registry import names
 from mutabot_source.rendering import same_program
+from mutabot_source.texts import find_texts
 
 
 def text_of(folder: Path, source: str, *operators: str) -> ProgramText:

@@ -9,7 +9,8 @@ import pytest
 
 from mutabot.inside.text.instrument import instrumented
 from mutabot.inside.text.loading import compile_tree
-from mutabot_source import Example, names, operator
+from mutabot_source.operator import Example
+from mutabot_source.registry import names, operator
 from tests.packages.source.build import choices, refined, spliced, text_of
 
 CASES = [(name, index) for name in names() for index in range(len(operator(name).examples))]

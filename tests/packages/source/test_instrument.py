@@ -21,7 +21,8 @@ from mutabot.inside.text.instrument import instrumented
 from mutabot.inside.text.loading import compile_tree
 from mutabot.inside.text.switches import Alternatives, error_of
 from mutabot.model import Instrumentation
-from mutabot_source import find_texts, merge, refine
+from mutabot_source.refine import merge, refine
+from mutabot_source.texts import find_texts
 from tests.packages.source.build import choices, imported, load, spliced, text_of
 
 #: what the operators that raise call it

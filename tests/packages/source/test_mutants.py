@@ -8,7 +8,10 @@ import pytest
 
 from mutabot.errors import OperatorError
 from mutabot.model import Choice, Sighting
-from mutabot_source import find_texts, merge, names, plant, refine
+from mutabot_source.mutants import plant
+from mutabot_source.refine import merge, refine
+from mutabot_source.registry import names
+from mutabot_source.texts import find_texts
 from tests.packages.source.build import choices, text_of
 
 SOURCE = """
@@ -49,8 +52,7 @@ def test_ids_are_unique_and_stable_under_edits_elsewhere(tmp_path: Path) -> None
 
 def test_mutants_know_what_turns_them_on(tmp_path: Path) -> None:
     text = text_of(tmp_path, SOURCE)
-    planted = plant([text], first=7)
-    assert [one.mutant.number for one in planted] == list(range(7, 7 + len(planted)))
+    planted = plant([text])
     assert [one.choice for one in planted] == [choice for choice, _, _ in choices(text)]
     assert planted[0].choice == Choice(1, 0)
 
@@ -108,7 +110,7 @@ def test_after_the_baseline_only_fitting_types_are_left(tmp_path: Path) -> None:
         ("ABS", "-abs(b)"),
         ("ABS", "failOnZero(b)"),
     ]
-    reasons = {(item.place.text, item.reason) for item in left_out}
+    reasons = {(item.mutant.site.text, item.reason) for item in left_out}
     assert ("a + b", "its value is text, never number") in reasons
     assert ("c", "no test reaches it, so its type is not known") in reasons
     assert left_out[0].as_left_out.id.endswith("a + b#1:ABS=abs")

@@ -120,8 +120,7 @@ class Ladder:
     @property
     def place(self) -> str:
         """``sorting.py:38``."""
-        span = self.mutant.site.span
-        return f"{span.file}:{span.line}"
+        return self.mutant.site.span.place
 
     @property
     def name(self) -> str:

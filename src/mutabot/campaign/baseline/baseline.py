@@ -14,15 +14,18 @@ from mutabot.border.job import Budget, RefusedAt
 from mutabot.border.lines import Remark
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.observation import Observation, as_steady
+from mutabot.faults import Original, Planned, Preparation
 from mutabot.model import Mutant, Vocabulary
+from mutabot.model.place import Place
 
 from .answers import RecordedAnswers
-from .places import Place
-from .program_text import ProgramTexts
+from .planted import PlantedFaults
 from .sharing import Sharing
 
 #: operations and simulated seconds that a test may use beyond its multiple of the baseline
 SPARE_OPERATIONS, SPARE_SIMULATED = 200, 10.0
+#: why a mutant needs a process of its own from the start
+EARLY, IN_PLACE = "acts while the program is imported", "is in place from the start of each test"
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +38,12 @@ class Hit:
 
 
 @dataclass(slots=True)
-class Baseline:
+class Baseline(Original):
     """What is known about the original.
 
     Outside of this room it is changed by its methods alone: each stands for something that was learned.
 
-    Attributes:
+    Attributes, beside those that all providers of faults know:
         tests: per round, the tests that ended alike in all repetitions and let the suite pass, in its order.
             A test that was skipped or failed as expected belongs to them: a mutant can make it fail.
         ends: the report of each (round, test), from the first repetition.
@@ -61,7 +64,8 @@ class Baseline:
             and again whether something has come: how many they make is a matter of time.
         skipped: number of tests that skipped themselves.
         startup: seconds from a worker's start to the end, less the tests; the longest.
-        program: the program text, if a family of mutants needs it.
+        prepared: what the providers have found out before, by their names.
+        faults: the mutants of the plan.
         remarks: what is to be known about the vocabulary.
         sharing: per round, what its tests share.
         early: places that are reached before any test begins, while the program or a test file is imported:
@@ -71,7 +75,6 @@ class Baseline:
             in the original: judged by the whole suite.
     """
 
-    tests: list[list[str]] = field(default_factory=list)
     ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
     hits: dict[Place, list[Hit]] = field(default_factory=dict)
     answers: dict[Place, RecordedAnswers] = field(default_factory=dict)
@@ -89,7 +92,8 @@ class Baseline:
     dependent: set[tuple[str, ...]] = field(default_factory=set)
     skipped: int = 0
     startup: float = 0.0
-    program: ProgramTexts = field(default_factory=ProgramTexts)
+    prepared: Mapping[str, Preparation] = field(default_factory=dict)
+    faults: PlantedFaults = field(default_factory=PlantedFaults)
     remarks: tuple[Remark, ...] = ()
     sharing: list[Sharing] = field(default_factory=list)
     widened: set[tuple[str, int]] = field(default_factory=set)
@@ -137,7 +141,29 @@ class Baseline:
 
     def is_early(self, mutant: Mutant) -> bool:
         """Whether a mutant may act before any test begins."""
-        return self.program.is_early(mutant) or any(Place.of(one) in self.early for one in mutant.singles)
+        return any(Place.of(one) in self.early for one in mutant.singles)
+
+    def why_apart(self, mutant: Mutant) -> str | None:
+        """Why a mutant needs a process of its own from the start, whatever its tests; None if it does not."""
+        if self.is_early(mutant):
+            return EARLY
+        return IN_PLACE if self.faults.in_process(mutant) else None
+
+    def take_in(self, planned: Mapping[str, Planned]) -> None:
+        """The mutants that each provider makes of it, and the places that it has told of."""
+        self.faults = PlantedFaults.of(planned)
+        for one in planned.values():
+            self.early |= one.early
+            for (round, place), tests in one.reached.items():
+                self._reach(round, place, None if place in one.early else frozenset(tests))
+
+    def _reach(self, round: int, place: Place, tests: Collection[str] | None) -> None:
+        """These tests reach a place in a round; None: what stands there is there for all tests."""
+        here = [test for test in self.by_cost(round) if tests is None or test in tests]
+        aside = [test for where, test in self.unstable if where == round]
+        self.reaching[round, place] = here
+        if aside := [test for test in aside if tests is None or test in tests]:
+            self.flaky_reaching[round, place] = aside
 
     def in_order(self, round: int, tests: Collection[str]) -> tuple[str, ...]:
         """These tests as one process may run them: quickest first, unless they share anything."""

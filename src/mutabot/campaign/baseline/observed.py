@@ -9,8 +9,8 @@ from mutabot.border.lines import SiteSeen
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.observation import Event, Observation
 from mutabot.campaign.workers.task import Result
+from mutabot.model.place import Place
 
-from .places import Place
 from .site_names import Sources
 
 

@@ -13,8 +13,10 @@ from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.said import ABNORMAL, said_in
 from mutabot.campaign.workers.task import Result, Task, at, death
 from mutabot.errors import BaselineError, NothingToDoError
-from mutabot.families import FAMILIES
+from mutabot.families import OF_CALLS
+from mutabot.faults import Preparation, TextSeen
 from mutabot.model import Instrumentation, ProgramText
+from mutabot.model.place import Place
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 
@@ -22,8 +24,6 @@ from .answers import RecordedAnswers
 from .baseline import Baseline, Hit, cost
 from .failing import refuse_failing, rounds_to_repeat, why_set_aside
 from .observed import observations_of, places_of, refused_of
-from .places import Place
-from .program_text import ProgramTexts, read_texts
 from .readability import note_readability, refuse_unreadable
 from .sharing import Sharing
 from .sharing import remarks as sharing_remarks
@@ -79,24 +79,27 @@ def take_baseline(
     executor: Executor,
     progress: Progress,
     *,
+    prepared: Mapping[str, Preparation] | None = None,
     repetitions: int = REPETITIONS,
     may_share: bool = False,
 ) -> tuple[Baseline, list[Result]]:
     """Run the suite on the original and look at what it does.
 
-    With one repetition the second run is left to the trunks of the branch engine. ``may_share``: whether
-    imports and collection may be done once for all runs.
+    ``prepared`` is what providers of faults want to know, by their names. With one repetition the second run
+    is left to the trunks of the branch engine. ``may_share``: whether imports and collection may be done once
+    for all runs.
 
     Returns the baseline and the raw results, first repetitions first.
 
     Raises ConfigurationError for a vocabulary that does not fit the program, NothingToDoError without
     tests, BaselineError when tests fail.
     """
-    texts, refused = read_texts(request.root, request.configuration.program, request.families)
-    for file, why in refused.items():
-        progress.note(f"no mutants of the text of {file}: {why}")
+    prepared = prepared or {}
+    for note in (note for one in prepared.values() for note in one.notes):
+        progress.note(note)
+    texts = tuple(text for one in prepared.values() for text in one.texts)
     for family in dict.fromkeys(rule.family for rule in load_all()):  # a broken plug-in is told now
-        if family not in (*request.families, *FAMILIES):
+        if family not in (*request.families, *OF_CALLS):
             progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
     progress.stage("baseline", request.rounds * repetitions)
     suite = _Suite(request, executor, progress)
@@ -110,24 +113,24 @@ def take_baseline(
             Task(_SuiteRun(round, 1), request.job(round, record=True), startup=300.0, may_share=may_share)
             for round in failing
         )
-    baseline = _read(suite, texts, strides)
+    baseline = _read(suite, prepared, strides)
     results = suite.results
     return baseline, [results[key] for key in sorted(results, key=lambda key: (key[1], key[0]))]
 
 
-def _read(suite: _Suite, texts: tuple[ProgramText, ...], strides: Mapping[tuple[int, str], int]) -> Baseline:
+def _read(
+    suite: _Suite, prepared: Mapping[str, Preparation], strides: Mapping[tuple[int, str], int]
+) -> Baseline:
     """What all runs tell, and what is to be said about it."""
     request, progress = suite.request, suite.progress
-    baseline = Baseline(strides=strides, remarks=tuple(dict.fromkeys(suite.remarks)))
+    remarks = tuple(dict.fromkeys(suite.remarks))
+    baseline = Baseline(strides=strides, remarks=remarks, prepared=prepared)
     sources = Sources(request.root)
     failing: dict[tuple[int, str], TestEnd] = {}
     for round in range(request.rounds):
         failing |= _add_round(baseline, request, sources, round, suite.of(round))
+        baseline.text[round] = _text_seen(suite.results[round, 0])
     refuse_failing(request, failing)
-    if texts:
-        first = {round: suite.results[round, 0] for round in range(request.rounds)}
-        baseline.program = ProgramTexts.of(texts, first, request.families)
-        _add_text_places(baseline)
     if not any(baseline.ran(round) for round in range(request.rounds)):
         raise NothingToDoError(_no_tests(baseline))
     ends = list(baseline.ends.values())
@@ -137,6 +140,17 @@ def _read(suite: _Suite, texts: tuple[ProgramText, ...], strides: Mapping[tuple[
         progress.note(remark)
     note_moments(ends, progress)
     return baseline
+
+
+def _text_seen(result: Result) -> TextSeen:
+    """What a run saw of instrumented program text."""
+    return TextSeen(
+        imported=frozenset(result.seen.imported if result.seen else ()),
+        sightings=tuple(result.seen.sightings if result.seen else ()),
+        reached=result.reached,
+        elsewhere=result.reached_elsewhere,
+        refused=result.not_instrumented,
+    )
 
 
 def _not_private(results: Iterable[Result]) -> str | None:
@@ -298,17 +312,3 @@ def _add_set_aside(baseline: Baseline, round: int, test: str, places: Iterable[P
     """Where a test that is set aside would have judged mutants."""
     for place in places if (round, test) in baseline.unstable else ():
         baseline.flaky_reaching.setdefault((round, place), []).append(test)
-
-
-def _add_text_places(baseline: Baseline) -> None:
-    """Which tests reach which place; what is evaluated before the tests, or at import, is there for all."""
-    for (round, place), reached in baseline.program.reached.items():
-        aside = [test for where, test in baseline.unstable if where == round]
-        if place in baseline.program.early:
-            baseline.reaching[round, place] = baseline.by_cost(round)
-        else:
-            tests = set(reached)
-            aside = [test for test in aside if test in tests]
-            baseline.reaching[round, place] = [test for test in baseline.by_cost(round) if test in tests]
-        for test in aside:
-            _add_set_aside(baseline, round, test, [place])

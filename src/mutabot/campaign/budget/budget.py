@@ -8,7 +8,7 @@ from dataclasses import replace
 from mutabot.border.codec import to_data
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.choice import run_trials
-from mutabot.campaign.plan.ladders import apart
+from mutabot.campaign.faults.ladders import apart
 from mutabot.campaign.reuse.reuse import Reused
 from mutabot.campaign.search.search import run_ladders
 from mutabot.campaign.sink import Sink

@@ -93,8 +93,7 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Re
     first, *others = engines_of(campaign.request)
     left = Remainder()
     ended = sum(1 for _ in first.try_controls(campaign, mutants, left))
-    early = {mutant.id for mutant, _ in left.early}
-    rest = mutants if left.trials else [mutant for mutant in mutants if mutant.id in early]
+    rest = mutants if left.trials else [mutant for mutant in mutants if mutant.id in left.why_apart]
     for engine in others:
         if rest:
             ended += sum(1 for _ in engine.try_controls(campaign, rest, Remainder()))

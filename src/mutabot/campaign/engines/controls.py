@@ -5,9 +5,9 @@ raises, so it must die; it is run once per test file and proves that turning a m
 all. A control that ends wrongly is tried again in a fresh process; one that ends wrongly there too stops the
 campaign: its verdicts could not be believed.
 
-Mutants of calls and mutants of the program text have controls of their own, as they take different ways
-into the program. Those of the text ask at their place like any alternative: the identity proves by its hits
-that the text which runs is the instrumented one.
+Mutants that take different ways into the program (as those of calls and those of the program text do) have
+controls of their own. Those of the text ask at their place like any alternative: the identity proves by its
+hits that the text which runs is the instrumented one.
 
 For the replay engine the identity mutant is run with every selection of tests that a mutant will be judged
 by, which also finds tests that pass only after others: their mutants are then judged by the whole suite. For
@@ -20,13 +20,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.workers.task import Task
 from mutabot.errors import ControlError
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model.place import Place
 from mutabot.operators.control import Fatal, Identity
 
 from .fresh import run_of, task
@@ -42,6 +43,7 @@ class Control:
     Attributes:
         name: which of the two, as an operator.
         place: where it acts.
+        provider: the provider whose mutants it is run for.
         round: the round it is run in.
         tests: the tests to run.
         subject: what it is run for, in words.
@@ -49,6 +51,7 @@ class Control:
 
     name: str
     place: Place
+    provider: str
     round: int
     tests: tuple[str, ...]
     subject: str
@@ -59,8 +62,9 @@ class Control:
         place = self.place
         variant = self.subject if self.round == 0 else f"{self.subject}, round {self.round + 1}"
         return Mutant(
-            0, CONTROL, self.name, place.site, place.operation, place.pattern, None, variant, self.name
-        )
+            0, CONTROL, self.name, place.site, place.operation, place.pattern, None, variant, self.name,
+            provider=self.provider,
+        )  # fmt: skip
 
     def task(self, campaign: Campaign) -> Task:
         """The task that runs it by replay."""
@@ -77,8 +81,7 @@ class Control:
         if outcome.verdict is expected:
             return None
         if self.name == FATAL and outcome.verdict is Verdict.SURVIVED:
-            what = "program text" if self.place.is_text else "operation"
-            return f"the test passes although the {what} raises"
+            return f"the test passes although the {provider(self.provider).location} raises"
         where = f"; it was at {outcome.stuck}" if outcome.stuck is not None else ""
         return f"{outcome.verdict}: {outcome.message or 'it changed something'}{where}"
 
@@ -138,18 +141,19 @@ def controls_in_branches(
     baseline: Baseline, mutants: Iterable[Mutant], rounds: Iterable[int] = (0,)
 ) -> list[Control]:
     """The controls to run as branches: identity in every test of these rounds, fatal once per file."""
-    early = baseline.program.early | baseline.early
-    mutants = [mutant for mutant in mutants if not baseline.is_early(mutant)]
+    mutants = [mutant for mutant in mutants if baseline.why_apart(mutant) is None]
     planned = _places(mutants)
-    uncovered = {(is_text, one): set(baseline.tests[one]) for is_text in (False, True) for one in rounds}
+    ways = {baseline.faults.provider_at(place) for place in planned}
+    uncovered = {(way, one): set(baseline.tests[one]) for way in ways for one in rounds}
     found: list[Control] = []
     for (round, place), tests in baseline.reaching.items():
-        missing = uncovered.get((place.is_text, round), set())
+        way = baseline.faults.provider_at(place)
+        missing = uncovered.get((way, round), set())
         here = tuple(test for test in tests if test in missing)
         here = tuple(test for test in here if baseline.why_not_branch(round, [test]) is None)
-        if here and place in planned and place not in early:
+        if here and place in planned and place not in baseline.early:
             missing -= set(here)
-            found.append(Control(IDENTITY, place, round, here, _subject(here)))
+            found.append(Control(IDENTITY, place, way, round, here, _subject(here)))
     fatals = _fatals(baseline, mutants)
     return [*found, *(one for one in fatals if baseline.why_not_branch(one.round, one.tests) is None)]
 
@@ -184,14 +188,15 @@ def _replayed(
 
 def _identities_by_selection(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
     """One identity control per selection of tests that mutants are judged by, for ladders in each round."""
-    chosen: dict[tuple[bool, tuple[str, ...], int], Control] = {}
+    chosen: dict[tuple[str, tuple[str, ...], int], Control] = {}
     for round in range(len(baseline.tests)):
         for mutant in mutants:
             place = Place.of(mutant.singles[0])
             tests = baseline.judges(round, mutant)
             if tests:
-                control = Control(IDENTITY, place, round, tests, _subject(tests))
-                chosen.setdefault((place.is_text, tests, round if mutant.ladder else 0), control)
+                way = baseline.faults.provider_at(place)
+                control = Control(IDENTITY, place, way, round, tests, _subject(tests))
+                chosen.setdefault((way, tests, round if mutant.ladder else 0), control)
     return list(chosen.values())
 
 
@@ -210,20 +215,20 @@ def _fatals(baseline: Baseline, mutants: list[Mutant]) -> list[Control]:
     What raises while the program is imported says little about what is reached in a test: that comes last.
     Only a test that passes on the original must fail by it; one that may fail, or skips itself, need not.
     """
-    planned, early = _places(mutants), baseline.program.early | baseline.early
-    chosen: dict[tuple[bool, str], Control] = {}
-    costs: dict[tuple[bool, str], tuple[bool, int, float]] = {}
+    planned, early = _places(mutants), baseline.early
+    chosen: dict[tuple[str, str], Control] = {}
+    costs: dict[tuple[str, str], tuple[bool, int, float]] = {}
     for (round, place), tests in baseline.reaching.items():
         passing = [test for test in tests if baseline.ends[round, test].outcome == "passed"]
         for test in passing if place in planned else ():
-            key = (place.is_text, test.partition("::")[0])
+            key = (baseline.faults.provider_at(place), test.partition("::")[0])
             cost = (place in early, round, baseline.ends[round, test].wall)
             if key not in costs or cost < costs[key]:
                 costs[key] = cost
-                chosen[key] = Control(FATAL, place, round, (test,), key[1])
+                chosen[key] = Control(FATAL, place, key[0], round, (test,), key[1])
     return list(chosen.values())
 
 
 def _with_whole_suite(control: Control, baseline: Baseline) -> Control:
     tests = tuple(baseline.tests[control.round])
-    return Control(control.name, control.place, control.round, tests, "the whole suite")
+    return replace(control, tests=tests, subject="the whole suite")

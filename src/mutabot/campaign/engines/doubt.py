@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.failing import FAILS
+from mutabot.campaign.faults.providers import provider
 from mutabot.model import Mutant, Outcome, Verdict
-from mutabot.operators import operator
 
 #: a mutant in a round
 Key = tuple[str, int]
@@ -65,7 +65,7 @@ class Doubts:
         ]
 
     def _is_raced(self, mutant: Mutant) -> bool:
-        return any(one.operation and operator(one.operator).is_raced for one in mutant.singles)
+        return any(provider(one.provider).is_raced(one.operator) for one in mutant.singles)
 
     def is_certain(self, key: Key) -> bool:
         """Whether a kill was repeated before, or is one by a test that is taken to be deterministic."""

@@ -25,13 +25,15 @@ class Remainder:
 
     Attributes:
         trials: mutants and rounds.
-        early: mutants that act while the program is imported, before any test.
+        apart: mutants that need a process of their own from the start.
+        why_apart: why, by their ids.
         reasons: test to why mutants cannot be judged in it by this engine.
         notes: what else went wrong, in words.
     """
 
     trials: list[Trial] = field(default_factory=list)
-    early: list[Trial] = field(default_factory=list)
+    apart: list[Trial] = field(default_factory=list)
+    why_apart: dict[str, str] = field(default_factory=dict)
     reasons: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
@@ -40,15 +42,20 @@ class Remainder:
         self.trials.append((mutant, round))
         self.reasons.setdefault(test, reason)
 
+    def set_apart(self, mutant: Mutant, round: int, reason: str) -> None:
+        """Leave a mutant whatever its tests."""
+        self.apart.append((mutant, round))
+        self.why_apart[mutant.id] = reason
+
     @property
     def all(self) -> list[Trial]:
         """All that is left."""
-        return [*self.trials, *self.early]
+        return [*self.trials, *self.apart]
 
     def why(self, mutant: Mutant) -> str:
         """Why a mutant is left, in words."""
-        if any(one.id == mutant.id for one, _ in self.early):
-            return "it acts while the program is imported"
+        if mutant.id in self.why_apart:
+            return f"it {self.why_apart[mutant.id]}"
         return "; ".join(dict.fromkeys([*self.reasons.values(), *self.notes]))
 
 

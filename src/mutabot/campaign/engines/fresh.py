@@ -145,7 +145,8 @@ def task(
         budgets=budgets,
         moments=moments_in(baseline.strides, round),
         refused=baseline.refused_in(round, tests),
-        instrumentation=baseline.program.instrumentation([mutant], active=True),
+        instrumentation=baseline.faults.instrumentation([mutant], active=True),
+        faults=baseline.faults.in_process(mutant),
     )
     least = request.configuration.timeout_seconds
     startup = max(least, WALL_FACTOR * baseline.startup)

@@ -26,12 +26,12 @@ from mutabot.border.lines import (
 )
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.observed import observation, place_of
-from mutabot.campaign.baseline.places import Place
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.moments import moments_in
 from mutabot.campaign.comparing.observation import Observation
 from mutabot.campaign.workers.task import Result, Task, at, death
 from mutabot.model import Instrumentation, Mutant, Outcome, Verdict
+from mutabot.model.place import Place
 
 from .engine import Remainder, Trial
 from .fresh import wall_limit, without_tests
@@ -87,7 +87,7 @@ class Trunks:
         parts = cut(list(self._trunks.values()), self._campaign.executor.spread)
         by_key = dict(enumerate(parts))
         # the text of all rounds alike, so that one fork server can serve them
-        text = baseline.program.instrumentation(
+        text = baseline.faults.instrumentation(
             {one.id: one for trunk in self._trunks.values() for one in trunk.mutants}.values()
         )
         tasks = (trunk.task(key, text) for key, trunk in by_key.items())
@@ -100,8 +100,9 @@ class Trunks:
 
     def _add(self, mutant: Mutant, round: int, tests: tuple[str, ...]) -> None:
         baseline = self._campaign.baseline
-        if baseline.is_early(mutant):
-            self._left.early.append((mutant, round))
+        why = baseline.why_apart(mutant)
+        if why is not None:
+            self._left.set_apart(mutant, round, why)
             return
         if round not in self._trunks:
             self._trunks[round] = _Trunk(
@@ -242,7 +243,7 @@ class _Trunk:
         walls = {test: wall_limit(self._campaign, round, test) for test in in_order}
         longest = max(walls.values(), default=0.0)
         mutants = self.mutants
-        choices = {mutant.id: baseline.program.choices(mutant) for mutant in mutants}
+        choices = {mutant.id: baseline.faults.choices(mutant) for mutant in mutants}
         branching = Branching(
             mutants=mutants,
             tests={mutant: branches.tests for mutant, branches in self._open.items()},

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 
-from mutabot import operators
-from mutabot.families import OF_CALLS, OF_TEXT
+from mutabot.campaign.faults.providers import rules_of
 from mutabot.operators.rule import Rule, in_order
-from mutabot_source.registry import load_all as load_classical
+from mutabot.settings.families import known_families
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,12 +32,11 @@ def listed_rules(families: Collection[str] = ()) -> list[ListedRule]:
 
     Raises OperatorError for a plug-in that is of no use.
     """
-    rules: list[Rule] = [*operators.load_all(), *load_classical()]
-    brought = dict.fromkeys(rule.family for rule in rules if rule.family not in (*OF_CALLS, *OF_TEXT))
+    wanted = [family for family in known_families() if not families or family in families]
+    rules = rules_of(wanted)
     return [
         ListedRule(rule.name, rule.family, rule.summary, rule.where, _source(rule))
-        for family in (*OF_CALLS, *brought, *OF_TEXT)
-        if not families or family in families
+        for family in wanted
         for rule in in_order(rule for rule in rules if rule.family == family)
     ]
 

@@ -8,8 +8,8 @@ from itertools import islice
 from random import Random
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.places import Place
 from mutabot.model import Mutant
+from mutabot.model.place import Place
 
 #: pairs that are looked at for each one that is wanted: most do not fit where few tests share places
 _LOOKED_AT = 200
@@ -39,6 +39,8 @@ def pair(number: int, first: Mutant, second: Mutant) -> Mutant:
         variant="",
         description=f"{first.description}; {second.description}",
         idle=None,
+        has_sizes=False,
+        provider="+".join(dict.fromkeys((first.provider, second.provider))),
         parts=(first, second),
     )
 

@@ -5,28 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.places import Place
-from mutabot.families import OF_TEXT
+from mutabot.campaign.faults.providers import provider
 from mutabot.journal.records import Reaching
 from mutabot.model import Mutant
-from mutabot.operators import operator
-from mutabot_source.registry import load_all
+from mutabot.model.place import Place
 
 
 def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
     """The summary of each operator that made one of the mutants, by its name."""
-    used = sorted({(single.family, single.operator) for mutant in mutants for single in mutant.singles})
-    of_text = {family for family, _ in used} & set(OF_TEXT)
-    texts = {rule.name: rule.summary for rule in load_all()} if of_text else {}
-    return {name: texts[name] if family in of_text else operator(name).summary for family, name in used}
+    singles = [single for mutant in mutants for single in mutant.singles]
+    providers = {single.provider: provider(single.provider) for single in singles}
+    known = {(name, rule.name): rule.summary for name, one in providers.items() for rule in one.rules()}
+    used = sorted({(single.family, single.operator, single.provider) for single in singles})
+    return {name: known[by, name] for _, name, by in used if (by, name) in known}
 
 
 def drawing(mutants: Iterable[Mutant]) -> list[str]:
     """The names of the operators among them that draw a number for each round."""
-    used = {
-        single.operator for mutant in mutants for single in mutant.singles if single.family not in OF_TEXT
-    }
-    return sorted(name for name in used if operator(name).draws)
+    used = {(single.provider, single.operator) for mutant in mutants for single in mutant.singles}
+    return sorted(name for by, name in used if provider(by).draws(name))
 
 
 def reaching(baseline: Baseline, mutants: Iterable[Mutant]) -> Reaching:

@@ -7,9 +7,10 @@ from functools import cached_property
 from itertools import chain
 from pathlib import Path
 
-import mutabot_source
+from mutabot.campaign.faults.providers import operators_of_packages
 from mutabot.campaign.request import Request
 from mutabot.errors import SelectionError
+from mutabot.languages.registry import program_files
 from mutabot.model.selector import line_of, means_numbers
 from mutabot.model.site import Role
 from mutabot.operators import registry
@@ -48,7 +49,7 @@ class _Known:
         if means_numbers(word) or word.startswith("@"):  # what a list says is for the plan to say as well
             return True
         file, colon, _ = word.partition(":")
-        if _WILD.search(file) or (not colon and word in self._names):
+        if _WILD.search(file) or (not colon and (word in self._names or word in self._of_packages)):
             return True
         found = [known for known in self._files if _is_file(file, known)]
         line = line_of(word)
@@ -59,15 +60,20 @@ class _Known:
     @property
     def words(self) -> list[str]:
         """What may have been meant."""
-        return [*self._names, *self._files]
+        return [*self._names, *self._of_packages, *self._files]
 
     @cached_property
     def _names(self) -> tuple[str, ...]:
-        return (*registry.names(), *mutabot_source.names(), *known_families(), *(role.value for role in Role))
+        return (*registry.names(), *known_families(), *(role.value for role in Role))
+
+    @cached_property
+    def _of_packages(self) -> tuple[str, ...]:
+        """Operators that are none on calls; to look at them may take its time."""
+        return tuple(operators_of_packages())
 
     @cached_property
     def _files(self) -> list[str]:
-        return mutabot_source.program_files(self._root, self._sources)
+        return program_files(self._root, self._sources)
 
     def _lines(self, file: str) -> int:
         try:

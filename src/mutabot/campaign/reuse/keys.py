@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import platform
 import sys
 import tomllib
@@ -24,14 +25,13 @@ import mutabot
 from mutabot.border.codec import to_data
 from mutabot.border.idle import Idle
 from mutabot.campaign.baseline.baseline import Baseline
+from mutabot.campaign.faults.providers import all_providers, provider
 from mutabot.campaign.pieces.mentions import names_in
 from mutabot.campaign.pieces.project import Project
 from mutabot.campaign.pieces.reach import Reach, Reached
 from mutabot.campaign.pieces.renaming import Renaming
 from mutabot.campaign.request import Request
-from mutabot.families import OF_TEXT
 from mutabot.model import Mutant, Vocabulary
-from mutabot.operators import operator
 
 from .snapshot import _HASH, _digest_of
 from .state import State, read
@@ -185,11 +185,10 @@ class Dependencies:
         )
 
     def _own(self, mutant: Mutant, round: int) -> list[Any]:
-        """What a mutant does, beyond what its id says; of one in the program text, what it reads there."""
-        planted = self._baseline.program.planted.get(mutant.id)
-        if planted is None:
-            return [Idle.of(mutant.idle).in_round(round), mutant.pattern]
-        return [to_data(planted.place.alternatives[planted.choice.index])]
+        """What a mutant does, beyond what its id says."""
+        planted = self._baseline.faults.by_id.get(mutant.id)
+        does = planted.does if planted is not None else None
+        return [mutant.provider, Idle.of(mutant.idle).in_round(round), mutant.pattern, does]
 
     def new_parts(self) -> Mapping[str, Parts]:
         """The parts that have come since this was last asked."""
@@ -222,13 +221,11 @@ class Dependencies:
 
     def _names_of(self, mutant: Mutant) -> frozenset[str]:
         """Names that the text of a mutant mentions, beyond those of the original."""
-        planted = self._baseline.program.planted.get(mutant.id)
-        if planted is None:
-            return frozenset()
-        return frozenset(names_in(planted.place.alternatives[planted.choice.index].template))
+        planted = self._baseline.faults.by_id.get(mutant.id)
+        return frozenset(names_in(planted.mentions)) if planted is not None else frozenset()
 
     def _operations_of(self, mutant: Mutant) -> tuple[str, ...]:
-        """The operations whose meaning counts: to a mutant of the program text, any might refuse."""
+        """The operations whose meaning counts: to a mutant that acts on none, any might refuse."""
         named = tuple(single.operation for single in mutant.singles)
         return named if all(named) else tuple(self._operations)
 
@@ -274,10 +271,7 @@ class Dependencies:
 
 def _draws(mutant: Mutant) -> bool:
     """Whether a mutant draws numbers, which follow from its id."""
-    return any(
-        one.moment is not None or (one.family not in OF_TEXT and operator(one.operator).draws)
-        for one in mutant.singles
-    )
+    return any(one.moment is not None or provider(one.provider).draws(one.operator) for one in mutant.singles)
 
 
 def changes(old: Parts, new: Parts) -> list[str]:
@@ -415,6 +409,8 @@ def versions() -> dict[str, str]:
 def _own_code() -> str:
     """Of a mutabot that is being worked on, the version alone does not tell what it does."""
     home = Path(mutabot.__file__).parent
-    core = (home / part for part in ("model", "operators", "inside", "campaign"))
-    files = sorted(file for one in (*core, *home.parent.glob("mutabot_*")) for file in one.rglob("*.py"))
-    return _digest([(file.relative_to(home.parent).as_posix(), _digest_of(file)) for file in files])
+    parts = [home / part for part in ("model", "operators", "inside", "campaign")]
+    modules = (sys.modules[type(one).__module__].__file__ for one in all_providers())
+    parts += [Path(file).parent for file in modules if file is not None]
+    files = sorted({file for part in (*parts, *home.parent.glob("mutabot_*")) for file in part.rglob("*.py")})
+    return _digest([(os.path.relpath(file, home), _digest_of(file)) for file in files])

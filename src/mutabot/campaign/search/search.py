@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.choice import run_trials
 from mutabot.campaign.engines.engine import Trial
-from mutabot.campaign.plan.ladders import Ladder
+from mutabot.campaign.faults.ladders import Ladder
 from mutabot.campaign.sink import Sink
 from mutabot.model import Outcome
 from mutabot.model.graded.ladder import seen

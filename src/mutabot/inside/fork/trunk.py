@@ -143,11 +143,7 @@ class Trunk:
 
     def _keys(self, mutant: Mutant) -> list[Key]:
         """Where it is to be branched: wherever one of its parts is reached first."""
-        sites: list[Key] = [
-            (single.site.span, single.operation, single.pattern)
-            for single in mutant.singles
-            if single.operation
-        ]
+        sites = [(one.site.span, one.operation, one.pattern) for one in mutant.singles]
         return [*sites, *(choice.place for choice in self.branching.choices.get(mutant.id, ()))]
 
     def start_test(self, test: str) -> None:
@@ -211,8 +207,7 @@ class Trunk:
     def _index(self, mutant: Mutant, place: int) -> int:
         """Which alternative the mutant is; negative if it cannot wait until that changes something."""
         choices = self.branching.choices[mutant.id]
-        is_alone = len(choices) == 1 and not any(single.operation for single in mutant.singles)
-        return choices[0].index if is_alone else AT_ONCE
+        return AT_ONCE if mutant.parts else choices[0].index
 
     def _fork(self, key: Key, bunches: Sequence[Sequence[Mutant]]) -> None:
         if not any(bunches) or os.getpid() != self._pid:  # a copy that the test has forked for itself

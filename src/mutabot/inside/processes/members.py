@@ -271,8 +271,7 @@ class Members:
         if mutant is None or len(mutant.singles) < 2:
             return end
         parts = {part for one in did for part in one.parts} | self._session.parts
-        names = {single.id if single.operation else "" for single in mutant.singles}
-        is_whole = names <= parts
+        is_whole = self._session.part_names <= parts
         return replace(end, acted=max(end.acted, 1) if is_whole else 0, partly=bool(parts) and not is_whole)
 
     def _with_ends(self, end: TestEnd, here: list[Account]) -> TestEnd:

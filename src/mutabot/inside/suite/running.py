@@ -101,6 +101,8 @@ class Running:
         """The fixtures of a test are next."""
         if self.session.trunk is not None:
             drop_idle_watchdog(item)
+        if self.session.placed.fatal is not None:
+            raise self.session.placed.fatal
 
     @pytest.hookimpl(optionalhook=True, tryfirst=True)
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: Any) -> None:

@@ -28,6 +28,7 @@ class NumberOperator(ValueOperator):
     """
 
     family = GRADED
+    has_sizes = True
     directions: ClassVar[tuple[str, ...]] = ("+", "-")
     fault: ClassVar[str] = ""
 

@@ -50,6 +50,7 @@ class Lag(CommandOperator):
 
     name = "lag"
     family = GRADED
+    has_sizes = True
     summary = (
         "Each command is carried out so much later, while the rest of the world goes on; a reading was taken "
         "so much before the program gets it. Needs a `wait` in the vocabulary, or a middleware."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 from mutabot.analysis.stored.changes import Changes
 from mutabot.report.shaping.markup import escaped, table
@@ -29,7 +30,7 @@ def change_lines(changes: Changes, path: Callable[[str], str]) -> Iterator[str]:
         rows = (
             (
                 str(result.mutant.number),
-                f"{path(result.mutant.site.span.file)}:{result.mutant.site.span.line}",
+                replace(result.mutant.site.span, file=path(result.mutant.site.span.file)).place,
                 result.mutant.operator,
                 result.mutant.description,
                 told,

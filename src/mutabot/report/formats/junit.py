@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from xml.etree import ElementTree as Xml
 
 from mutabot.analysis.results import MutantResult
@@ -101,7 +102,7 @@ def _case(suite: Xml.Element, result: MutantResult, material: Material) -> None:
     )
     status = status_of(result)
     element = _ELEMENT.get(status)
-    text = f"{file}:{mutant.site.span.line}: {mutant.description}\n{reason_of(result)}"
+    text = f"{replace(mutant.site.span, file=file).place}: {mutant.description}\n{reason_of(result)}"
     if element is None:
         Xml.SubElement(case, "system-out").text = text
         return

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group
@@ -125,7 +126,7 @@ def _thresholds(material: Material) -> Iterator[str]:
 
 def _place(result: MutantResult, material: Material) -> str:
     span = result.mutant.site.span
-    return f"{material.path(span.file)}:{span.line}"
+    return replace(span, file=material.path(span.file)).place
 
 
 def _rest(count: int) -> Iterator[str]:

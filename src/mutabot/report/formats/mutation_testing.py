@@ -106,10 +106,10 @@ def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
 
 
 def _replacement(mutant: Mutant, material: Material) -> str:
-    """What would stand there: the new text of a mutant of the program text, else what becomes of the call."""
+    """What would stand there: the new text if that is what the mutant is, else what it does, in words."""
     text = material.place(mutant.site.span).text
     before, arrow, after = mutant.description.partition(" → ")
-    is_text = not mutant.parts and not mutant.operation and arrow and before == text
+    is_text = not mutant.parts and arrow and before == text
     return after if is_text else mutant.description
 
 

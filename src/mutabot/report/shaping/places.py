@@ -32,10 +32,14 @@ def utf16(text: str) -> int:
 
 
 def place_of(span: Span, source: str | None, length: Callable[[str], int] = len) -> Place:
-    """The place of a span. ``length`` counts the characters of a part of a line."""
+    """The place of a span. ``length`` counts the characters of a part of a line.
+
+    Other tools know no place without a line: what does not stand in the text is told at the first one.
+    """
     lines = source.split("\n") if source is not None else []
     if not 1 <= span.line <= span.end_line <= len(lines):
-        return Place(span.line, 1, max(span.line, span.end_line), None, None)
+        line = max(span.line, 1)
+        return Place(line, 1, max(line, span.end_line), None, None)
     before = _prefix(lines[span.line - 1], span.column)
     whole = _prefix(lines[span.end_line - 1], span.end_column)
     shown = [*lines[span.line - 1 : span.end_line - 1], whole]

@@ -78,8 +78,8 @@ def make_mutant_table(facts: Sequence[str], text: str, *, narrow: bool) -> Table
 
 
 def short_place(file: str, line: int, *, width: int = 24) -> str:
-    """``file:line``; a long path loses its first folders."""
-    place = f"{file}:{line}"
+    """``file:line``; a long path loses its first folders. What stands in no line has line 0."""
+    place = f"{file}:{line}" if line else file
     if len(place) <= width:
         return place
     parts = place.split("/")

@@ -6,9 +6,11 @@ engine, as are those that act before any test.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
+from mutabot.campaign.baseline.baseline import EARLY
 from mutabot.campaign.baseline.taking import REPETITIONS
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import Control, controls_in_branches, end_of
@@ -86,10 +88,11 @@ class Branch:
         baseline, progress = campaign.baseline, campaign.progress
         for mutant, round in ((one, round) for one in mutants for round in range(campaign.request.rounds)):
             forbidding = baseline.why_not_branch(round, baseline.judges(round, mutant))
+            why = baseline.why_apart(mutant)
             if forbidding is not None:
                 left.leave(mutant, round, *forbidding)
-            elif baseline.is_early(mutant):
-                left.early.append((mutant, round))
+            elif why is not None:
+                left.set_apart(mutant, round, why)
         progress.stage("controls", len(controls.by_id))
         for outcome in Trunks(campaign, left, self.name).run(controls.trials, only=controls.tests):
             control = controls.by_id[outcome.mutant]
@@ -104,11 +107,9 @@ def _tell(campaign: Campaign, left: Remainder) -> None:
     progress = campaign.progress
     for test, reason in left.reasons.items():
         progress.note(f"no branches in {test}: {reason}; its mutants run in processes of their own")
-    if left.early:
-        number = len({mutant.id for mutant, _ in left.early})
-        progress.note(
-            f"{number} mutants act while the program is imported: each runs in a process of its own"
-        )
+    for why, number in Counter(left.why_apart.values()).items():
+        what = "mutants act while the program is imported" if why == EARLY else f"mutants: each {why}"
+        progress.note(f"{number} {what}: each runs in a process of its own")
     for note in left.notes:
         progress.note(note)
 

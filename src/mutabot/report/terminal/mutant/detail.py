@@ -27,8 +27,6 @@ from .happened import happened_parts
 from .looked import looked_parts
 from .suggested import suggested_parts
 
-#: facts that a mutant of the program text has not
-_OF_CALLS = ("operation", "quantity")
 _NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
 
 
@@ -99,19 +97,24 @@ def _facts(result: MutantResult) -> Table:
     table.add_column(overflow="fold")
     facts = {
         "id": mutant.id,
-        "place": "; ".join(f"{one.site.place} in {one.site.span.function}" for one in mutant.singles),
+        "place": "; ".join(map(_place_text, mutant.singles)),
         "role": mutant.site.role.value,
         "operator": f"{mutant.operator} ({mutant.family})",
         "operation": mutant.operation + (f", command {mutant.pattern_name}" if mutant.pattern else ""),
-        "quantity": _quantity_text(mutant.quantity, result.quantity),
+        "quantity": _quantity_text(mutant.quantity, result.quantity) if mutant.operation else "",
         "killed": f"in {rate.killed} of the {rate.valid} rounds in which it was valid{_interval_text(rate)}",
         "result": result.why,
         "better": result.improvement,
     }
     for name, text in facts.items():
-        if text and (mutant.operation or name not in _OF_CALLS):
+        if text:
             table.add_row(name, plain(text))
     return table
+
+
+def _place_text(single: Mutant) -> str:
+    function = single.site.span.function
+    return f"{single.site.place} in {function}" if function else single.site.place
 
 
 def _interval_text(rate: KillRate) -> str:

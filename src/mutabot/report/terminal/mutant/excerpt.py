@@ -15,7 +15,7 @@ def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
     Columns of the span count UTF-8 bytes; the underline counts the cells that a terminal shows.
     """
     lines = source.splitlines()
-    if span.line > len(lines):
+    if not 1 <= span.line <= len(lines):
         return []
     first, last = max(1, span.line - around), min(len(lines), span.end_line + around)
     width = len(str(last))

@@ -7,29 +7,25 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.places import Place
-from mutabot.model import LeftOut, Moment, Mutant, Vocabulary
+from mutabot.faults import Planted
+from mutabot.model import Moment, Mutant, Vocabulary
 from mutabot.model.moment import When
+from mutabot.model.place import Place
 from mutabot.operators import Need, operator
-
-from .planned import Plan
 
 
 def at_moments(
-    plan: Plan, baseline: Baseline, vocabulary: Vocabulary, wanted: Sequence[Moment | None]
-) -> Plan:
-    """The plan with each mutant at each of these moments; None is every call."""
-    mutants: list[Mutant] = []
-    left_out = list(plan.left_out)
-    for mutant in plan.mutants:
-        for moment in wanted:
-            made = mutant if moment is None else _at(mutant, moment, baseline)
+    planted: Sequence[Planted], baseline: Baseline, vocabulary: Vocabulary, wanted: Sequence[Moment | None]
+) -> list[Planted]:
+    """Each mutant at each of these moments; None is every call."""
+    found = [one for one in planted if one.reason is not None]
+    for one in planted:
+        for moment in wanted if one.reason is None else ():
+            made = one.mutant if moment is None else _at(one.mutant, moment, baseline)
             reason = _why_not(made, vocabulary, baseline)
-            if reason is None:
-                mutants.append(replace(made, number=len(mutants) + 1))
-            else:
-                left_out.append(LeftOut(made.id, made.description, reason))
-    return replace(plan, mutants=mutants, left_out=left_out)
+            order = one.order if reason is None else (1, *one.order[1:])  # left out here: behind the others
+            found.append(replace(one, mutant=made, reason=reason, order=order))
+    return found
 
 
 def _at(mutant: Mutant, moment: Moment, baseline: Baseline) -> Mutant:

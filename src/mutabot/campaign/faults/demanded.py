@@ -5,39 +5,47 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from mutabot.families import GRADED
+from mutabot.faults import Planted, Project
 from mutabot.model import Kind, Mutant, Vocabulary
 from mutabot.model.graded.demand import Demand, is_same, wanted_magnitudes
 
 from .ladders import Ladder, apart
-from .planned import Plan
 
 
-def with_demanded(
-    plan: Plan, demands: Sequence[Demand], vocabulary: Vocabulary, families: Sequence[str]
-) -> Plan:
-    """The plan with a mutant for each demanded magnitude that its ladder lacks.
+def with_demanded(planted: Sequence[Planted], project: Project) -> list[Planted]:
+    """These mutants, with one for each demanded magnitude that its ladder lacks.
 
-    Where graded mutants were not asked for, the ladders stay of which a demand speaks, and no others.
+    Where a family was not asked for, the ladders stay of which a demand speaks, and no others of it.
     """
+    demands, families = project.demands, project.families
     if not demands:
-        return plan
-    wanted = _wanted(apart(plan.mutants)[1], demands, vocabulary)
-    mutants = [one for one in plan.mutants if GRADED in families or not one.ladder or wanted.get(one.ladder)]
-    for ladder in apart(mutants)[1]:
-        mutants += [
-            _at(ladder.mutants[0], size)
+        return [*planted]
+    ladders = apart(one.mutant for one in planted if one.reason is None)[1]
+    wanted = _wanted(ladders, demands, project.vocabulary)
+    found = [
+        one
+        for one in planted
+        if one.reason is not None or one.mutant.family in families or wanted.get(one.mutant.ladder)
+    ]
+    places = {one.mutant.ladder: one for one in reversed(found) if one.reason is None}
+    for ladder in ladders:
+        found += [
+            replace(places[ladder.id], mutant=_at(ladder.mutants[0], size))
             for size in wanted.get(ladder.id, ())
             if not any(is_same(one.magnitude or 0.0, size) for one in ladder.mutants)
         ]
-    return replace(plan, mutants=mutants)
+    return found
 
 
-def ladders_last(plan: Plan) -> Plan:
-    """The plan with graded mutants behind all others, whose numbers are the same with and without them."""
-    alone, ladders = apart(plan.mutants)
-    mutants = [*alone, *(mutant for ladder in ladders for mutant in ladder.mutants)]
-    return replace(plan, mutants=[replace(one, number=at) for at, one in enumerate(mutants, start=1)])
+def ladders_last(planted: Sequence[Planted]) -> list[Planted]:
+    """These mutants with an order by which those with sizes come last, ladder by ladder."""
+    _, ladders = apart(one.mutant for one in planted if one.reason is None)
+    steps = [mutant.id for ladder in ladders for mutant in ladder.mutants]
+    order = {mutant: (1, number) for number, mutant in enumerate(steps)}
+    return [
+        replace(one, order=order[one.mutant.id]) if one.reason is None and one.mutant.id in order else one
+        for one in planted
+    ]
 
 
 def demanded_of(

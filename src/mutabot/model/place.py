@@ -1,17 +1,21 @@
-"""Where mutants can act: a site with its operation and text command, or a place in the program text."""
+"""Where mutants can act: a site, with its operation and text command where calls are made there."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mutabot.model import Mutant, Site
+from .mutant import Mutant
+from .site import Site
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Place:
-    """Where and what a mutant can act on: a site, an operation, a text command.
+    """Where and what a mutant can act on.
 
-    A place in the program text has no operation.
+    Attributes:
+        site: where.
+        operation: the operation that is called there; empty where the place is none of a call.
+        pattern: the text command.
     """
 
     site: Site
@@ -22,11 +26,6 @@ class Place:
     def of(cls, mutant: Mutant) -> Place:
         """Where a mutant of the first order acts."""
         return cls(mutant.site, mutant.operation, mutant.pattern)
-
-    @property
-    def is_text(self) -> bool:
-        """Whether it is a place in the program text."""
-        return not self.operation
 
     @property
     def key(self) -> str:

@@ -1,0 +1,338 @@
+"""Faults of calls and of messages: operators at places make mutants; what cannot matter is left out."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from random import Random
+from typing import Any, ClassVar
+
+from mutabot.campaign.baseline.answers import NoAnswerError, RecordedAnswers, idle_of
+from mutabot.campaign.baseline.baseline import Baseline, Hit
+from mutabot.errors import OperatorError
+from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, ROBOT
+from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparation, Project
+from mutabot.model import Call, Kind, Middleware, Mutant, Operation, Reply, Role, Site, Vocabulary
+from mutabot.model.place import Place
+from mutabot.model.values.quantity import is_reading_of
+from mutabot.operators import Need, Operator, Subject, load_all
+from mutabot.operators.operator import with_operation
+from mutabot.operators.passage import Passage, rehearse
+from mutabot.operators.registry import operator as operator_of
+
+from .demanded import ladders_last, with_demanded
+from .moments import at_moments
+from .signs import NO_SIGN, has_negative
+
+_LOST_WRITE = (
+    "the program writes to what the call returns, which is the robot's own memory: "
+    "a mutant hands out a copy, and what is written to that is lost"
+)
+#: recorded calls per place that are tried out; calls of one place are much alike
+TRIED = 200
+
+
+class CallFaults(FaultProvider):
+    """Operators on calls, which act where a call is intercepted (``mutabot/inside/calls``)."""
+
+    name = CALLS
+    families: ClassVar[tuple[str, ...]] = (ROBOT, GRADED, CATALOGUE)
+    location = "operation"
+    needs_vocabulary = True
+    numbered_with = CALLS
+
+    def rules(self) -> Sequence[Operator]:
+        """All operators on calls but those of messages, also those that packages bring."""
+        return [rule for rule in load_all() if rule.family != MIDDLEWARE]
+
+    def is_asked_for(self, project: Project) -> bool:
+        """It may be for an operator that a package brings, whose family is its own; or for a demand."""
+        return any(_is_asked_for(rule, project) for rule in self.rules())
+
+    def plan(self, project: Project, prepared: Preparation, original: Original) -> Planned:
+        """The mutants of its operators at all places that the tests reach.
+
+        Those with sizes come behind all others, whose numbers are the same with and without them.
+        """
+        assert isinstance(original, Baseline)
+        operators = [rule for rule in self.rules() if _is_asked_for(rule, project)]
+        found = list(_at_places(original, project.vocabulary, operators, self.name))
+        if project.moments != (None,):
+            found = at_moments(found, original, project.vocabulary, project.moments)
+        return Planned(ladders_last(with_demanded(found, project)))
+
+    def draws(self, operator: str) -> bool:
+        """Whether an operator of its own draws numbers anew for each round."""
+        return operator_of(operator).draws
+
+    def is_raced(self, operator: str) -> bool:
+        """Whether equal runs with a fault of this operator may end differently."""
+        return operator_of(operator).is_raced
+
+
+class MessageFaults(CallFaults):
+    """Operators on what goes over a middleware, as messages, requests and settings do."""
+
+    name = MESSAGES
+    families = (MIDDLEWARE,)
+
+    def rules(self) -> Sequence[Operator]:
+        """The operators on messages."""
+        return [rule for rule in load_all() if rule.family == MIDDLEWARE]
+
+
+def _is_asked_for(rule: Operator, project: Project) -> bool:
+    return rule.family in project.families or (bool(project.demands) and rule.has_sizes)
+
+
+def _at_places(
+    baseline: Baseline, vocabulary: Vocabulary, operators: Sequence[Operator], provider: str
+) -> Iterator[Planted]:
+    """All mutants of these operators at all places that the tests reach, and those that are left out."""
+    taken: set[str] = set()
+    operations_at = Counter(site for site, _ in {(place.site, place.operation) for place in baseline.hits})
+    ranks = {rule.name: rank for rank, rule in enumerate(load_all())}
+    for index, (place, hits) in enumerate(baseline.hits.items()):
+        operation = vocabulary.operation(place.operation)
+        if operation is None:
+            continue
+        is_shared = operations_at[place.site] > 1
+        for subject, rule in _subjects(operators, operation, place):
+            mutant = _distinct(_mutant(rule, subject, place, provider), taken)
+            seen, foreseen = _foresee(rule, subject, hits)
+            needs = rule.needs_of(subject)
+            unmet = {need: _why_unmet(need, subject, place, baseline, vocabulary) for need in needs}
+            later = (unmet.get(need) for need in (Need.CLOCK, Need.WAIT, Need.SIGN))
+            reasons = (unmet.get(Need.ERROR), unmet.get(Need.PLACE), foreseen, *later)
+            reason = next(filter(None, reasons), None)
+            if reason is None and baseline.unread.get(place, False) and rule.only_reads(subject):
+                reason = "nobody reads what the call returns: it is a statement by itself"
+            mutant = replace(
+                mutant, description=_description(rule, subject, place, seen, is_shared=is_shared)
+            )
+            if place in baseline.written_through and _only_reads(subject):
+                reason = _LOST_WRITE
+            if Need.IDLE in rule.needs and reason is None:
+                try:
+                    answers = _answers(baseline, place, of_any=Need.ERROR in rule.needs)
+                    mutant = replace(mutant, idle=idle_of(operation, subject.pattern, answers))
+                except NoAnswerError as error:
+                    reason = str(error)
+            yield Planted(mutant, reason, (0, index, ranks[rule.name]))
+
+
+def _answers(baseline: Baseline, place: Place, *, of_any: bool) -> RecordedAnswers:
+    """What calls of a place returned; where all of them raised, what the same command returned elsewhere.
+
+    That is taken for what it answers here if it returned nothing wherever it returned; or, with ``of_any``,
+    whatever it was.
+    """
+    own = baseline.answers[place]
+    if own.first:
+        return own
+    others = [
+        answers
+        for other, answers in baseline.answers.items()
+        if (other.operation, other.pattern) == (place.operation, place.pattern) and answers.first
+    ]
+    is_told = others and (of_any or all(one.is_nothing for one in others))
+    return others[0] if is_told else own
+
+
+def _subjects(
+    operators: Iterable[Operator], operation: Operation, place: Place
+) -> Iterator[tuple[Subject, Operator]]:
+    pattern = operation.pattern(place.pattern)
+    for rule in operators:
+        if place.site.role is Role.ORACLE and Need.PROGRAM in rule.needs:
+            continue
+        try:
+            subjects = list(rule.subjects(operation, pattern))
+        except Exception as error:  # a plug-in may fail in any way; the user needs to know which one it was
+            raise OperatorError(
+                f"operator {rule.name!r} fails on {operation.target}: {error!r}", operator=rule.name
+            ) from error
+        for subject in subjects:
+            yield subject, rule
+
+
+def _mutant(rule: Operator, subject: Subject, place: Place, provider: str) -> Mutant:
+    return Mutant(
+        number=0,
+        family=rule.family,
+        operator=rule.name,
+        site=place.site,
+        operation=place.operation,
+        pattern=place.pattern,
+        quantity=subject.quantity.name if subject.quantity is not None else None,
+        variant=subject.variant,
+        description="",
+        magnitude=subject.magnitude,
+        unit=subject.unit,
+        direction=subject.direction,
+        has_sizes=rule.has_sizes,
+        provider=provider,
+    )
+
+
+def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
+    """Two operations at one site (the object decides) may have quantities of the same name.
+
+    So may one operation whose site nodes of the program share with those of the oracle.
+    """
+    if mutant.id in taken:
+        mutant = replace(mutant, variant=with_operation(mutant.variant, mutant.operation))
+    taken.add(mutant.id)
+    return mutant
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """A recorded value of the subject, and what it would become; None where nobody knows beforehand."""
+
+    before: Any = None
+    after: Any = None
+
+
+def _foresee(rule: Operator, subject: Subject, hits: list[Hit]) -> tuple[_Seen, str | None]:
+    """What the mutant would do to the recorded calls, and why it is left out, if it is."""
+    least, most = rule.least_calls(subject), max(Counter(hit.where for hit in hits).values(), default=0)
+    if most < least:
+        return _Seen(), f"takes {least} calls in a test, and no test makes more than {most}"
+    if rule.is_chance(subject):
+        return _Seen(_value(subject, hits[0])), None
+    last = _Seen()
+    middleware = rule.middleware(subject, Random(1))
+    away = ""
+    where = None
+    for hit in hits[:TRIED]:
+        before = _value(subject, hit)
+        if Need.MEMORY not in rule.needs or hit.where != where:
+            where = hit.where
+            middleware = rule.middleware(subject, Random(1))
+        try:
+            passage = _rehearsal(rule, subject, hit, middleware)
+        except LookupError:  # it asks where the robot is, which only the run can tell
+            return _Seen(before), None
+        if passage.acted:
+            return _Seen(before, _changed(subject, passage)), None
+        away = away or passage.away
+        if last.before is None:
+            last = _Seen(before, before)
+    if away and (subject.quantity is None or subject.quantity.kind is Kind.SETTING):
+        return last, f"would change nothing in {_calls(len(hits))}: {away}"
+    return last, _reason(subject, last.before, len(hits))
+
+
+def _why_unmet(
+    need: Need, subject: Subject, place: Place, baseline: Baseline, vocabulary: Vocabulary
+) -> str | None:
+    """Why what an operator needs is not to be had; None if it is."""
+    match need:
+        case Need.ERROR if not baseline.answers[place].has_raised:
+            return "no call raises in the baseline"
+        case Need.PLACE if not _is_told(subject, vocabulary):
+            return f"{subject.current or 'no reading'} does not tell where it is"
+        case Need.CLOCK if vocabulary.clock is None:
+            return "the vocabulary names no clock"
+        case Need.WAIT if vocabulary.wait is None and subject.operation.named is None:
+            return "the vocabulary does not say what lets the program's time pass (wait = …)"
+        case Need.SIGN if not has_negative(baseline, place, subject):
+            return NO_SIGN
+    return None
+
+
+def _only_reads(subject: Subject) -> bool:
+    """Whether it is about a quantity that the call reads."""
+    return subject.quantity in subject.read and subject.quantity not in subject.written
+
+
+def _is_told(subject: Subject, vocabulary: Vocabulary) -> bool:
+    """Whether the vocabulary names a reading that tells where the subject's quantity is."""
+    reading = vocabulary.operation(subject.current or "")
+    if reading is None or subject.quantity is None:
+        return False
+    return any(is_reading_of(part, subject.quantity) for part in reading.readings)
+
+
+def _rehearsal(rule: Operator, subject: Subject, hit: Hit, middleware: Middleware) -> Passage:
+    payload = object() if Need.MEMORY in rule.needs else None  # no two messages need be the same
+    call = Call(subject.operation, subject.pattern, hit.written, idle=Reply(), payload=payload)
+    try:
+        passage = rehearse(middleware, call, hit.read, payload=payload, operator=rule.name)
+    except (LookupError, OperatorError):
+        raise
+    except Exception as error:  # as above: a plug-in's own fault
+        raise OperatorError(
+            f"operator {rule.name!r} fails on {subject.operation.target}: {error!r}", operator=rule.name
+        ) from error
+    _check_promises(rule, subject, passage)
+    return passage
+
+
+def _check_promises(rule: Operator, subject: Subject, passage: Passage) -> None:
+    broken = None
+    if rule.does_nothing and passage.performed:
+        broken = "declares does_nothing, but makes the call"
+    elif Need.IDLE not in rule.needs and not passage.performed and passage.received is passage.call.idle:
+        broken = "answers with call.idle, but Need.IDLE is none of its needs"
+    if broken is not None:
+        text = f"operator {rule.name!r} {broken} (on {subject.operation.target})"
+        raise OperatorError(text, operator=rule.name)
+
+
+def _value(subject: Subject, hit: Hit) -> Any:
+    if subject.quantity is None:
+        return None
+    return {**hit.read, **hit.written}.get(subject.quantity.name)
+
+
+def _changed(subject: Subject, passage: Passage) -> Any:
+    name = subject.quantity.name if subject.quantity is not None else ""
+    if passage.changed_reading and passage.received is not None:
+        return passage.received.values.get(name)
+    return passage.performed[0].values.get(name) if passage.performed else None
+
+
+def _reason(subject: Subject, value: Any, hits: int) -> str:
+    calls = _calls(hits)
+    if value is None:
+        return "the call gives no such value" if hits == 1 else f"none of {hits} calls gives such a value"
+    shown = subject.quantity.text(value) if subject.quantity is not None else str(value)
+    limited = subject.quantity is not None and (subject.quantity.range or subject.quantity.values)
+    within = " within the values that the vocabulary allows" if limited else ""
+    return f"would change nothing in {calls}{within} (value {shown})"
+
+
+def _calls(hits: int) -> str:
+    return "the call" if hits == 1 else f"any of {hits} calls"
+
+
+def _description(rule: Operator, subject: Subject, place: Place, seen: _Seen, *, is_shared: bool) -> str:
+    """What the mutant does, in one line; ``is_shared``: whether the site reaches several operations."""
+    what = _what(subject.operation, place.site, is_shared=is_shared)
+    if subject.pattern is not None:
+        name = subject.pattern.name
+        what = f"{what}({name if subject.pattern.notation is None else repr(name)})"
+    return f"{what}: {rule.describe(subject, seen.before, seen.after)}"
+
+
+def _what(operation: Operation, site: Site, *, is_shared: bool) -> str:
+    """The call in words: its text, or the name of what is done on a middleware, and who hears it."""
+    if operation.named is not None:
+        is_callback = site.text == "lambda" or site.text.startswith("def ")
+        return f"{site.text}, {operation.target}" if is_callback else operation.target
+    if _names(site.text, operation.qualname, is_shared=is_shared):
+        return site.text
+    return f"{site.text} ({operation.name})"
+
+
+def _names(text: str, qualname: str, *, is_shared: bool) -> bool:
+    """Whether the text of a call says which operation it is: a variable, a table or a wrapper may not."""
+    wanted = qualname if is_shared else qualname.rpartition(".")[2]
+    return (
+        re.search(rf"(?<![\w.]){re.escape(wanted)}$" if is_shared else rf"\b{re.escape(wanted)}$", text)
+        is not None
+    )

@@ -1,0 +1,226 @@
+"""Providers of faults: where they can act, what they would do, and how they become active in a process.
+
+A provider has two halves. The one here works in the controller: it says what it needs of the baseline, and
+makes the mutants of it. The other lives in the processes of the tests, and is one of three:
+
+- operators change **calls** where these are intercepted (``mutabot/inside/calls``): the core's own providers;
+- an alternative is switched on in the **program text** (``Planted.choice``, ``mutabot/inside/text``);
+- anything else is put in place by **code of the provider's own** before each test (``Planted.in_process``,
+  ``mutabot/inside/process_fault.py``).
+
+A package names its provider under ``faults`` of its ``Extension`` (``mutabot/extensions.py``). Nothing that a
+campaign without its mutants has no use for is to be imported with it.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any, ClassVar
+
+from mutabot.border.job import InProcess
+from mutabot.errors import ExtensionError
+from mutabot.extensions import Part, brought
+from mutabot.families import OF_CALLS
+from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting, Vocabulary
+from mutabot.model.graded.demand import Demand
+from mutabot.model.place import Place
+from mutabot.operators.rule import Rule
+
+
+@dataclass(frozen=True, slots=True)
+class Project:
+    """The project, and what is asked of providers.
+
+    Attributes:
+        root: its folder.
+        program: files and folders of the program, relative to it.
+        vocabulary: the robot API; empty if nobody needs one.
+        families: the families that are asked for.
+        moments: at which of its calls a mutant of calls acts, a mutant each; None for every call.
+        demands: of which magnitudes users speak: these are planted, whatever the families.
+    """
+
+    root: Path = Path()
+    program: tuple[str, ...] = ()
+    vocabulary: Vocabulary = field(default_factory=Vocabulary)
+    families: tuple[str, ...] = ()
+    moments: tuple[Moment | None, ...] = (None,)
+    demands: tuple[Demand, ...] = ()
+
+
+@dataclass(slots=True)
+class Preparation:
+    """What a provider has found out before the baseline, and needs of it.
+
+    Attributes:
+        texts: places of the program text, to be instrumented and observed in the baseline's first run of each
+            round. Places have numbers from the one on that ``prepare`` is told.
+        notes: what the user should know.
+    """
+
+    texts: tuple[ProgramText, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class TextSeen:
+    """What the baseline saw of instrumented program text in a round.
+
+    Attributes:
+        imported: the files that were imported.
+        sightings: what was seen at places.
+        reached: numbers of the places that each test reached; the test ``""`` stands for before any test.
+        elsewhere: the same in processes below the tests.
+        refused: files that could not be instrumented, with the reason.
+    """
+
+    imported: frozenset[str] = frozenset()
+    sightings: tuple[Sighting, ...] = ()
+    reached: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    elsewhere: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    refused: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(slots=True)
+class Original:
+    """What is known of the unmutated program when mutants are planned.
+
+    Attributes:
+        tests: per round, the tests that can be relied on, in the suite's order.
+        text: what was seen of instrumented program text, by round.
+    """
+
+    tests: list[list[str]] = field(default_factory=list)
+    text: dict[int, TextSeen] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Planted:
+    """A mutant with what is known of it in the controller alone.
+
+    Attributes:
+        mutant: the mutant; it gets its number later.
+        reason: why it is left out; None if it is planted.
+        order: which comes first among the mutants of its provider, and of those that are numbered with it;
+            what is equal keeps its order.
+        does: what it does beyond what its id says, as plain data: its outcomes depend on it.
+        mentions: program text that it brings, whose names it may reach.
+        choice: the alternative in the program text that it is.
+        in_process: what puts it in place before each test.
+    """
+
+    mutant: Mutant
+    reason: str | None = None
+    order: tuple[int, ...] = ()
+    does: Any = None
+    mentions: str = ""
+    choice: Choice | None = None
+    in_process: InProcess | None = None
+
+    @property
+    def as_left_out(self) -> LeftOut:
+        """As the plan lists it if it is left out."""
+        return LeftOut(self.mutant.id, self.mutant.description, self.reason or "")
+
+
+@dataclass(slots=True)
+class Planned:
+    """What a provider makes of a baseline.
+
+    Attributes:
+        mutants: those it plants, and those it leaves out with the reason.
+        texts: the program text with the alternatives that can run.
+        reached: (round, place) to the tests that reach it; not for calls, which the core observes itself.
+        early: places that are reached before any test, or while a module is imported: what stands there holds
+            for a whole process, and all tests judge it.
+    """
+
+    mutants: list[Planted] = field(default_factory=list)
+    texts: tuple[ProgramText, ...] = ()
+    reached: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
+    early: set[Place] = field(default_factory=set)
+
+
+class FaultProvider(ABC):
+    """Makes mutants.
+
+    Class attributes:
+        name: how its mutants name it.
+        families: the families of its mutants, in the order in which they are listed.
+        location: what a place of its own is called in messages.
+        needs_vocabulary: whether its mutants need a vocabulary.
+        numbered_with: name of the provider with whose mutants its own are put in one order; empty for none.
+    """
+
+    name: ClassVar[str]
+    families: ClassVar[tuple[str, ...]]
+    location: ClassVar[str] = "location"
+    needs_vocabulary: ClassVar[bool] = False
+    numbered_with: ClassVar[str] = ""
+
+    def is_asked_for(self, project: Project) -> bool:
+        """Whether any of its mutants are asked for."""
+        return not set(self.families).isdisjoint(project.families)
+
+    def rules(self) -> Sequence[Rule]:
+        """Its operators, as lists, documentation and reports show them."""
+        return ()
+
+    def prepare(self, project: Project, first: int) -> Preparation:
+        """Look at the project before the baseline. ``first``: the number of the first place in its texts."""
+        return Preparation()
+
+    @abstractmethod
+    def plan(self, project: Project, prepared: Preparation, original: Original) -> Planned:
+        """All its mutants of the families that are asked for."""
+
+    def draws(self, operator: str) -> bool:
+        """Whether an operator of its own draws numbers anew for each round."""
+        return False
+
+    def is_raced(self, operator: str) -> bool:
+        """Whether equal runs with a fault of this operator may end differently."""
+        return False
+
+
+@cache
+def brought_providers() -> tuple[FaultProvider, ...]:
+    """The providers of packages. Raises ExtensionError for one that is of no use."""
+    return tuple(_made(part) for part in brought("faults").values())
+
+
+def _made(part: Part) -> FaultProvider:
+    kind = part.load()
+    where = f"provider {part.name!r} of package {part.owner!r} ({part.reference})"
+    if not (isinstance(kind, type) and issubclass(kind, FaultProvider)):
+        raise ExtensionError(f"{where} is no subclass of mutabot.faults.FaultProvider")
+    try:
+        made = kind()
+    except Exception as error:  # a package of others may fail in any way
+        raise ExtensionError(f"{where} cannot be made: {error!r}") from error
+    if getattr(made, "name", None) != part.name:
+        name = getattr(made, "name", None)
+        raise ExtensionError(f"{where} calls itself {name!r}; the extension and the class must agree")
+    return made
+
+
+def families_brought(*, without_vocabulary: bool = False) -> tuple[str, ...]:
+    """The families of the packages' providers; of all, or of those that need no vocabulary."""
+    return tuple(
+        dict.fromkeys(
+            family
+            for provider in brought_providers()
+            if not (without_vocabulary and provider.needs_vocabulary)
+            for family in provider.families
+        )
+    )
+
+
+def need_vocabulary(families: Iterable[str]) -> bool:
+    """Whether mutants of any of these families need a vocabulary."""
+    asked = set(families)
+    return not asked.isdisjoint(OF_CALLS) or not asked <= set(families_brought(without_vocabulary=True))

@@ -1,0 +1,112 @@
+"""The provider of faults in the program text.
+
+What looks at program text is imported only when there is some to look at: a campaign that asks for none of
+these mutants does not wait for it.
+"""
+
+# ruff: noqa: PLC0415  # see above
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from mutabot.faults import FaultProvider, Original, Planned, Preparation, Project, TextSeen
+from mutabot.languages.registry import program_files
+from mutabot.model.alternative import ProgramText
+from mutabot.model.place import Place
+
+from .families import OF_TEXT, PROVIDER
+
+if TYPE_CHECKING:
+    from .operator import ClassicalOperator
+
+
+class SourceFaults(FaultProvider):
+    """Conventional operators, and faults in the characters of command strings."""
+
+    name = PROVIDER
+    families = OF_TEXT
+    location = "program text"
+
+    def rules(self) -> Sequence[ClassicalOperator]:
+        """All operators on program text."""
+        from .registry import load_all
+
+        return load_all()
+
+    def prepare(self, project: Project, first: int) -> Preparation:
+        """The places of the program that the families asked for have to do with."""
+        from .texts import find_texts
+
+        wanted = self._operators(project)
+        texts: list[ProgramText] = []
+        notes: list[str] = []
+        for file in program_files(project.root, project.program):
+            try:
+                (text,) = find_texts(project.root, [file], wanted, first=first)
+            except (
+                Exception
+            ) as error:  # two parsers look at it, and each says in its own way what it cannot read
+                notes.append(
+                    f"no mutants of the text of {file}: it cannot be read: {str(error).splitlines()[0]}"
+                )
+                continue
+            first += len(text.places)
+            texts.append(text)
+        return Preparation(tuple(texts), tuple(notes))
+
+    def plan(self, project: Project, prepared: Preparation, original: Original) -> Planned:
+        """The alternatives that can run and fit the types that were seen."""
+        if not prepared.texts:
+            return Planned()
+        from .mutants import plant, planted_of
+        from .refine import merge, refine
+
+        seen = [seen for _, seen in sorted(original.text.items())]
+        why = _why_not_instrumented(prepared.texts, seen)
+        texts, left_out = refine(
+            (text for text in prepared.texts if text.file not in why),
+            merge(one for found in seen for one in found.sightings),
+            self._operators(project),
+        )
+        left_out += [
+            planted_of(place, index, why[text.file])
+            for text in prepared.texts
+            if text.file in why
+            for place in text.places
+            for index in range(len(place.alternatives))
+        ]
+        mutants = [replace(one, order=(OF_TEXT.index(one.mutant.family),)) for one in plant(texts)]
+        planned = Planned([*mutants, *left_out], texts)
+        for round, found in sorted(original.text.items()):
+            _note_reached(planned, round, found)
+        return planned
+
+    def _operators(self, project: Project) -> list[str]:
+        from .registry import names
+
+        return [name for family in OF_TEXT if family in project.families for name in names(family)]
+
+
+def _note_reached(planned: Planned, round: int, seen: TextSeen) -> None:
+    places = {place.number: place for text in planned.texts for place in text.places}
+    told = [(seen.reached, True), (seen.elsewhere, False)]
+    for test, numbers, is_here in ((*one, is_here) for found, is_here in told for one in found.items()):
+        for place in (places[number] for number in numbers if number in places):
+            where = Place(place.site, "")
+            tests = planned.reached.setdefault((round, where), [])
+            if test not in tests:
+                tests.append(test)
+            # what a process below the tests evaluates holds for that process alone
+            if (place.at_import and is_here) or not test:
+                planned.early.add(where)
+
+
+def _why_not_instrumented(texts: Iterable[ProgramText], seen: Sequence[TextSeen]) -> Mapping[str, str]:
+    """Files whose alternatives cannot run, with the reason."""
+    imported = {file for one in seen for file in one.imported}
+    refused = {file: why for one in seen for file, why in one.refused.items()}
+    never = {text.file: "no test imports it" for text in texts if text.file not in imported}
+    return {**never, **refused}
