@@ -1,6 +1,6 @@
 """Hold two records of ``witness.py`` against each other: plans, what is left out, and every outcome.
 
-    python benchmarks/same_results.py RECORDED FOLDER [--show 20]
+    python benchmarks/same_results.py RECORDED FOLDER [--show 20] [--renamed OLD=NEW]
 
 The exit code is 1 if anything differs, and if there is nothing to compare.
 """
@@ -36,6 +36,18 @@ def differences(first: Mapping[str, Any], second: Mapping[str, Any]) -> Iterator
                 yield f"{one}: {key} {fact!r} → {after[one].get(key)!r}"
 
 
+def renamed(value: Any, names: Mapping[str, str]) -> Any:
+    """A record with other names in its texts."""
+    if isinstance(value, str):
+        for old, new in names.items():
+            value = value.replace(old, new)
+    elif isinstance(value, list):
+        value = [renamed(one, names) for one in value]
+    elif isinstance(value, dict):
+        value = {renamed(key, names): renamed(one, names) for key, one in value.items()}
+    return value
+
+
 def main() -> int:
     """The command."""
     parser = argparse.ArgumentParser(
@@ -44,11 +56,19 @@ def main() -> int:
     parser.add_argument("recorded", type=Path)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--show", type=int, default=20, help="differences to show of each project")
+    parser.add_argument(
+        "--renamed",
+        action="append",
+        default=[],
+        metavar="OLD=NEW",
+        help="what is called otherwise since then",
+    )
     given = parser.parse_args()
+    names = dict(one.split("=", 1) for one in given.renamed)
     compared = different = 0
     for file in sorted(given.folder.glob("*.json.gz")):
         name = file.name.removesuffix(".json.gz")
-        first, second = read(given.recorded / file.name), read(file)
+        first, second = renamed(read(given.recorded / file.name), names), read(file)
         compared += len(second["outcomes"])
         found = list(differences(first, second))
         different += len(found)
