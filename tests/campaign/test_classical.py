@@ -26,6 +26,8 @@ from tests.campaign.project import (
     write_project,
 )
 
+pytestmark = pytest.mark.needs("source")
+
 MISSION = """
     import robot
 

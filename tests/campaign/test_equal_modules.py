@@ -59,7 +59,12 @@ def by_file(mutants: list[Mutant]) -> dict[str, set[str]]:
 
 
 @pytest.mark.parametrize(
-    "families", [("robot", "graded", "catalogue"), ("classical",), ("robot", "classical")]
+    "families",
+    [
+        ("robot", "graded", "catalogue"),
+        pytest.param(("classical",), marks=pytest.mark.needs("source")),
+        pytest.param(("robot", "classical"), marks=pytest.mark.needs("source")),
+    ],
 )
 def test_modules_of_equal_text_have_the_same_mutants_each(tmp_path: Path, families: tuple[str, ...]) -> None:
     mutants, _ = plan_only(request_for(project(tmp_path), families=families), Quiet())

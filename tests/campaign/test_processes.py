@@ -217,6 +217,7 @@ def test_an_environment_of_its_own_does_not_hide_a_process(tmp_path: Path) -> No
     assert found.verdict is Verdict.KILLED
 
 
+@pytest.mark.needs("source")
 def test_a_script_sees_itself_as_ever_when_its_text_is_mutated(tmp_path: Path) -> None:
     mission = '''
         """What it does."""

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from mutabot import operators
+from mutabot.campaign.faults.providers import operators_of_packages
 from mutabot.cli.app import main
-from mutabot_source import registry as of_text
 
 
 @pytest.fixture(autouse=True)
@@ -20,7 +20,7 @@ def no_project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_all_operators_are_there_family_by_family(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["operators", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["operators"]
-    assert sorted(one["name"] for one in found) == sorted([*operators.names(), *of_text.names()])
+    assert sorted(one["name"] for one in found) == sorted([*operators.names(), *operators_of_packages()])
     families = [one["family"] for one in found]
     assert len([*dict.fromkeys(families)]) == sum(
         one != other for one, other in zip([None, *families], families, strict=False)

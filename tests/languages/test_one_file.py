@@ -103,6 +103,7 @@ def test_its_lines_are_sites_with_verdicts_from_both_engines(engine: str, site: 
     }
 
 
+@pytest.mark.needs("source")
 def test_its_text_has_no_mutants_and_that_is_told(site: Path, tmp_path: Path) -> None:
     (tmp_path / "program").mkdir()
     (tmp_path / "program" / "mission.steps").write_text(MISSION)

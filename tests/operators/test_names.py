@@ -11,12 +11,12 @@ import pytest
 
 import mutabot
 from mutabot import operators
+from mutabot.campaign.faults.providers import operators_of_packages
 from mutabot.operators.control import CONTROLS
-from mutabot_source import registry as of_text
 
 SOURCE = Path(mutabot.__file__).parent
-ROOMS = {"operators", "classical"}
-NAMES = {*operators.names(), *of_text.names(), *CONTROLS}
+ROOMS = {"operators"}
+NAMES = {*operators.names(), *operators_of_packages(), *CONTROLS}
 #: words that name something else as well, where they do: keys of vocabularies, an option of the command line
 OTHERWISE = {
     "opposite": {"proposal", "vocabulary"},

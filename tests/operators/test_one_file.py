@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-import mutabot_source
 from tests.campaign.project import write_project
 from tests.package_copy import copied, mutants, python
+
+pytestmark = pytest.mark.needs("source")
 
 #: two operators; one comes in two sizes and acts on written values, the other acts on commands
 TOO_MUCH = """
@@ -87,7 +89,7 @@ TESTS = """
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with copies of two packages, into each of which a file was dropped."""
     folder = tmp_path_factory.mktemp("site")
-    copied(folder, {"operators/zero.py": ZERO}, of=mutabot_source)
+    copied(folder, {"operators/zero.py": ZERO}, of=import_module("mutabot_source"))
     return copied(folder, {"operators/robot/too_much.py": TOO_MUCH})
 
 

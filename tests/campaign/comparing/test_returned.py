@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mutabot.model import Outcome, Verdict
 from tests.campaign.engines.test_branching import both_engines
 from tests.campaign.project import VOCABULARY, write_project
@@ -90,6 +92,7 @@ def test_a_value_returned_to_a_fixture_is_compared(tmp_path: Path) -> None:
     assert [one.indistinguishable for one in negated] == [False]
 
 
+@pytest.mark.needs("source")
 def test_notes_and_mutants_of_the_text_stand_in_the_same_functions(tmp_path: Path) -> None:
     """What is never twice the same is not compared, and the rest is."""
     tests = """

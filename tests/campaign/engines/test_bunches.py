@@ -14,6 +14,8 @@ from mutabot.model import Outcome, Verdict
 from tests.campaign.engines.test_branching import facts
 from tests.campaign.project import Quiet, outcomes, request_for, run, write_project
 
+pytestmark = pytest.mark.needs("source")
+
 #: alternatives of the comparison are alike at first, and part when it is evaluated again
 MISSION = """
     def is_far(distance):

@@ -10,9 +10,9 @@ import pytest
 
 from mutabot.campaign.plan.selection import select
 from mutabot.errors import SelectionError
+from mutabot.faults import brought_providers
 from mutabot.model.selector import is_like
 from mutabot.operators import registry
-from mutabot_source import registry as of_text
 from tests.analysis.samples import BY_TO, LEFT_OUT, MUTANTS, NEGATE, NOISE, REVERSE, SKIP
 
 
@@ -103,7 +103,7 @@ def test_brackets_in_ids_are_just_brackets() -> None:
 
 OPERATORS = [
     *(("robot", name) for name in registry.names()),
-    *((family, name) for family in ("classical", "text") for name in of_text.names(family)),
+    *((rule.family, rule.name) for one in brought_providers() for rule in one.rules()),
 ]
 
 

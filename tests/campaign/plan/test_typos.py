@@ -60,7 +60,7 @@ def test_what_can_fit_nothing_is_told_with_the_nearest(
 @pytest.mark.parametrize(
     "word",
     [
-        "3", "2-4", "1,3-9", "reverse", "robot", "classical", "program", "oracle", "mission.py",
+        "3", "2-4", "1,3-9", "reverse", "robot", "program", "oracle", "mission.py",
         "mission.py:2", "mission.py:1-3", "cell", "cell/", "cell/parts", "gripper.py", "gripper.py:1",
         "…/gripper.py:1", "*.py", "*:revers",
         "mission.py:run:*",

@@ -312,6 +312,7 @@ def test_results_of_earlier_runs_are_marked_where_something_has_changed(quick: P
     assert all(one.outdated for one in quick.all_results().earlier)
 
 
+@pytest.mark.needs("source")
 def test_mutants_of_another_family_stay_until_the_program_has_them_no_longer(quick: Project) -> None:
     robots = {mutant for mutant, _ in quick.run()}
     texts = {mutant for mutant, _ in quick.run(families=("classical",))}

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import platform
 import sys
 import tomllib
@@ -25,7 +24,7 @@ import mutabot
 from mutabot.border.codec import to_data
 from mutabot.border.idle import Idle
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.faults.providers import all_providers, provider
+from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.pieces.mentions import names_in
 from mutabot.campaign.pieces.project import Project
 from mutabot.campaign.pieces.reach import Reach, Reached
@@ -409,8 +408,6 @@ def versions() -> dict[str, str]:
 def _own_code() -> str:
     """Of a mutabot that is being worked on, the version alone does not tell what it does."""
     home = Path(mutabot.__file__).parent
-    parts = [home / part for part in ("model", "operators", "inside", "campaign")]
-    modules = (sys.modules[type(one).__module__].__file__ for one in all_providers())
-    parts += [Path(file).parent for file in modules if file is not None]
-    files = sorted({file for part in (*parts, *home.parent.glob("mutabot_*")) for file in part.rglob("*.py")})
-    return _digest([(os.path.relpath(file, home), _digest_of(file)) for file in files])
+    core = (home / part for part in ("model", "operators", "inside", "campaign"))
+    files = sorted(file for one in (*core, *home.parent.glob("mutabot_*")) for file in one.rglob("*.py"))
+    return _digest([(file.relative_to(home.parent).as_posix(), _digest_of(file)) for file in files])
