@@ -9,6 +9,7 @@ from textwrap import dedent
 
 import pytest
 
+from mutabot import extensions
 from mutabot.campaign.run import plan_only
 from mutabot.errors import OperatorError
 from mutabot.model import Outcome, Verdict
@@ -319,16 +320,21 @@ def plug_in(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callabl
         details = site / "lost_plug_in-1.0.dist-info"
         details.mkdir(parents=True)
         (details / "METADATA").write_text("Metadata-Version: 2.1\nName: lost-plug-in\nVersion: 1.0\n")
-        (details / "entry_points.txt").write_text("[mutabot.operators]\nlost = lost_plug_in:Rule\n")
+        (details / "entry_points.txt").write_text("[mutabot]\nlost = lost_extension:EXTENSION\n")
+        (site / "lost_extension.py").write_text(
+            "from mutabot.extensions import INTERFACE, Extension\n"
+            "EXTENSION = Extension(INTERFACE, operators={'lost': 'lost_plug_in:Rule'})\n"
+        )
         (site / "lost_plug_in.py").write_text(dedent(code))
         monkeypatch.syspath_prepend(str(site))
         monkeypatch.setenv("PYTHONPATH", str(site))
-        monkeypatch.delitem(sys.modules, "lost_plug_in", raising=False)
+        for module in ("lost_extension", "lost_plug_in"):
+            monkeypatch.delitem(sys.modules, module, raising=False)
         forget()
 
     def forget() -> None:
         registry.operator.cache_clear()
-        registry._plug_ins.cache_clear()
+        extensions._declared.cache_clear()
 
     yield install
     forget()

@@ -8,7 +8,7 @@ import mutabot
 from mutabot import extensions
 from mutabot.errors import ExtensionError, OperatorError
 from mutabot.extensions import Extension
-from mutabot.operators import names, operator
+from mutabot.operators import names, operator, registry
 
 
 def test_an_unknown_operator_is_named_with_the_nearest() -> None:
@@ -24,6 +24,17 @@ def test_two_operators_of_one_name_are_refused(monkeypatch: pytest.MonkeyPatch, 
         names()
     del found[1]
     with pytest.raises(OperatorError, match=f"'{name}' of package 'package-1' .* 'mutabot'"):
+        names()
+
+
+@pytest.mark.parametrize("texts", [{"one": '"skip"', "other": '"skip"'}, {"one": "'sk' + 'ip'"}])
+def test_an_operator_of_ours_needs_a_name_of_its_own_in_its_file(
+    texts: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    skip = operator("skip")
+    monkeypatch.setattr(registry, "_modules", lambda: texts)
+    monkeypatch.setattr(registry, "_of_module", lambda module: [skip])
+    with pytest.raises(OperatorError, match=r"(one|other):Skip needs a name of its own.*'skip'"):
         names()
 
 

@@ -21,9 +21,19 @@ _HERE = Path(__file__).parent
 
 
 def built_in() -> list[str]:
-    """Names of mutabot's own operators that make mutants, in the order of the documentation."""
-    found = [rule for module in _modules() for rule in _of_module(module).values()]
-    return [rule.name for rule in in_order(found)]
+    """Names of mutabot's own operators that make mutants, in the order of the documentation.
+
+    Raises OperatorError for one whose name another has, or cannot be found by.
+    """
+    found: dict[str, Operator] = {}
+    for module, text in _modules().items():
+        for rule in _of_module(module):
+            if rule.name in found or f'"{rule.name}"' not in text:
+                place = f"{module}:{type(rule).__name__}"
+                why = f"{place} needs a name of its own, written in its file, and has {rule.name!r}"
+                raise OperatorError(why, operator=rule.name)
+            found[rule.name] = rule
+    return [rule.name for rule in in_order(found.values())]
 
 
 def names() -> list[str]:
@@ -63,8 +73,9 @@ def operator(name: str) -> Operator:
     if name in CONTROLS:
         return CONTROLS[name]()
     for module, text in _modules().items():
-        if f'"{name}"' in text and name in _of_module(module):
-            return _of_module(module)[name]
+        for rule in _of_module(module) if f'"{name}"' in text else ():
+            if rule.name == name:
+                return rule
     part = brought("operators").get(name)
     if part is not None:
         return _loaded(part)
@@ -85,9 +96,9 @@ def _modules() -> dict[str, str]:
 
 
 @cache
-def _of_module(module: str) -> dict[str, Operator]:
-    """The operators that a module holds, by name."""
-    return {kind.name: kind() for kind in classes_in(import_module(module), Operator)}
+def _of_module(module: str) -> list[Operator]:
+    """The operators that a module holds."""
+    return [kind() for kind in classes_in(import_module(module), Operator)]
 
 
 def _loaded(part: Part) -> Operator:
