@@ -10,6 +10,7 @@ from types import FrameType
 import pytest
 
 from mutabot.errors import MutabotError
+from mutabot.extensions import packages
 from mutabot.inside import FOLDER
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.comparisons import FILE as AROUND_COMPARISONS
@@ -143,7 +144,7 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
         filename = locator.real(frame.f_code.co_filename)
         if filename == AROUND_COMPARISONS:
             continue
-        if filename.startswith(FOLDER):
+        if filename.startswith(FOLDER) or _is_of_a_middleware(frame):
             return False
         role = locator.role(filename)
         if role is Role.PROGRAM:
@@ -151,6 +152,11 @@ def _is_check(error: BaseException, test_file: str, locator: Locator, vocabulary
         if role is Role.ORACLE or filename.startswith(folder) or filename.endswith("conftest.py"):
             return True
     return True
+
+
+def _is_of_a_middleware(frame: FrameType) -> bool:
+    """Whether a frame is of a package that brings operators or the hooks of a middleware."""
+    return str(frame.f_globals.get("__name__", "")).partition(".")[0] in packages()
 
 
 def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
