@@ -20,6 +20,7 @@ from mutabot.errors import UsageError
 from mutabot.exit_codes import ExitCode
 from mutabot.journal.journal import Journal
 from tests.campaign.project import Quiet, fingerprint, request_for, write_project
+from tests.campaign.scripted import Script
 
 MISSION = """
     def left(arm):
@@ -87,7 +88,8 @@ class Project:
 
 
 @pytest.fixture
-def project(tmp_path: Path) -> Project:
+def project(tmp_path: Path, script: Script) -> Project:
+    """One whose campaigns start no process."""
     return Project(tmp_path)
 
 
