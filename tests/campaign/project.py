@@ -147,6 +147,12 @@ def run(folder: Path, **changes: Any) -> dict[str, Outcome]:
     return {outcome.mutant: outcome for outcome in outcomes(path) if outcome.round == 0}
 
 
+def by_branches(folder: Path, **changes: Any) -> dict[tuple[str, int], Outcome]:
+    """Outcomes by mutant and round, of branches where these can be; that replay agrees is for the corpus."""
+    path = run_campaign(request_for(folder, engine="auto", **changes), Quiet())
+    return {(outcome.mutant, outcome.round): outcome for outcome in outcomes(path)}
+
+
 def outcomes(path: Path) -> list[Outcome]:
     with Journal.open(path) as journal:
         return journal.outcomes()

@@ -6,8 +6,7 @@ from pathlib import Path
 
 from mutabot.campaign.check import check
 from mutabot.model import Verdict
-from tests.campaign.engines.test_branching import both_engines
-from tests.campaign.project import Quiet, request_for, write_project
+from tests.campaign.project import Quiet, by_branches, request_for, write_project
 
 #: as in Gymnasium: what stands around an environment is an environment, and calls no method of its base
 ROBOT = """
@@ -79,7 +78,7 @@ def test_overrides_make_mutants_of_the_methods_of_subclasses(tmp_path: Path) -> 
     vocabulary = VOCABULARY.replace("arguments", "overrides = true\n    arguments")
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=vocabulary)
     found = {
-        mutant: outcome for (mutant, _), outcome in both_engines(tmp_path).items() if "env.step" in mutant
+        mutant: outcome for (mutant, _), outcome in by_branches(tmp_path).items() if "env.step" in mutant
     }
     assert {mutant.rpartition(":")[2] for mutant in found} >= {"reverse", "repeat"}
     assert {outcome.verdict for outcome in found.values()} == {Verdict.KILLED}

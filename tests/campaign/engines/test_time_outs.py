@@ -110,6 +110,7 @@ def flag() -> Iterator[Path]:
 ENGINES = ["branch", pytest.param("replay", marks=pytest.mark.whole)]
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_mutant_that_is_kept_from_the_processor_gets_its_time(engine: str, tmp_path: Path) -> None:
     with loops():

@@ -166,7 +166,7 @@ EXPECTED = {
 }
 
 
-@pytest.fixture(scope="module", params=["replay", "branch"])
+@pytest.fixture(scope="module", params=["branch", pytest.param("replay", marks=pytest.mark.whole)])
 def campaign(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, dict[str, Outcome], dict[str, str]]:
