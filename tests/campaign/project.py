@@ -9,6 +9,8 @@ from pathlib import Path
 from textwrap import dedent
 from typing import Any
 
+import pytest
+
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
@@ -16,6 +18,8 @@ from mutabot.model import Outcome
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
+#: the reference, as one of several engines: it takes long, and that it agrees with branches is for the corpus
+REPLAY = pytest.param("replay", marks=pytest.mark.whole)
 ROBOT = """
     class Refused(Exception):
         pass

@@ -17,6 +17,7 @@ from mutabot.model import By, LeftOut, Mutant, Outcome, Role, Site, Span, Verdic
 from mutabot.model.outcome import same_end
 from tests.campaign.project import (
     CONFIGURATION,
+    REPLAY,
     ROBOT,
     VOCABULARY,
     Quiet,
@@ -102,7 +103,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 #: by one engine in the short run, by both in the long one; that they agree on every mutant is for the corpus
-ENGINES = pytest.mark.parametrize("engine", ["auto", pytest.param("replay", marks=pytest.mark.whole)])
+ENGINES = pytest.mark.parametrize("engine", ["auto", REPLAY])
 
 
 @pytest.fixture(scope="module")

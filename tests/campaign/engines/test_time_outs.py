@@ -19,7 +19,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers import workers
 from mutabot.campaign.workers.workers import Workers
 from mutabot.model import Outcome, Verdict
-from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, outcomes, request_for, write_project
 
 PROCESSOR = min(os.sched_getaffinity(0))
 LOOP = "while True: pass"
@@ -107,7 +107,7 @@ def flag() -> Iterator[Path]:
     path.unlink(missing_ok=True)
 
 
-ENGINES = ["branch", pytest.param("replay", marks=pytest.mark.whole)]
+ENGINES = ["branch", REPLAY]
 
 
 @pytest.mark.whole

@@ -12,7 +12,7 @@ import pytest
 
 from mutabot.campaign.workers.descriptors import needed
 from mutabot.exit_codes import ExitCode
-from tests.campaign.project import write_project
+from tests.campaign.project import REPLAY, write_project
 
 MISSION = "def run(arm):\n    arm.move_by(0.25)\n"
 TESTS = """
@@ -60,7 +60,7 @@ def test_fewer_jobs_are_advised_where_they_would_do(tmp_path: Path) -> None:
     assert command(tmp_path, 24, most, "list", "-j", advised[1])[0] == ExitCode.FINE
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["branch", REPLAY])
 def test_a_low_limit_is_raised_as_far_as_it_may_be_and_that_is_enough(tmp_path: Path, engine: str) -> None:
     code, err = command(tmp_path, 24, needed(2, served=False), "run", "-j", "2", "--engine", engine)
     assert code == ExitCode.FINE, err
