@@ -327,8 +327,16 @@ def _functions(
 def _call(file: str, function: str, node: ast.Call, operation: Operation) -> _Call:
     span = Span(file, node.lineno, node.col_offset, node.end_lineno or 0, node.end_col_offset or 0, function)
     site = SiteSeen(-1, span, operation.target, None, oracle=False, direct=True)
-    written = [ast.literal_eval(one) for one in node.args]
+    written = [_literal(one) for one in node.args]
     return _Call(site, _values(operation.arguments, written), _values(operation.result, [READING]))
+
+
+def _literal(node: ast.expr) -> Any:
+    """What is written there; what only a run would tell counts as what a robot answers."""
+    try:
+        return ast.literal_eval(node)
+    except ValueError:
+        return READING
 
 
 def _values(quantities: Sequence[Quantity], values: Sequence[Any]) -> dict[str, Any]:

@@ -215,6 +215,7 @@ def edits(*options: str) -> dict[str, Any]:
     return dict(json.loads(done.stdout[done.stdout.index("\n{") :]))
 
 
+@pytest.mark.whole
 def test_since_gives_the_outcomes_of_a_whole_campaign_after_a_few_edits() -> None:
     found = edits("--edits", "2", "--projects", "errands", "--kinds", "program,renamed", "--rounds", "1")
     assert found["outcomes"] > 0

@@ -137,6 +137,7 @@ def test_mutants_that_only_wait_leave_their_places_to_others(tmp_path: Path, beg
 
 
 @pytest.mark.whole
+@pytest.mark.whole
 def test_beside_busy_programs_no_more_begin_than_there_are_places(tmp_path: Path, begun: list[int]) -> None:
     limits = "timeout_seconds = 6\ntimeout_factor = 1000.0\n"
     project = write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + limits)
@@ -157,6 +158,7 @@ def test_where_one_runs_at_a_time_it_is_one(tmp_path: Path) -> None:
         time.sleep(PERIOD / 2)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(("code", "waits"), [(SLEEP, True), (POLL, True), (LOOP, False)])
 @pytest.mark.parametrize("where", ["itself", "below", "elsewhere"])
 @pytest.mark.usefixtures("_quick", "_roomy")

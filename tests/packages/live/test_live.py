@@ -101,6 +101,7 @@ def test_a_campaign_is_watched_paused_and_resumed_and_stays_until_the_page_is_cl
         assert len(journal.outcomes()) == len(journal.mutants()) == 4
 
 
+@pytest.mark.whole
 def test_stop_is_like_ctrl_c_also_in_a_pause_and_the_campaign_goes_on_later(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -122,6 +123,7 @@ def test_stop_is_like_ctrl_c_also_in_a_pause_and_the_campaign_goes_on_later(
     assert f"reused {found} of" in "".join(capsys.readouterr())
 
 
+@pytest.mark.whole
 def test_what_an_earlier_campaign_found_is_not_shown_as_this_one(project: Path) -> None:
     assert main(["-C", str(project), "run", "-o", "repeats=false", "--only", "1"]) == ExitCode.FINE
     with running(project) as (_, address), listening(address) as events:
