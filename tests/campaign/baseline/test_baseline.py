@@ -210,16 +210,18 @@ def test_a_test_that_passes_only_after_another_is_judged_by_the_whole_suite(
 ) -> None:
     """Run alone it would fail, and every mutant it reaches would count as killed."""
 
-    def ends(run: Run) -> Mapping[str, Any]:
-        is_alone = len(run.tests) == 1 and run.test.endswith("finishes")
-        is_noticed = run.test.endswith("prepares") and run.mutant is not None and ":prepare:" in run.mutant.id
-        return CHECKED if is_alone or is_noticed else {}
+    def is_alone(run: Run) -> bool:
+        return len(run.tests) == 1 and run.test.endswith("finishes")
 
-    script.control = lambda run: ends(run) or None
+    def ends(run: Run) -> Mapping[str, Any]:
+        is_noticed = run.test.endswith("prepares") and run.mutant is not None and ":prepare:" in run.mutant.id
+        return CHECKED if is_alone(run) or is_noticed else {}
+
+    script.control = lambda run: CHECKED if is_alone(run) else None
     script.mutated = ends
     write_project(tmp_path, *DEPENDENT)
     progress = Quiet()
-    path = run_campaign(request_for(tmp_path), progress)
+    path = run_campaign(request_for(tmp_path, engine="replay"), progress)
     verdicts = {outcome.mutant.split(":")[1]: outcome.verdict for outcome in outcomes(path)}
     assert verdicts == {"prepare": Verdict.KILLED, "finish": Verdict.SURVIVED}
     assert any("whole suite" in line for line in progress.lines)

@@ -48,7 +48,7 @@ def test_a_probe_that_no_test_can_read_is_refused(tmp_path: Path, probe: str, wo
     robot = ROBOT + "\n    def broken():\n        raise RuntimeError('the camera is off')\n"
     robot += "\n    def silent():\n        pass\n"
     folder = project(tmp_path, probe, robot=robot, more="def box():\n    return 1.0\n")
-    request = request_for(folder, engine="replay")
+    request = request_for(folder, engine="branch")
     with pytest.raises(ConfigurationError) as caught:
         (run_campaign if probe == "world:box" else check)(request, Quiet())
     assert f"{probe} cannot be read at the end of any test" in str(caught.value)
@@ -66,6 +66,7 @@ def test_a_method_is_read_from_the_object_that_the_program_uses(tmp_path: Path) 
     assert reverse.indistinguishable is False
 
 
+@pytest.mark.whole
 def test_errors_at_both_sides_are_not_equal_worlds(tmp_path: Path) -> None:
     """In the test that judges it the probe cannot be read, neither with the mutant nor without."""
     tests = """

@@ -63,6 +63,7 @@ def test_a_mutant_that_changes_what_the_program_returns_can_be_told_apart(tmp_pa
     assert checked.divergence == ("check raised mission:Lost: at -0.25 only with the mutant",)
 
 
+@pytest.mark.whole
 def test_a_value_returned_to_a_fixture_is_compared(tmp_path: Path) -> None:
     """Also where the fixture is shared, so that in other runs another test sets it up."""
     tests = """
