@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import VOCABULARY, by_branches, write_project
 
