@@ -159,7 +159,9 @@ class Scripted:
         places = self._places(job)
         if places:
             files = {one.span.file for one in places}
-            yield TextsSeen(tuple(sorted(files)), tuple(Sighting(one.number, 1, ()) for one in places))
+            yield TextsSeen(
+                tuple(sorted(files)), tuple(Sighting(one.number, 1, ("number",)) for one in places)
+            )
         for test in tests:
             run = Run(test, tests, job.round, job.mutant, before)
             yield TestStart(test)
@@ -241,6 +243,13 @@ class _Test:
     calls: tuple[_Call, ...]
     place: str
 
+    def hits(self, mutant: Mutant) -> int:
+        """How often the test reaches a mutant: its call, or the text of a function."""
+        span = mutant.site.span
+        if mutant.operation:
+            return sum(call.site.span == span for call in self.calls)
+        return int(span.function in self.functions)
+
 
 @dataclass(frozen=True, slots=True)
 class _Suite:
@@ -283,28 +292,22 @@ class _Suite:
     def end(self, run: Run, end: Mapping[str, Any]) -> TestEnd:
         """The report of a test that ends like this, beside what the text says."""
         test = self.tests[run.test]
-        at = [call for call in test.calls if run.mutant is not None and _is_at(call, run.mutant)]
+        hits = test.hits(run.mutant) if run.mutant is not None else 0
         is_failed = end.get("outcome") == "failed"
         usual = {
             "outcome": "passed",
-            "hits": len(at),
-            "acted": len(at),
+            "hits": hits,
+            "acted": hits,
             "operations": len(test.calls),
             "commands": sum(1 for call in test.calls if call.written),
             "wall": 0.01,
             "cpu": 0.01,
             "trace": tuple(call.trace for call in test.calls),
             "footprint": Footprint(),
-            "example": (0, 1) if at else None,
+            "example": (0, 1) if hits else None,
             "place": test.place if is_failed else None,
         }
         return TestEnd(run.test, **{**usual, **end})
-
-
-def _is_at(call: _Call, mutant: Mutant) -> bool:
-    """Whether a mutant has to do with a call: it acts on it, or stands in the function that makes it."""
-    span = mutant.site.span
-    return call.site.span == span if mutant.operation else call.site.span.function == span.function
 
 
 def _functions(

@@ -92,7 +92,8 @@ SOME = (
     "mission.py:count:total += 1#1:ASR=sub",
     "mission.py:count:total < len(items)#1:ROR=ne",
     "mission.py:unused:return x > 1#1:BSR",
-    "mission.py:<module>:*",
+    "mission.py:<module>:0.4#1:UOI=neg",
+    "mission.py:<module>:STEP = 0.4#1:BSR",
 )
 
 
@@ -287,6 +288,7 @@ def test_a_program_that_cannot_be_imported_kills_by_exception(ends: dict[str, Ou
     assert found.commands == 0
 
 
+@pytest.mark.usefixtures("script")
 def test_numbers_of_robot_mutants_do_not_change_when_families_are_added(project: Path) -> None:
     alone, _ = plan_only(request_for(project), Quiet())
     together, _ = plan_only(request_for(project, families=("robot", "classical", "text")), Quiet())
@@ -297,6 +299,7 @@ def test_numbers_of_robot_mutants_do_not_change_when_families_are_added(project:
     )
 
 
+@pytest.mark.usefixtures("script")
 def test_families_operators_and_ids_select(project: Path) -> None:
     def chosen(**selection: Any) -> set[str]:
         mutants, _ = plan_only(request_for(project, families=("robot", "classical"), **selection), Quiet())
@@ -312,6 +315,7 @@ def test_families_operators_and_ids_select(project: Path) -> None:
     file.unlink()
 
 
+@pytest.mark.usefixtures("script")
 def test_what_still_holds_is_reused_also_after_another_family_ran(tmp_path: Path) -> None:
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", SMALL)
     only = ("BSR",)
