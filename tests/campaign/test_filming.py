@@ -76,6 +76,7 @@ TESTS = """
 """
 
 
+@pytest.mark.whole
 def test_original_and_mutant_are_filmed_and_the_feed_makes_no_mutants(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

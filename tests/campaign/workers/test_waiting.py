@@ -172,6 +172,7 @@ def test_what_a_worker_and_those_below_it_ask_for_counts(
         assert is_lent(both, PATIENCE if waits else 12 * PERIOD) is waits
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("_quick", "_roomy")
 def test_a_worker_that_gets_no_processor_does_not_wait(tmp_path: Path) -> None:
     processor = min(os.sched_getaffinity(0))
@@ -185,6 +186,7 @@ def test_a_worker_that_gets_no_processor_does_not_wait(tmp_path: Path) -> None:
     assert ran < 0.25 * (ran + after[one].queued - before[one].queued)  # it got what one that polls may take
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("_quick")
 def test_nothing_is_lent_while_processors_are_short(tmp_path: Path) -> None:
     with running(SLEEP, SLEEP, *[LOOP] * 3 * (os.cpu_count() or 1)) as (one, two, *_):
