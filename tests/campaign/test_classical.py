@@ -205,6 +205,7 @@ def test_a_mutant_without_effect_needs_no_branch_and_one_with_a_late_effect_bran
     assert (early.shared, acting.shared) == (4.0, 4.0)
 
 
+@pytest.mark.whole
 def test_a_difference_in_a_process_that_the_test_forked_is_not_overlooked(tmp_path: Path) -> None:
     mission = "def size(x):\n    return x\n"
     tests = """
@@ -355,7 +356,8 @@ def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path, engine:
     assert [kill.test.rpartition("::")[2] for kill in one.kills] == ["test_far"]
 
 
-@ENGINES
+@pytest.mark.whole
+@pytest.mark.parametrize("engine", ["auto", "replay"])
 def test_two_mutants_at_once_count_only_if_both_act(project: Path, engine: str) -> None:
     wanted = {"families": ("robot", "classical"), "order": 2, "pairs": 8, "fresh": True}
     ends = run(project, engine=engine, only=ONLY, **wanted)

@@ -77,6 +77,7 @@ def test_each_acts_in_its_own_file(tmp_path: Path) -> None:
         assert reverse.verdict is (Verdict.KILLED if name == "left" else Verdict.SURVIVED)
 
 
+@pytest.mark.whole
 def test_calls_of_equal_text_on_one_line_are_told_apart(tmp_path: Path) -> None:
     """Python takes their code for equal: only the columns differ."""
     mission = """

@@ -216,6 +216,7 @@ def test_a_feed_that_fails_is_said_once(tmp_path: Path) -> None:
     assert progress.lines.count("part cannot be recorded: 2 numbers instead of 3") == 1
 
 
+@pytest.mark.whole
 def test_what_a_process_of_its_own_does_is_recorded_in_its_order(tmp_path: Path) -> None:
     mission = """
         import time

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mutabot.campaign.check import check
 from mutabot.model import Verdict
 from tests.campaign.project import Quiet, by_branches, request_for, write_project
@@ -49,6 +51,7 @@ def test_check_says_before_the_baseline_what_to_write_for_a_native_function(tmp_
     assert [item["key"] for item in report.data["remarks"]] == ["signature"]
 
 
+@pytest.mark.whole
 def test_with_a_signature_every_argument_of_a_native_function_is_mutated(tmp_path: Path) -> None:
     vocabulary = VOCABULARY.replace("arguments", 'signature = "(data, sep, bytes_per_sep)"\n    arguments')
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=vocabulary)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mutabot.campaign.check import check
 from mutabot.model import Verdict
 from tests.campaign.project import Quiet, by_branches, request_for, write_project
@@ -66,6 +68,7 @@ VOCABULARY = """
 """
 
 
+@pytest.mark.whole
 def test_check_names_the_overriding_method_that_is_called(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
     (line,) = [line for line in check(request_for(tmp_path), Quiet()).lines if line.startswith("note")]

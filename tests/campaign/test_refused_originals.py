@@ -192,6 +192,7 @@ TESTS_OF_STATUS = """
 """
 
 
+@pytest.mark.whole
 def test_a_refusal_by_data_that_the_original_gets_as_well_is_judged_by_the_tests(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION_WITH_STATUS, TESTS_OF_STATUS, robot=ANSWERING, vocabulary=STATUS)
     found = by_name(by_branches(tmp_path, families=("robot", "graded")))
@@ -201,6 +202,7 @@ def test_a_refusal_by_data_that_the_original_gets_as_well_is_judged_by_the_tests
     assert Verdict.REFUSED in graded
 
 
+@pytest.mark.whole
 def test_a_refusal_in_a_process_below_the_tests_is_known_as_well(tmp_path: Path) -> None:
     mission = """
         import sys

@@ -109,8 +109,8 @@ def test_check_tells_a_clock_that_never_ticks(tmp_path: Path) -> None:
     ("ending", "words"),
     [
         ("os._exit(0)", "exit code 0"),
-        ("os.kill(os.getpid(), 9)", "signal 9"),
-        ("bytearray(10**11)", "memory"),
+        pytest.param("os.kill(os.getpid(), 9)", "signal 9", marks=pytest.mark.whole),
+        pytest.param("bytearray(10**11)", "memory", marks=pytest.mark.whole),
     ],
 )
 def test_an_original_that_does_not_live_to_the_end_stops_the_campaign(

@@ -487,6 +487,7 @@ def mutabot_run(project: Project, *options: str) -> subprocess.Popen[str]:
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+@pytest.mark.whole
 def test_a_really_full_disk_is_exit_code_2(real: Project) -> None:
     home = real.journal.parent
     home.mkdir()
@@ -513,7 +514,8 @@ def test_a_folder_that_cannot_be_written_is_exit_code_2(real: Project) -> None:
     assert "Traceback" not in said
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.whole)])
+@pytest.mark.whole
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
 def test_a_campaign_ended_from_outside_says_so_and_goes_on(real: Project, how: signal.Signals) -> None:
     slow = "import time\n\ndef test_slow():\n    time.sleep(60)\n"
     first = real.run()

@@ -150,6 +150,7 @@ def test_a_test_that_ends_its_parent_ends_itself(tmp_path: Path, heartbeat: Path
     assert "killed by signal 9" in ended.stdout + ended.stderr
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("engine", ["warm", REPLAY])
 def test_the_tests_see_no_orphans_of_theirs(tmp_path: Path, heartbeat: Path, engine: str) -> None:
     """What they wait for are their own children, and a daemon that has ended is gone at once."""

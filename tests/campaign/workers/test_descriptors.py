@@ -41,7 +41,10 @@ def command(folder: Path, soft: int, hard: int, *words: str) -> tuple[int, str]:
     return done.returncode, done.stderr
 
 
-@pytest.mark.parametrize("words", [("run", "-j", "2"), ("check", "-j", "2"), ("list", "-j", "2")])
+SLOW = [pytest.param((one, "-j", "2"), marks=pytest.mark.whole) for one in ("check", "list")]
+
+
+@pytest.mark.parametrize("words", [("run", "-j", "2"), *SLOW])
 def test_too_few_are_refused_before_anything_runs(tmp_path: Path, words: tuple[str, ...]) -> None:
     code, err = command(tmp_path, 24, 24, *words)
     assert code == ExitCode.USAGE
@@ -50,6 +53,7 @@ def test_too_few_are_refused_before_anything_runs(tmp_path: Path, words: tuple[s
     assert not (tmp_path / ".mutabot" / "crash.txt").exists()
 
 
+@pytest.mark.whole
 def test_fewer_jobs_are_advised_where_they_would_do(tmp_path: Path) -> None:
     most = needed(3, served=False) + 1
     code, err = command(tmp_path, 24, most, "run", "-j", "500")

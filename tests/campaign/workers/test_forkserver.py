@@ -77,6 +77,7 @@ def test_program_is_imported_once_for_all_rounds_and_mutants_and_draws_the_same_
     assert set(again) == set(once)
 
 
+@pytest.mark.whole
 def test_tests_that_are_not_safe_to_fork_start_anew_and_the_user_is_told(tmp_path: Path) -> None:
     waiting = "threading.Thread(target=threading.Event().wait, daemon=True, name='spinner').start()"
     root = project(tmp_path, conftest=f"note('imported')\n    {waiting}")
@@ -174,6 +175,7 @@ def test_death_of_the_process_that_collected_the_tests_is_a_clear_error(tmp_path
     assert not list((root / ".mutabot").glob("work-*"))
 
 
+@pytest.mark.whole
 def test_interrupted_session_of_a_copy_ends_like_one_of_its_own(tmp_path: Path) -> None:
     tests = TESTS.replace("arm = Arm()", "import pytest; pytest.exit('enough')")
     root = project(tmp_path, conftest="", tests=tests)
@@ -185,6 +187,7 @@ def test_interrupted_session_of_a_copy_ends_like_one_of_its_own(tmp_path: Path) 
     assert texts[0] == texts[1]
 
 
+@pytest.mark.whole
 def test_error_in_a_test_file_is_told_as_without_sharing(tmp_path: Path) -> None:
     root = project(tmp_path, conftest="", tests="import nothing_of_that_name")
     texts = []

@@ -50,6 +50,7 @@ def is_alive(pid: int) -> bool:
     return state not in "ZX"
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("engine", ["warm", REPLAY])
 def test_nothing_is_left(engine: str, tmp_path: Path) -> None:
     numbers = Path("/dev/shm", tmp_path.name + str(os.getpid()))  # workers see no others' changes in /tmp

@@ -186,6 +186,7 @@ def test_a_mutant_that_deletes_the_folder_of_its_process_is_an_error(
     assert mine == others
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     "is_private", [True, pytest.param(False, marks=pytest.mark.whole)], ids=["private files", "shared files"]
 )

@@ -78,6 +78,7 @@ def journal_of(folder: Path) -> JournalReader:
     return JournalReader.open(folder / ".mutabot" / "journal.sqlite")
 
 
+@pytest.mark.whole
 def test_a_campaign_is_watched_paused_and_resumed_and_stays_until_the_page_is_closed(project: Path) -> None:
     with running(project, *ONE_BY_ONE) as (process, address):
         with listening(address) as events:
