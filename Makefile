@@ -27,13 +27,13 @@ demo: $(READY)
 	$(VENV)/bin/mutabot -C examples/paper results
 	$(RUN) benchmarks/paper_scores.py examples/paper
 
-## lint, types and the whole test suite
+## lint, types and the tests, but for those of `make whole`
 test: check $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) -m pytest -n 2 --dist worksteal
 	$(ROS1)/bin/python -m pytest -n 2 --dist worksteal $(call of_ros,1) tests/model/values/test_messages.py || test $$? -eq 5  # all skipped
 	$(ROS2)/bin/python -m pytest -n 2 --dist worksteal $(call of_ros,2) || test $$? -eq 5
 
-## the tests that take long: many nodes come up, many runs are made
+## the tests that take long: the reference engine on every fact, the corpus, clusters, browsers, many nodes, many runs
 whole: $(READY) $(REPORTS) $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) -m pytest -n 2 --dist worksteal -m whole
 	$(ROS1)/bin/python -m pytest -n 2 --dist worksteal -m whole $(call of_ros,1) tests/model/values/test_messages.py || test $$? -eq 5  # all skipped

@@ -8,11 +8,18 @@ from importlib.util import find_spec
 
 import pytest
 
+from tests.processor_time import ProcessorTime
 
-def pytest_configure() -> None:
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--processor-time", action="store_true", help="tell what each file of tests takes")
+
+
+def pytest_configure(config: pytest.Config) -> None:
     """Tests interrupt campaigns: a shell that starts us in the background has had interruptions ignored."""
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    config.pluginmanager.register(ProcessorTime(config))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

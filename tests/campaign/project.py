@@ -9,6 +9,8 @@ from pathlib import Path
 from textwrap import dedent
 from typing import Any
 
+import pytest
+
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
@@ -16,6 +18,8 @@ from mutabot.model import Outcome
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
+#: the reference, as one of several engines: it takes long, and that it agrees with branches is for the corpus
+REPLAY = pytest.param("replay", marks=pytest.mark.whole)
 ROBOT = """
     class Refused(Exception):
         pass
@@ -145,6 +149,12 @@ def run(folder: Path, **changes: Any) -> dict[str, Outcome]:
     """A whole campaign; outcomes of the first round by mutant id."""
     path = run_campaign(request_for(folder, **changes), Quiet())
     return {outcome.mutant: outcome for outcome in outcomes(path) if outcome.round == 0}
+
+
+def by_branches(folder: Path, **changes: Any) -> dict[tuple[str, int], Outcome]:
+    """Outcomes by mutant and round, of branches where these can be; that replay agrees is for the corpus."""
+    path = run_campaign(request_for(folder, engine="auto", **changes), Quiet())
+    return {(outcome.mutant, outcome.round): outcome for outcome in outcomes(path)}
 
 
 def outcomes(path: Path) -> list[Outcome]:

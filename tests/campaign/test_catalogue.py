@@ -49,6 +49,7 @@ def test_check_names_each_operator_that_applies_nowhere_with_the_reason(folder: 
     assert not {"cm-for-m", "swap-next", "saturated-reading"} & {*told}
 
 
+@pytest.mark.whole
 def test_check_says_nothing_of_a_catalogue_that_nobody_asked_for(folder: Path) -> None:
     report = check(request_for(folder), Quiet())
     assert not [line for line in report.lines if line.startswith("nowhere")]

@@ -17,6 +17,7 @@ from mutabot.model import By, LeftOut, Mutant, Outcome, Role, Site, Span, Verdic
 from mutabot.model.outcome import same_end
 from tests.campaign.project import (
     CONFIGURATION,
+    REPLAY,
     ROBOT,
     VOCABULARY,
     Quiet,
@@ -93,7 +94,8 @@ SOME = (
     "mission.py:count:total += 1#1:ASR=sub",
     "mission.py:count:total < len(items)#1:ROR=ne",
     "mission.py:unused:return x > 1#1:BSR",
-    "mission.py:<module>:*",
+    "mission.py:<module>:0.4#1:UOI=neg",
+    "mission.py:<module>:STEP = 0.4#1:BSR",
 )
 
 
@@ -103,31 +105,31 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write_project(folder, MISSION, TESTS, configuration=QUICK + "timeout_seconds = 3\n")
 
 
+#: by one engine in the short run, by both in the long one; that they agree on every mutant is for the corpus
+ENGINES = pytest.mark.parametrize("engine", ["auto", REPLAY])
+
+
 @pytest.fixture(scope="module")
-def ends(project: Path) -> dict[str, dict[str, Outcome]]:
-    """All outcomes, by engine and mutant."""
+def ends(project: Path) -> dict[str, Outcome]:
+    """All outcomes by mutant: branches, and processes of their own where these cannot be."""
     before = fingerprint(project)
-    found = {
-        engine: run(project, engine=engine, families=("robot", "classical"), only=SOME, fresh=True)
-        for engine in ("auto", "replay")
-    }
+    found = run(project, engine="auto", families=("robot", "classical"), only=SOME, fresh=True)
     assert fingerprint(project) == before
     return found
 
 
-def end(ends: dict[str, dict[str, Outcome]], mutant: str) -> Outcome:
-    return ends["replay"][f"mission.py:{mutant}"]
+def end(ends: dict[str, Outcome], mutant: str) -> Outcome:
+    return ends[f"mission.py:{mutant}"]
 
 
 @pytest.mark.whole
-def test_both_engines_agree_on_every_mutant(ends: dict[str, dict[str, Outcome]]) -> None:
-    assert ends["auto"].keys() == ends["replay"].keys()
+def test_both_engines_agree_on_every_mutant(project: Path, ends: dict[str, Outcome]) -> None:
+    replayed = run(project, engine="replay", families=("robot", "classical"), only=SOME, fresh=True)
+    assert ends.keys() == replayed.keys()
     different = {
-        mutant: (first, ends["replay"][mutant])
-        for mutant, first in ends["auto"].items()
-        if not same_end(first, ends["replay"][mutant])
-        or (first.acted, first.commands, first.kills, first.example, first.indistinguishable)
-        != _more(ends["replay"][mutant])
+        mutant: (first, replayed[mutant])
+        for mutant, first in ends.items()
+        if not same_end(first, replayed[mutant]) or _more(first) != _more(replayed[mutant])
     }
     assert different == {}
 
@@ -136,13 +138,13 @@ def _more(one: Outcome) -> tuple[Any, ...]:
     return one.acted, one.commands, one.kills, one.example, one.indistinguishable
 
 
-def test_branches_are_what_runs_mutants_that_act_in_a_test(ends: dict[str, dict[str, Outcome]]) -> None:
-    replayed = {mutant for mutant, one in ends["auto"].items() if one.engine != "branch" and one.tests}
+def test_branches_are_what_runs_mutants_that_act_in_a_test(ends: dict[str, Outcome]) -> None:
+    replayed = {mutant for mutant, one in ends.items() if one.engine != "branch" and one.tests}
     assert replayed
     assert all(":<module>:" in mutant for mutant in replayed)
 
 
-def test_a_check_kills(ends: dict[str, dict[str, Outcome]]) -> None:
+def test_a_check_kills(ends: dict[str, Outcome]) -> None:
     found = end(ends, "right:STEP / 2#1:AOR=mul")
     assert (found.verdict, found.by, found.test) == (
         Verdict.KILLED,
@@ -155,18 +157,18 @@ def test_a_check_kills(ends: dict[str, dict[str, Outcome]]) -> None:
     assert not found.complete
 
 
-def test_a_bomb_kills_by_exception_before_any_command(ends: dict[str, dict[str, Outcome]]) -> None:
+def test_a_bomb_kills_by_exception_before_any_command(ends: dict[str, Outcome]) -> None:
     found = end(ends, "far:arm.move_by(0.5 * factor)#1:BSR")
     assert (found.verdict, found.by, found.commands) == (Verdict.KILLED, By.EXCEPTION, 0)
     assert found.exception == "mutabot.inside.alternatives:Bomb"
 
 
-def test_what_nothing_notices_survives(ends: dict[str, dict[str, Outcome]]) -> None:
+def test_what_nothing_notices_survives(ends: dict[str, Outcome]) -> None:
     found = end(ends, "far:0.5 * factor#1:AOR=rightOp")
     assert (found.verdict, found.example, found.kills) == (Verdict.SURVIVED, (0.5, 1.0), ())
 
 
-def test_an_alternative_with_the_same_value_has_no_effect(ends: dict[str, dict[str, Outcome]]) -> None:
+def test_an_alternative_with_the_same_value_has_no_effect(ends: dict[str, Outcome]) -> None:
     found = end(ends, "far:0.5 * factor#1:AOR=pow")
     assert (found.verdict, found.hits, found.acted) == (Verdict.NO_EFFECT, 1, 0)
 
@@ -194,25 +196,18 @@ def test_a_mutant_without_effect_needs_no_branch_and_one_with_a_late_effect_bran
     vocabulary = 'clock = { tick = "robot:Arm.tick", unit = "s" }\n' + dedent(VOCABULARY)
     project = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
     only = ("mission.py:way:step*",)
-    ends = {
-        engine: run(project, engine=engine, families=("classical",), only=only, fresh=True)
-        for engine in ("branch", "replay")
-    }
+    ends = run(project, engine="branch", families=("classical",), only=only)
     zero, late = (f"mission.py:way:step#2:ABS={variant}" for variant in ("failOnZero", "abs"))
-    idle, acting = ends["branch"][zero], ends["branch"][late]
+    idle, acting = ends[zero], ends[late]
     assert (idle.verdict, idle.hits, idle.acted, idle.engine) == (Verdict.NO_EFFECT, 4, 0, "branch")
     assert idle.shared == idle.simulated == 7.0  # eight ticks; the trunk ran them all
     assert (acting.hits, acting.acted, acting.example) == (4, 1, (-0.1, 0.1))
-    early = ends["branch"]["mission.py:way:step#2:UOI=neg"]
+    early = ends["mission.py:way:step#2:UOI=neg"]
     # after five ticks; the former went with -abs(step) until then, and has simulated no tick alone before
     assert (early.shared, acting.shared) == (4.0, 4.0)
-    assert ends["branch"].keys() == ends["replay"].keys()
-    for mutant, one in ends["branch"].items():
-        again = ends["replay"][mutant]
-        assert same_end(one, again)
-        assert (one.hits, one.acted, one.example) == (again.hits, again.acted, again.example)
 
 
+@pytest.mark.whole
 def test_a_difference_in_a_process_that_the_test_forked_is_not_overlooked(tmp_path: Path) -> None:
     mission = "def size(x):\n    return x\n"
     tests = """
@@ -227,27 +222,24 @@ def test_a_difference_in_a_process_that_the_test_forked_is_not_overlooked(tmp_pa
     """
     project = write_project(tmp_path, mission, tests)
     mutant = "mission.py:size:x#1:ABS=abs"
-    ends = {
-        engine: run(project, engine=engine, families=("classical",), only=(mutant,), fresh=True)[mutant]
-        for engine in ("auto", "replay")
-    }
-    assert ends["auto"].engine == "replay"
-    assert ends["auto"].verdict is ends["replay"].verdict is Verdict.KILLED
+    found = run(project, engine="auto", families=("classical",), only=(mutant,))[mutant]
+    assert (found.engine, found.verdict) == ("replay", Verdict.KILLED)
 
 
-def test_a_loop_without_end_times_out(ends: dict[str, dict[str, Outcome]]) -> None:
+def test_a_loop_without_end_times_out(ends: dict[str, Outcome]) -> None:
     found = end(ends, "count:total += 1#1:ASR=sub")
     assert found.verdict is Verdict.TIMEOUT
     assert "wall clock" in (found.message or "")
 
 
-def test_a_refusal_that_ends_the_test_stands_outside(ends: dict[str, dict[str, Outcome]]) -> None:
+def test_a_refusal_that_ends_the_test_stands_outside(ends: dict[str, Outcome]) -> None:
     found = end(ends, "far:0.5 * factor#1:AOR=add")
     assert (found.verdict, found.exception) == (Verdict.REFUSED, "robot:Refused")
     assert found.commands == 1
 
 
-def test_a_refusal_that_the_program_handles_is_no_refusal(tmp_path: Path) -> None:
+@ENGINES
+def test_a_refusal_that_the_program_handles_is_no_refusal(tmp_path: Path, engine: str) -> None:
     mission = """
         import robot
 
@@ -268,21 +260,20 @@ def test_a_refusal_that_the_program_handles_is_no_refusal(tmp_path: Path) -> Non
         def test_sure():
             assert mission.careful(robot.Arm(-0.5))
     """
-    for engine in ("auto", "replay"):
-        project = write_project(tmp_path, mission, tests)
-        found = run(project, engine=engine, families=("classical",), only=("UOI",), fresh=True)
-        assert found["mission.py:careful:0.3#1:UOI=neg"].verdict is Verdict.SURVIVED
-        negative = found["mission.py:careful:0.5 + 0.3#1:UOI=neg"]
-        assert (negative.verdict, negative.by) == (Verdict.KILLED, By.CHECK)
-        assert negative.test == "tests/test_mission.py::test_sure"
+    project = write_project(tmp_path, mission, tests)
+    found = run(project, engine=engine, families=("classical",), only=("UOI",))
+    assert found["mission.py:careful:0.3#1:UOI=neg"].verdict is Verdict.SURVIVED
+    negative = found["mission.py:careful:0.5 + 0.3#1:UOI=neg"]
+    assert (negative.verdict, negative.by) == (Verdict.KILLED, By.CHECK)
+    assert negative.test == "tests/test_mission.py::test_sure"
 
 
-def test_places_that_no_test_reaches_are_not_covered(ends: dict[str, dict[str, Outcome]]) -> None:
+def test_places_that_no_test_reaches_are_not_covered(ends: dict[str, Outcome]) -> None:
     assert end(ends, "unused:return x > 1#1:BSR").verdict is Verdict.NOT_COVERED
 
 
 def test_values_computed_at_import_are_mutated_in_processes_of_their_own(
-    ends: dict[str, dict[str, Outcome]],
+    ends: dict[str, Outcome],
 ) -> None:
     found = end(ends, "<module>:0.4#1:UOI=neg")
     assert (found.verdict, found.by, found.test) == (
@@ -293,13 +284,14 @@ def test_values_computed_at_import_are_mutated_in_processes_of_their_own(
     assert found.acted >= 1
 
 
-def test_a_program_that_cannot_be_imported_kills_by_exception(ends: dict[str, dict[str, Outcome]]) -> None:
+def test_a_program_that_cannot_be_imported_kills_by_exception(ends: dict[str, Outcome]) -> None:
     found = end(ends, "<module>:STEP = 0.4#1:BSR")
     assert (found.verdict, found.by) == (Verdict.KILLED, By.EXCEPTION)
     assert found.exception == "mutabot.inside.alternatives:Bomb"
     assert found.commands == 0
 
 
+@pytest.mark.usefixtures("script")
 def test_numbers_of_robot_mutants_do_not_change_when_families_are_added(project: Path) -> None:
     alone, _ = plan_only(request_for(project), Quiet())
     together, _ = plan_only(request_for(project, families=("robot", "classical", "text")), Quiet())
@@ -310,6 +302,7 @@ def test_numbers_of_robot_mutants_do_not_change_when_families_are_added(project:
     )
 
 
+@pytest.mark.usefixtures("script")
 def test_families_operators_and_ids_select(project: Path) -> None:
     def chosen(**selection: Any) -> set[str]:
         mutants, _ = plan_only(request_for(project, families=("robot", "classical"), **selection), Quiet())
@@ -325,6 +318,7 @@ def test_families_operators_and_ids_select(project: Path) -> None:
     file.unlink()
 
 
+@pytest.mark.usefixtures("script")
 def test_what_still_holds_is_reused_also_after_another_family_ran(tmp_path: Path) -> None:
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", SMALL)
     only = ("BSR",)
@@ -351,44 +345,38 @@ SMALL = """
 """
 
 
-def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path) -> None:
+@ENGINES
+def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path, engine: str) -> None:
     project = write_project(tmp_path, "def near(x):\n    return x < 0.5\n", SMALL)
-    for engine in ("auto", "replay"):
-        found = run(
-            project, engine=engine, families=("classical",), only=("ROR", "UOI"), every_test=True, fresh=True
-        )
-        inverted = found["mission.py:near:x < 0.5#1:UOI=not"]
-        assert inverted.complete
-        assert [kill.test.rpartition("::")[2] for kill in inverted.kills] == ["test_near", "test_far"]
-        assert {kill.by for kill in inverted.kills} == {By.CHECK}
-        assert inverted.test == inverted.kills[0].test
-        one = found["mission.py:near:x < 0.5#1:ROR=trueOp"]
-        assert [kill.test.rpartition("::")[2] for kill in one.kills] == ["test_far"]
+    found = run(project, engine=engine, families=("classical",), only=("ROR", "UOI"), every_test=True)
+    inverted = found["mission.py:near:x < 0.5#1:UOI=not"]
+    assert inverted.complete
+    assert [kill.test.rpartition("::")[2] for kill in inverted.kills] == ["test_near", "test_far"]
+    assert {kill.by for kill in inverted.kills} == {By.CHECK}
+    assert inverted.test == inverted.kills[0].test
+    one = found["mission.py:near:x < 0.5#1:ROR=trueOp"]
+    assert [kill.test.rpartition("::")[2] for kill in one.kills] == ["test_far"]
 
 
-def test_two_mutants_at_once_count_only_if_both_act(project: Path) -> None:
+@pytest.mark.whole
+@pytest.mark.parametrize("engine", ["auto", "replay"])
+def test_two_mutants_at_once_count_only_if_both_act(project: Path, engine: str) -> None:
     wanted = {"families": ("robot", "classical"), "order": 2, "pairs": 8, "fresh": True}
-    ends = {engine: run(project, engine=engine, only=ONLY, **wanted) for engine in ("auto", "replay")}
-    assert len(ends["auto"]) == 8
-    assert all("+" in mutant for mutant in ends["auto"])
-    different = {
-        mutant: (first, ends["replay"][mutant])
-        for mutant, first in ends["auto"].items()
-        if not same_end(first, ends["replay"][mutant])
-    }
-    assert different == {}
-    idle = [one for one in ends["auto"].values() if one.verdict is Verdict.NO_EFFECT]
+    ends = run(project, engine=engine, only=ONLY, **wanted)
+    assert len(ends) == 8
+    assert all("+" in mutant for mutant in ends)
+    idle = [one for one in ends.values() if one.verdict is Verdict.NO_EFFECT]
     assert any("of the two" in (one.message or "") for one in idle)
-    assert {one.verdict for one in ends["auto"].values()} >= {Verdict.KILLED, Verdict.NO_EFFECT}
+    assert {one.verdict for one in ends.values()} >= {Verdict.KILLED, Verdict.NO_EFFECT}
 
 
 ONLY = ("mission.py:right:*", "mission.py:<module>:*")
 
 
-def test_controls_run_in_the_program_text_as_well(project: Path) -> None:
-    for engine in ("branch", "replay"):
-        request = request_for(project, families=("classical",), only=("mission.py:right:*",), engine=engine)
-        assert check(request, Quiet()).data["controls"] >= 2
+@ENGINES
+def test_controls_run_in_the_program_text_as_well(project: Path, engine: str) -> None:
+    request = request_for(project, families=("classical",), only=("mission.py:right:*",), engine=engine)
+    assert check(request, Quiet()).data["controls"] >= 2
 
 
 def test_a_file_without_its_alternatives_never_lets_its_mutants_survive(tmp_path: Path) -> None:
@@ -453,7 +441,8 @@ def test_a_text_that_is_no_program_is_invalid(tmp_path: Path) -> None:
     assert found['mission.py:three:"1+2"#1:drop-character=1'].verdict is Verdict.KILLED
 
 
-def test_a_command_that_the_vocabulary_does_not_know_is_invalid(tmp_path: Path) -> None:
+@ENGINES
+def test_a_command_that_the_vocabulary_does_not_know_is_invalid(tmp_path: Path, engine: str) -> None:
     robot = """
         class Refused(Exception):
             pass
@@ -476,12 +465,8 @@ def test_a_command_that_the_vocabulary_does_not_know_is_invalid(tmp_path: Path) 
     mission = 'import robot\n\ndef run():\n    robot.send("lift/5")\n'
     tests = "import mission\n\ndef test_it():\n    mission.run()\n"
     project = write_project(tmp_path, mission, tests, robot=robot, vocabulary=vocabulary)
-    ends = {
-        engine: run(project, engine=engine, families=("text",), only=("*swap*", "*replace*"), fresh=True)
-        for engine in ("auto", "replay")
-    }
-    found = {mutant.rpartition(":")[2]: one.verdict for mutant, one in ends["replay"].items()}
-    assert {one.verdict for one in ends["auto"].values()} == {Verdict.INVALID, Verdict.REFUSED}
-    assert all(same_end(one, ends["replay"][mutant]) for mutant, one in ends["auto"].items())
+    ends = run(project, engine=engine, families=("text",), only=("*swap*", "*replace*"))
+    found = {mutant.rpartition(":")[2]: one.verdict for mutant, one in ends.items()}
+    assert set(found.values()) == {Verdict.INVALID, Verdict.REFUSED}
     assert found["swap-characters=2"] is Verdict.INVALID
     assert found["replace-character=6"] is Verdict.REFUSED  # lift/6: a command, and too high

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import recordings_path
 from mutabot.model import Outcome, Verdict
-from tests.campaign.project import Quiet, request_for, write_project
+from tests.campaign.project import REPLAY, Quiet, request_for, write_project
 
 #: an arm that moves at 1 m/s and carries a part, and tells of both
 ROBOT = """
@@ -100,9 +101,17 @@ def evidence(folder: Path) -> StoredEvidence:
     return StoredEvidence(folder / ".mutabot" / "journal.sqlite")
 
 
-@pytest.mark.parametrize("engine", ["replay", "branch"])
-def test_both_engines_tell_the_same_of_what_happened(tmp_path: Path, engine: str) -> None:
-    found = ran(project(tmp_path), engine)
+@pytest.fixture(scope="module", params=["branch", REPLAY])
+def recorded(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Path, dict[str, Outcome]]:
+    """A campaign of which many tests ask: its folder, and the outcomes."""
+    folder = project(tmp_path_factory.mktemp("recorded"))
+    return folder, ran(folder, request.param)
+
+
+def test_it_is_told_what_happened(recorded: tuple[Path, dict[str, Outcome]]) -> None:
+    _, found = recorded
     dropped = found["arm.grip#2:call:skip"]
     assert dropped.verdict is Verdict.SURVIVED
     (diverged,) = dropped.diverged
@@ -115,9 +124,11 @@ def test_both_engines_tell_the_same_of_what_happened(tmp_path: Path, engine: str
     assert missed.story.startswith("gripper and part never touched, in the original at ")
 
 
-def test_a_mutant_that_was_killed_is_recorded_up_to_its_end(tmp_path: Path) -> None:
-    folder = project(tmp_path)
-    killed = ran(folder)["arm.move_by#2:dx:reverse"]
+def test_a_mutant_that_was_killed_is_recorded_up_to_its_end(
+    recorded: tuple[Path, dict[str, Outcome]],
+) -> None:
+    folder, found = recorded
+    killed = found["arm.move_by#2:dx:reverse"]
     assert killed.verdict is Verdict.KILLED
     with evidence(folder) as stored:
         pair = stored.pair(killed.mutant, 0, TEST)
@@ -128,9 +139,11 @@ def test_a_mutant_that_was_killed_is_recorded_up_to_its_end(tmp_path: Path) -> N
     assert pair.mutant.tracks["tool"].values[-3] == pytest.approx(-0.25, abs=0.051)
 
 
-def test_what_differs_in_nothing_is_not_kept(tmp_path: Path) -> None:
-    folder = project(tmp_path)
-    same = ran(folder)["arm.grip#2:call:repeat"]
+def test_what_differs_in_nothing_is_not_kept(
+    recorded: tuple[Path, dict[str, Outcome]], tmp_path: Path
+) -> None:
+    folder, same = tmp_path / "project", recorded[1]["arm.grip#2:call:repeat"]
+    shutil.copytree(recorded[0], folder)
     again = same.diverged[0]  # it takes a step longer
     assert again.story == "all went the same way, at other times"
     mission = (folder / "mission.py").read_text()
@@ -144,9 +157,11 @@ def test_what_differs_in_nothing_is_not_kept(tmp_path: Path) -> None:
         assert stored.tests(again.test and same.mutant, 0) == (TEST,)
 
 
-def test_outcomes_that_are_taken_over_keep_their_recordings(tmp_path: Path) -> None:
-    folder = project(tmp_path)
-    first = ran(folder)
+def test_outcomes_that_are_taken_over_keep_their_recordings(
+    recorded: tuple[Path, dict[str, Outcome]], tmp_path: Path
+) -> None:
+    folder, first = tmp_path / "project", recorded[1]
+    shutil.copytree(recorded[0], folder)
     path = recordings_path(folder / ".mutabot" / "journal.sqlite")
     written = path.stat().st_size
     second = ran(folder)
@@ -201,6 +216,7 @@ def test_a_feed_that_fails_is_said_once(tmp_path: Path) -> None:
     assert progress.lines.count("part cannot be recorded: 2 numbers instead of 3") == 1
 
 
+@pytest.mark.whole
 def test_what_a_process_of_its_own_does_is_recorded_in_its_order(tmp_path: Path) -> None:
     mission = """
         import time
@@ -221,7 +237,7 @@ def test_what_a_process_of_its_own_does_is_recorded_in_its_order(tmp_path: Path)
     lines = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\npytest_args = ["-o", "pythonpath=."]\n'
     vocabulary = VOCABULARY.replace('clock = { tick = "robot:Cell.step", unit = "s" }', "")
     folder = write_project(tmp_path, mission, tests, robot=ROBOT, vocabulary=vocabulary, configuration=lines)
-    ran(folder)
+    ran(folder, only=("*move_by*:skip",))
     with evidence(folder) as stored:
         original = stored.pair("", 0, "tests/test_mission.py::test_mission").original
     assert original is not None

@@ -88,6 +88,7 @@ def skipped(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Outcome]:
     return {name.split(":")[1]: outcome for name, outcome in outcomes.items()}
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("function", "verdict", "words"),
     [

@@ -14,10 +14,10 @@ from mutabot.campaign.run import plan_only
 from mutabot.errors import OperatorError
 from mutabot.model import Outcome, Verdict
 from mutabot.operators import registry
-from tests.campaign.project import Quiet, request_for, run, write_project
+from tests.campaign.project import REPLAY, Quiet, request_for, run, write_project
 
 #: async programs open a socket pair, which branch leaves to replay
-ENGINES = ["replay", "auto"]
+ENGINES = ["auto", REPLAY]
 CONFIGURATION = """
     program = ["mission.py"]
     vocabulary = ["robot.toml"]
@@ -134,8 +134,8 @@ TESTS = """
 
     @pytest.fixture
     def arm():
-        robot.LOG.clear()
-        return robot.Arm()
+        yield robot.Arm()
+        robot.LOG.clear()  # else a test would find what another one did
 
     @pytest.mark.parametrize("name, answer, log", [
         ("poses", [0.5, 1.5, 1.0], ["poses"]),
@@ -340,7 +340,7 @@ def plug_in(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Callabl
     forget()
 
 
-@pytest.mark.parametrize("engine", ["replay", "branch"])
+@pytest.mark.parametrize("engine", ["branch", REPLAY])
 def test_an_operator_of_another_name_with_the_body_of_skip_ends_as_skip(
     engine: str, plug_in: Callable[[str], None], tmp_path: Path
 ) -> None:
@@ -358,7 +358,7 @@ def test_an_operator_of_another_name_with_the_body_of_skip_ends_as_skip(
     assert len(found) == 2
 
 
-@pytest.mark.parametrize("engine", ["replay", "branch"])
+@pytest.mark.parametrize("engine", ["branch", REPLAY])
 def test_an_operator_that_is_to_do_nothing_and_reaches_the_robot_is_an_error(
     engine: str, plug_in: Callable[[str], None], tmp_path: Path
 ) -> None:

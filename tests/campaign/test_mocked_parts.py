@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.model import Verdict
-from tests.campaign.project import run, write_project
+from tests.campaign.project import REPLAY, run, write_project
 
 MISSION = "def run(arm):\n    arm.move_by(0.25)\n    arm.move_by(-0.5)\n    return arm.position()\n"
 TESTS = """
@@ -40,7 +40,7 @@ TESTS = """
 """
 
 
-@pytest.mark.parametrize("engine", ["auto", "replay"])
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
 def test_mocks_end_no_campaign(tmp_path: Path, engine: str) -> None:
     found = run(write_project(tmp_path, MISSION, TESTS), engine=engine)
     assert found

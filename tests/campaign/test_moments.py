@@ -10,7 +10,7 @@ import pytest
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.model import Moment, Outcome, Verdict
-from tests.campaign.project import Quiet, request_for, write_project
+from tests.campaign.project import REPLAY, Quiet, request_for, write_project
 
 ROBOT = """
     class Robot:
@@ -51,7 +51,7 @@ TESTS = """
 Run = Callable[..., list[Outcome]]
 
 
-@pytest.fixture(params=["branch", "replay"])
+@pytest.fixture(params=["branch", REPLAY])
 def outcome(request: pytest.FixtureRequest, tmp_path: Path) -> Run:
     """Runs *reverse* at a moment, and returns its outcome."""
 
@@ -91,6 +91,7 @@ def test_a_drawn_call_is_one_in_each_round_and_not_always_the_same(outcome: Run)
     assert len({calls[0] for calls in drawn}) > 1
 
 
+@pytest.mark.whole
 def test_both_engines_draw_alike(tmp_path: Path) -> None:
     ends = []
     for engine in ("branch", "replay"):

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mutabot.campaign.check import check
 from mutabot.model import Verdict
-from tests.campaign.engines.test_branching import both_engines
-from tests.campaign.project import Quiet, request_for, write_project
+from tests.campaign.project import Quiet, by_branches, request_for, write_project
 
 #: as in Gymnasium: what stands around an environment is an environment, and calls no method of its base
 ROBOT = """
@@ -67,6 +68,7 @@ VOCABULARY = """
 """
 
 
+@pytest.mark.whole
 def test_check_names_the_overriding_method_that_is_called(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=VOCABULARY)
     (line,) = [line for line in check(request_for(tmp_path), Quiet()).lines if line.startswith("note")]
@@ -79,7 +81,7 @@ def test_overrides_make_mutants_of_the_methods_of_subclasses(tmp_path: Path) -> 
     vocabulary = VOCABULARY.replace("arguments", "overrides = true\n    arguments")
     write_project(tmp_path, MISSION, TESTS, robot=ROBOT, vocabulary=vocabulary)
     found = {
-        mutant: outcome for (mutant, _), outcome in both_engines(tmp_path).items() if "env.step" in mutant
+        mutant: outcome for (mutant, _), outcome in by_branches(tmp_path).items() if "env.step" in mutant
     }
     assert {mutant.rpartition(":")[2] for mutant in found} >= {"reverse", "repeat"}
     assert {outcome.verdict for outcome in found.values()} == {Verdict.KILLED}

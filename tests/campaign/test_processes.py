@@ -9,7 +9,7 @@ import pytest
 from mutabot.campaign.run import run_campaign
 from mutabot.model import Outcome, Verdict
 from tests.campaign.outside import killer
-from tests.campaign.project import ROBOT, Quiet, request_for, run, write_project
+from tests.campaign.project import CONFIGURATION, ROBOT, Quiet, request_for, run, write_project
 
 TESTS = """
     import json
@@ -28,14 +28,9 @@ TESTS = """
 """
 
 
-def ends_of(folder: Path, mission: str, tests: str = TESTS, robot: str = ROBOT) -> dict[str, Outcome]:
-    project = write_project(folder, mission, tests, robot=robot)
-    found = run(project, fresh=True)
-    return {mutant.removeprefix("mission.py:"): outcome for mutant, outcome in found.items()}
-
-
-def test_a_refusal_that_ends_the_process_is_no_kill_and_one_that_it_handles_is(tmp_path: Path) -> None:
-    mission = """
+#: one script per fact, each of which a test of its own starts
+SCRIPTS = {
+    "refused.py": """
         from robot import Arm, Refused
 
         arm = Arm(x=0.9)
@@ -46,16 +41,8 @@ def test_a_refusal_that_ends_the_process_is_no_kill_and_one_that_it_handles_is(t
         except Refused:
             print("gave up")
         print(round(arm.x, 6))
-    """
-    found = ends_of(tmp_path, mission)
-    first = found["<module>:arm.move_by#1:dx:reverse"]
-    assert (first.verdict, first.acted) == (Verdict.REFUSED, 1)
-    assert first.message is not None
-    assert "out of reach" in first.message
-
-
-def test_a_crash_of_the_process_is_noticed_by_the_test_that_looks_at_it(tmp_path: Path) -> None:
-    mission = """
+    """,
+    "crashes.py": """
         import ctypes
 
         from robot import Arm
@@ -65,24 +52,111 @@ def test_a_crash_of_the_process_is_noticed_by_the_test_that_looks_at_it(tmp_path
         if arm.x < 0:
             ctypes.string_at(0)
         print(arm.x)
-    """
-    found = ends_of(tmp_path, mission)["<module>:arm.move_by#1:dx:reverse"]
-    assert (found.verdict, found.acted) == (Verdict.KILLED, 1)
+    """,
+    "endless.py": """
+        from robot import Arm
 
+        arm = Arm()
+        arm.move_by(0.5)
+        while arm.position() < 0:
+            pass
+        print(arm.x)
+    """,
+    "bare.py": """
+        from robot import Arm
 
-STAYS = """
-    import time
+        arm = Arm()
+        arm.move_by(0.5)
+        print(arm.x)
+    """,
+    "stays.py": """
+        import time
 
-    from robot import Arm
+        from robot import Arm
 
-    arm = Arm()
-    arm.move_by(0.5)
-    print(arm.x, flush=True)
-    if arm.x < 0:
-        time.sleep(60)
+        arm = Arm()
+        arm.move_by(0.5)
+        print(arm.x, flush=True)
+        if arm.x < 0:
+            time.sleep(60)
+    """,
+}
+#: how their tests start them; the last one ends its script by a program
+STARTS = """
+    import os
+    import subprocess
+    import sys
+
+    def start(name, **options):
+        return subprocess.run([sys.executable, name], capture_output=True, text=True, timeout=60, **options)
+
+    def check(done):
+        assert done.returncode == 0, done.stderr
+        assert done.stdout == "0.5\\n"
+
+    def test_refused():
+        check(start("refused.py"))
+
+    def test_crashes():
+        check(start("crashes.py"))
+
+    def test_endless():
+        check(start("endless.py"))
+
+    def test_bare():
+        check(start("bare.py", env={"PATH": os.environ["PATH"], "PYTHONPATH": "elsewhere"}))
+
+    def test_stays():
+        stays = subprocess.Popen([sys.executable, "stays.py"], stdout=subprocess.PIPE, text=True)
+        for line in stays.stdout:
+            if float(line) < 0:
+                subprocess.run(["sh", "-c", f"kill -9 {stays.pid}"], check=True)
+        assert stays.wait() == 0
 """
 
 
+@pytest.fixture(scope="module")
+def ends(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Outcome]:
+    """How the mutant that reverses the first move of each script ends, by the script."""
+    names = ", ".join(f'"{name}"' for name in SCRIPTS)
+    configuration = CONFIGURATION.replace('"mission.py"', names)
+    folder = tmp_path_factory.mktemp("scripts")
+    write_project(folder, "", STARTS, more=SCRIPTS, configuration=configuration)
+    found = run(folder, only=("*arm.move_by#1:dx:reverse",))
+    return {mutant.partition(":")[0]: outcome for mutant, outcome in found.items()}
+
+
+def ends_of(folder: Path, mission: str, tests: str = TESTS, robot: str = ROBOT) -> dict[str, Outcome]:
+    project = write_project(folder, mission, tests, robot=robot)
+    found = run(project, only=("*:reverse",))
+    return {mutant.removeprefix("mission.py:"): outcome for mutant, outcome in found.items()}
+
+
+def test_a_refusal_that_ends_the_process_is_no_kill(ends: dict[str, Outcome]) -> None:
+    found = ends["refused.py"]
+    assert (found.verdict, found.acted) == (Verdict.REFUSED, 1)
+    assert found.message is not None
+    assert "out of reach" in found.message
+
+
+def test_a_crash_of_the_process_is_noticed_by_the_test_that_looks_at_it(ends: dict[str, Outcome]) -> None:
+    assert (ends["crashes.py"].verdict, ends["crashes.py"].acted) == (Verdict.KILLED, 1)
+
+
+def test_a_process_that_the_test_ends_by_a_program_is_judged_by_the_test(ends: dict[str, Outcome]) -> None:
+    assert (ends["stays.py"].verdict, ends["stays.py"].acted) == (Verdict.KILLED, 1)
+
+
+def test_a_process_that_never_ends_times_out(ends: dict[str, Outcome]) -> None:
+    assert ends["endless.py"].verdict is Verdict.TIMEOUT
+    assert "operations" in (ends["endless.py"].message or "")
+
+
+def test_an_environment_of_its_own_does_not_hide_a_process(ends: dict[str, Outcome]) -> None:
+    assert ends["bare.py"].verdict is Verdict.KILLED
+
+
+@pytest.mark.whole
 def test_a_process_that_somebody_else_kills_says_nothing_about_its_mutant(tmp_path: Path) -> None:
     tests = """
         import os
@@ -98,16 +172,14 @@ def test_a_process_that_somebody_else_kills_says_nothing_about_its_mutant(tmp_pa
             assert mission.wait() == 0
     """
     with killer():
-        found = ends_of(tmp_path, STAYS, tests)["<module>:arm.move_by#1:dx:reverse"]
+        found = ends_of(tmp_path, SCRIPTS["stays.py"], tests)["<module>:arm.move_by#1:dx:reverse"]
     assert found.verdict is Verdict.ERROR
     assert found.message == "the process mission.py was killed from outside, by signal 9"
 
 
-@pytest.mark.parametrize("command", ['["sh", "-c", f"kill -9 {mission.pid}"]', '["kill", str(mission.pid)]'])
-def test_a_process_that_the_test_ends_by_a_program_is_judged_by_the_test(
-    tmp_path: Path, command: str
-) -> None:
-    tests = f"""
+@pytest.mark.whole
+def test_a_process_that_the_test_ends_by_a_command_is_judged_by_the_test(tmp_path: Path) -> None:
+    tests = """
         import subprocess
         import sys
 
@@ -115,13 +187,14 @@ def test_a_process_that_the_test_ends_by_a_program_is_judged_by_the_test(
             mission = subprocess.Popen([sys.executable, "mission.py"], stdout=subprocess.PIPE, text=True)
             for line in mission.stdout:
                 if float(line) < 0:
-                    subprocess.run({command}, check=True)
+                    subprocess.run(["kill", str(mission.pid)], check=True)
             assert mission.wait() == 0
     """
-    found = ends_of(tmp_path, STAYS, tests)["<module>:arm.move_by#1:dx:reverse"]
+    found = ends_of(tmp_path, SCRIPTS["stays.py"], tests)["<module>:arm.move_by#1:dx:reverse"]
     assert (found.verdict, found.acted) == (Verdict.KILLED, 1)
 
 
+@pytest.mark.whole
 def test_a_process_that_fails_before_the_mutant_acts_is_an_error(tmp_path: Path) -> None:
     mission = """
         import os
@@ -152,22 +225,6 @@ def test_a_process_that_fails_before_the_mutant_acts_is_an_error(tmp_path: Path)
     assert all("ended before the mutant changed anything" in (one.message or "") for one in failed)
 
 
-def test_a_process_that_never_ends_times_out(tmp_path: Path) -> None:
-    mission = """
-        from robot import Arm
-
-        arm = Arm()
-        arm.move_by(0.5)
-        while arm.position() < 0:
-            pass
-        print(arm.x)
-    """
-    found = ends_of(tmp_path, mission)["<module>:arm.move_by#1:dx:reverse"]
-    assert found.verdict is Verdict.TIMEOUT
-    assert found.message is not None
-    assert "operations" in found.message
-
-
 def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
     tests = """
         import subprocess
@@ -196,28 +253,8 @@ def test_what_keeps_apart_from_the_campaign_is_told(tmp_path: Path) -> None:
     assert "-I" in notes[0]
 
 
-def test_an_environment_of_its_own_does_not_hide_a_process(tmp_path: Path) -> None:
-    tests = """
-        import os
-        import subprocess
-        import sys
-
-        def test_bare():
-            bare = {"PATH": os.environ["PATH"], "PYTHONPATH": "elsewhere"}
-            assert subprocess.check_output([sys.executable, "mission.py"], env=bare) == b"0.5\\n"
-    """
-    mission = """
-        from robot import Arm
-
-        arm = Arm()
-        arm.move_by(0.5)
-        print(arm.x)
-    """
-    found = ends_of(tmp_path, mission, tests)["<module>:arm.move_by#1:dx:reverse"]
-    assert found.verdict is Verdict.KILLED
-
-
 @pytest.mark.needs("source")
+@pytest.mark.whole
 def test_a_script_sees_itself_as_ever_when_its_text_is_mutated(tmp_path: Path) -> None:
     mission = '''
         """What it does."""

@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.errors import MutabotError
 from mutabot.model import By, Outcome, Verdict
-from tests.campaign.project import run, write_project
+from tests.campaign.project import REPLAY, run, write_project
 
 pytestmark = pytest.mark.usefixtures("plugins")
 
@@ -70,7 +70,7 @@ def is_killed_by_the_test(outcome: Outcome) -> bool:
     return outcome.verdict is Verdict.KILLED and outcome.by is By.CHECK
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["branch", REPLAY])
 @pytest.mark.parametrize("more", ["", "-p xdist -p pytest_cov.plugin -p no:cacheprovider -d"])
 def test_options_settings_markers_fixtures_and_hooks_of_plugins_are_accepted_and_without_effect(
     tmp_path: Path, engine: str, more: str

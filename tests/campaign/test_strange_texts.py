@@ -114,6 +114,7 @@ print(json.dumps({mutant: one.verdict for mutant, one in found.items()}))
 """
 
 
+@pytest.mark.whole
 def test_a_project_on_a_file_system_mounted_below_the_temporary_folder(tmp_path: Path) -> None:
     folder = tmp_path / "mounted \u00fc here"
     folder.mkdir()

@@ -92,6 +92,7 @@ def test_a_mutant_cannot_write_its_own_mark(tmp_path: Path, harmless: Verdicts) 
     assert "no test writes into .mutabot" in decision.lines[0]
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("deed", [DELETE, DELETE_JOURNAL], ids=["folder", "journal"])
 def test_deleting_the_journal_costs_at_most_the_mutants_that_ran_then(
     tmp_path: Path, harmless: Verdicts, deed: str
@@ -106,6 +107,7 @@ def test_deleting_the_journal_costs_at_most_the_mutants_that_ran_then(
     assert any("it was written again, nothing is lost" in line for line in said)
 
 
+@pytest.mark.whole
 def test_recordings_that_are_spoiled_cost_no_outcome(tmp_path: Path, harmless: Verdicts) -> None:
     results, said = run(project(tmp_path, SPOIL_RECORDINGS))
     assert verdicts(results) == harmless
@@ -113,6 +115,7 @@ def test_recordings_that_are_spoiled_cost_no_outcome(tmp_path: Path, harmless: V
     assert not [line for line in said if "Traceback" in line]
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("name", ["journal.sqlite", "journal-evidence.sqlite"])
 def test_processes_of_tests_are_not_told_where_the_journal_is(tmp_path: Path, name: str) -> None:
     look = f"""

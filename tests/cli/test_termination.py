@@ -49,6 +49,7 @@ def marked(mark: str) -> list[str]:
     return found
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("engine", ["branch", "replay"])
 def test_a_campaign_that_is_terminated_ends_cleanly_and_goes_on_later(
     tmp_path: Path, engine: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -30,6 +30,7 @@ def differential() -> ModuleType:
     return module
 
 
+@pytest.mark.whole
 def test_every_mutant_of_scales_ends_the_same_in_both_engines() -> None:
     words = [sys.executable, str(COMMAND), "--examples", "scales", "--rounds", "1", "--json"]
     done = subprocess.run(words, capture_output=True, text=True, check=False)

@@ -118,6 +118,7 @@ def test_every_mutant_ends_as_it_must(journal: Journal) -> None:
     assert ends == EXPECTED
 
 
+@pytest.mark.whole
 def test_the_same_program_as_a_script_in_a_process_of_its_own_ends_alike(project: Path) -> None:
     configuration = load_configuration(project / "script")
     vocabulary = load(configuration.vocabulary, configuration.root)

@@ -36,9 +36,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize(
-    "files", [["test_functions.py"], pytest.param(list(TESTS), marks=pytest.mark.whole)], ids=["one", "all"]
-)
+@pytest.mark.whole
+@pytest.mark.parametrize("files", [["test_functions.py"], list(TESTS)], ids=["one", "all"])
 def test_what_is_suggested_kills_when_it_is_applied(
     files: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -29,6 +31,7 @@ from tests.campaign.project import (
     run,
     write_project,
 )
+from tests.campaign.scripted import CHECKED, Run, Script
 
 MISSION = """
     def run(arm):
@@ -106,8 +109,8 @@ def test_check_tells_a_clock_that_never_ticks(tmp_path: Path) -> None:
     ("ending", "words"),
     [
         ("os._exit(0)", "exit code 0"),
-        ("os.kill(os.getpid(), 9)", "signal 9"),
-        ("bytearray(10**11)", "memory"),
+        pytest.param("os.kill(os.getpid(), 9)", "signal 9", marks=pytest.mark.whole),
+        pytest.param("bytearray(10**11)", "memory", marks=pytest.mark.whole),
     ],
 )
 def test_an_original_that_does_not_live_to_the_end_stops_the_campaign(
@@ -136,19 +139,10 @@ def test_a_result_path_that_does_not_fit_what_was_recorded_is_an_error(tmp_path:
     assert stopped(tmp_path, ConfigurationError, "no .y").exit_code == 2
 
 
-def test_a_flaky_test_is_set_aside_and_named(tmp_path: Path) -> None:
-    tests = (
-        TESTS
-        + """
-    def test_flaky():
-        import pathlib
-        marker = pathlib.Path(__file__).parent.parent / ".mutabot" / "marker"
-        first = not marker.exists()
-        marker.touch()
-        mission.run(Arm())
-        assert first
-    """
-    )
+def test_a_flaky_test_is_set_aside_and_named(tmp_path: Path, script: Script) -> None:
+    script.original = lambda run: CHECKED if "flaky" in run.test and run.before else {}
+    script.mutated = lambda run: CHECKED
+    tests = TESTS + "\n    def test_flaky():\n        mission.run(Arm())\n"
     write_project(tmp_path, MISSION, tests)
     progress = Quiet()
     path = run_campaign(request_for(tmp_path), progress)
@@ -170,18 +164,9 @@ def test_check_tells_what_the_vocabulary_names_and_no_test_reaches(tmp_path: Pat
     assert any("unused" in line for line in report.lines)
 
 
-def test_a_test_that_cannot_fail_fails_the_fatal_control(tmp_path: Path) -> None:
-    tests = """
-        import mission
-        from robot import Arm
-
-        def test_nothing():
-            try:
-                mission.run(Arm())
-            except BaseException:
-                pass
-    """
-    write_project(tmp_path, MISSION, tests)
+def test_a_test_that_cannot_fail_fails_the_fatal_control(tmp_path: Path, script: Script) -> None:
+    script.control = lambda run: {"acted": int(run.mutant is not None and run.mutant.operator == "fatal")}
+    write_project(tmp_path, MISSION, TESTS)
     error = stopped(tmp_path, ControlError, "fatal control")
     assert error.exit_code == 4
 
@@ -220,11 +205,23 @@ def test_the_robots_state_is_its_own_in_every_process(tmp_path: Path) -> None:
     assert {outcome.verdict for outcome in found.values()} == {Verdict.KILLED}
 
 
-def test_a_test_that_passes_only_after_another_is_judged_by_the_whole_suite(tmp_path: Path) -> None:
+def test_a_test_that_passes_only_after_another_is_judged_by_the_whole_suite(
+    tmp_path: Path, script: Script
+) -> None:
     """Run alone it would fail, and every mutant it reaches would count as killed."""
+
+    def is_alone(run: Run) -> bool:
+        return len(run.tests) == 1 and run.test.endswith("finishes")
+
+    def ends(run: Run) -> Mapping[str, Any]:
+        is_noticed = run.test.endswith("prepares") and run.mutant is not None and ":prepare:" in run.mutant.id
+        return CHECKED if is_alone(run) or is_noticed else {}
+
+    script.control = lambda run: CHECKED if is_alone(run) else None
+    script.mutated = ends
     write_project(tmp_path, *DEPENDENT)
     progress = Quiet()
-    path = run_campaign(request_for(tmp_path), progress)
+    path = run_campaign(request_for(tmp_path, engine="replay"), progress)
     verdicts = {outcome.mutant.split(":")[1]: outcome.verdict for outcome in outcomes(path)}
     assert verdicts == {"prepare": Verdict.KILLED, "finish": Verdict.SURVIVED}
     assert any("whole suite" in line for line in progress.lines)

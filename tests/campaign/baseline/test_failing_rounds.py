@@ -16,7 +16,8 @@ from mutabot.inside.suite.plain_round import PlainRound
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict
 from mutabot.model.seed import derive
-from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
+from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, request_for, write_project
+from tests.campaign.scripted import CHECKED, Script
 
 MISSION = """
     def run(arm):
@@ -45,7 +46,7 @@ TESTS = """
         mission.run(Arm())
 """
 CHECKS = "tests/test_mission.py::test_checks"
-ENGINES = pytest.mark.parametrize("engine", ["replay", "branch"])
+ENGINES = pytest.mark.parametrize("engine", ["branch", REPLAY])
 
 
 def failing_rounds(seed: int, rounds: int) -> list[int]:
@@ -111,18 +112,23 @@ def check_with_plain_pytest(folder: Path, seed: int, bad: int, line: str) -> Non
     assert plain_pytest(folder, MUTABOT_ROUND=str(other), **variables).returncode == 0
 
 
-def test_more_failing_rounds_than_the_limit_allows_end_the_run(tmp_path: Path) -> None:
-    seed, bad = seed_with_one_failing_round(2)
+def failing(script: Script, round: int) -> None:
+    """Let the first test fail on the original in a round, and notice every mutant."""
+    script.original = lambda run: CHECKED if run.test == CHECKS and run.round == round else {}
+    script.mutated = lambda run: CHECKED if run.test == CHECKS else {}
+
+
+def test_more_failing_rounds_than_the_limit_allows_end_the_run(tmp_path: Path, script: Script) -> None:
+    failing(script, 1)
     write_project(tmp_path, MISSION, TESTS)
-    with pytest.raises(
-        UnstableError, match=rf"1 of 4 tests .*25%.*\n.*test_checks in round {bad + 1}: fails"
-    ):
-        campaign(tmp_path, rounds=2, seed=seed)
+    with pytest.raises(UnstableError, match=r"1 of 4 tests .*25%.*\n.*test_checks in round 2: fails"):
+        campaign(tmp_path, rounds=2)
 
 
-@ENGINES
-def test_a_test_that_fails_in_all_rounds_is_an_error(tmp_path: Path, engine: str) -> None:
-    write_project(tmp_path, MISSION, TESTS.replace("% 7 != 3", "< 0"))
+@pytest.mark.parametrize("engine", ["branch", "replay"])
+def test_a_test_that_fails_in_all_rounds_is_an_error(tmp_path: Path, script: Script, engine: str) -> None:
+    script.original = lambda run: CHECKED if run.test == CHECKS else {}
+    write_project(tmp_path, MISSION, TESTS)
     with pytest.raises(
         BaselineError, match="1 test fails on the unmutated program in all 2 rounds"
     ) as caught:
@@ -131,22 +137,14 @@ def test_a_test_that_fails_in_all_rounds_is_an_error(tmp_path: Path, engine: str
     assert f"repeat by MUTABOT_ROUND=1 pytest -o pythonpath=. {CHECKS}" in str(caught.value)
 
 
-def test_a_test_that_fails_by_chance_in_the_only_round_is_flaky(tmp_path: Path) -> None:
+def test_a_test_that_fails_by_chance_in_the_only_round_is_flaky(tmp_path: Path, script: Script) -> None:
     """With one run per round it would look as if it always failed."""
-    counter = """
-        import pathlib
-
-        COUNTER = pathlib.Path(__file__).parent.parent / ".mutabot" / "counter"
-
-        def test_flaky():
-            number = int(COUNTER.read_text() if COUNTER.exists() else 0) + 1
-            COUNTER.write_text(str(number))
-            assert number > 1
-    """
-    configuration = CONFIGURATION + "    unstable_limit = 0.5\n"
-    more = {"tests/test_other.py": counter}
+    flaky = "tests/test_other.py::test_flaky"
+    script.original = lambda run: CHECKED if run.test == flaky and not run.before else {}
+    script.mutated = lambda run: CHECKED
+    more = {"tests/test_other.py": "def test_flaky():\n    pass\n"}
     write_project(
-        tmp_path, MISSION, TESTS.replace("% 7 != 3", ">= 0"), configuration=configuration, more=more
+        tmp_path, MISSION, TESTS, configuration=CONFIGURATION + "    unstable_limit = 0.5\n", more=more
     )
     found, progress = campaign(tmp_path, engine="branch", rounds=1)
     assert found[0].verdict is Verdict.KILLED
@@ -156,13 +154,15 @@ def test_a_test_that_fails_by_chance_in_the_only_round_is_flaky(tmp_path: Path) 
     )
 
 
-def test_a_site_that_only_a_failing_test_reaches_is_not_called_uncovered(tmp_path: Path) -> None:
-    seed, bad = seed_with_one_failing_round(2)
+def test_a_site_that_only_a_failing_test_reaches_is_not_called_uncovered(
+    tmp_path: Path, script: Script
+) -> None:
+    failing(script, 1)
     tests = TESTS.partition("    def test_runs")[0] + "    def test_nothing():\n        pass\n"
     write_project(tmp_path, MISSION, tests, configuration=CONFIGURATION + "    unstable_limit = 0.5\n")
-    found, _ = campaign(tmp_path, rounds=2, seed=seed)
-    assert found[bad].verdict is Verdict.UNSTABLE
-    assert "set aside in this round, such as tests/test_mission.py::test_checks" in (found[bad].message or "")
+    found, _ = campaign(tmp_path, rounds=2)
+    assert found[1].verdict is Verdict.UNSTABLE
+    assert f"set aside in this round, such as {CHECKS}" in (found[1].message or "")
 
 
 @pytest.mark.parametrize(

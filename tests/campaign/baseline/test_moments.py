@@ -14,8 +14,7 @@ from mutabot.campaign.comparing.observation import Event, Observation, compare
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers.forkserver import _template
 from mutabot.model import Outcome, Probe, Verdict, Vocabulary
-from tests.campaign.engines.test_branching import both_engines
-from tests.campaign.project import ROBOT, VOCABULARY, Quiet, outcomes, request_for, write_project
+from tests.campaign.project import ROBOT, VOCABULARY, Quiet, by_branches, outcomes, request_for, write_project
 
 MISSION = """
     def run(arm):
@@ -59,7 +58,7 @@ def named(found: dict[tuple[str, int], Outcome], part: str) -> Outcome:
 
 
 def test_a_fault_that_is_seen_on_the_way_alone_is_told(tmp_path: Path) -> None:
-    found = both_engines(project(tmp_path))
+    found = by_branches(project(tmp_path))
     reverse = named(found, "move_by#1:dx:reverse")
     assert (reverse.verdict, reverse.indistinguishable) == (Verdict.SURVIVED, False)
     assert (reverse.distance, reverse.way) == (0.0, pytest.approx(500))

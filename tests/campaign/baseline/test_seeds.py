@@ -12,7 +12,7 @@ import pytest
 from mutabot.campaign.run import run_campaign
 from mutabot.inside.seeds import derive
 from mutabot.model import Verdict
-from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, outcomes, request_for, write_project
 
 MISSION = """
     def run(arm):
@@ -80,7 +80,7 @@ def expected(round: int) -> set[tuple[str, ...]]:
     }
 
 
-@pytest.mark.parametrize("engine", ["auto", "replay"])
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
 def test_a_shared_fixture_gets_the_seed_of_its_scope_and_a_test_its_own(
     tmp_path: Path, engine: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

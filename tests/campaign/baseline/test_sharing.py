@@ -279,7 +279,13 @@ def judged(folder: Path, engine: str) -> dict[str, Outcome]:
     return {outcome.mutant.rpartition(":")[2]: outcome for outcome in outcomes(path)}
 
 
-@pytest.mark.parametrize("suite", SUITES)
+#: those in the short run; all of them are in the long one
+SHORT = ("a module fixture",)
+
+
+@pytest.mark.parametrize(
+    "suite", [pytest.param(name, marks=() if name in SHORT else pytest.mark.whole) for name in SUITES]
+)
 def test_whoever_looks_judges(tmp_path: Path, suite: str) -> None:
     write_project(tmp_path, MISSION, SUITES[suite])
     found = judged(tmp_path, "auto")
@@ -288,6 +294,7 @@ def test_whoever_looks_judges(tmp_path: Path, suite: str) -> None:
     assert found["negate"].verdict is Verdict.SURVIVED
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("suite", ["a module fixture", "a simulator that the original puts back"])
 def test_replay_alone_says_the_same(tmp_path: Path, suite: str) -> None:
     write_project(tmp_path, MISSION, SUITES[suite])

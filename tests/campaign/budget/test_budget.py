@@ -119,6 +119,7 @@ def campaign(folder: Path, **changes: Any) -> Any:
         return read_results(journal)
 
 
+@pytest.mark.usefixtures("script")
 def test_a_spent_budget_leaves_the_rest_to_the_next_run(project: Path) -> None:
     results = campaign(project, budget=0.05)
     assert results.state == "out of time"
@@ -130,6 +131,7 @@ def test_a_spent_budget_leaves_the_rest_to_the_next_run(project: Path) -> None:
     assert (whole.state, whole.done, whole.budget) == ("complete", whole.planned, None)
 
 
+@pytest.mark.usefixtures("script")
 def test_a_budget_that_is_enough_gives_what_a_campaign_without_one_gives(project: Path) -> None:
     results = campaign(project, budget=600.0)
     assert results.state == "complete"
@@ -142,6 +144,7 @@ def test_a_budget_that_is_enough_gives_what_a_campaign_without_one_gives(project
     ]
 
 
+@pytest.mark.whole
 def test_what_is_under_way_when_the_time_is_up_gets_no_verdict(
     project: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

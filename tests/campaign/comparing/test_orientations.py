@@ -15,7 +15,7 @@ from mutabot.campaign.comparing.observation import OTHER_WORLD, Difference, Even
 from mutabot.errors import ConfigurationError
 from mutabot.model import Kind, Mode, Operation, Path, Probe, Quantity, Role, Site, Span, Vocabulary
 from mutabot.model.place import Place
-from tests.campaign.project import CONFIGURATION, run, write_project
+from tests.campaign.project import CONFIGURATION, REPLAY, run, write_project
 
 TARGET = "cell:Arm.tool"
 ROTATION_VECTOR = {"kind": Kind.ROTATION_VECTOR, "unit": "rad"}
@@ -180,7 +180,7 @@ VOCABULARY = """
 """
 
 
-@pytest.mark.parametrize("engine", ["replay", "branch"])
+@pytest.mark.parametrize("engine", ["branch", REPLAY])
 def test_a_survivor_that_is_turned_as_the_original_is_indistinguishable(
     engine: str, tmp_path: Folder
 ) -> None:

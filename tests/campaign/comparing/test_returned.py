@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.model import Outcome, Verdict
-from tests.campaign.engines.test_branching import both_engines
-from tests.campaign.project import VOCABULARY, write_project
+from tests.campaign.project import VOCABULARY, by_branches, write_project
 
 PROBED = VOCABULARY + '\n    [[probe]]\n    call = "robot:Arm.x"\n'
 MISSION = """
@@ -34,7 +33,7 @@ MISSION = """
 
 def survivors(folder: Path, tests: str) -> dict[str, Outcome]:
     """Survivors of the first round by their ids, equal for both engines."""
-    found = both_engines(write_project(folder, MISSION, tests, vocabulary=PROBED))
+    found = by_branches(write_project(folder, MISSION, tests, vocabulary=PROBED))
     return {mutant: one for (mutant, _), one in found.items() if one.verdict is Verdict.SURVIVED}
 
 
@@ -66,6 +65,7 @@ def test_a_mutant_that_changes_what_the_program_returns_can_be_told_apart(tmp_pa
     assert checked.divergence == ("check raised mission:Lost: at -0.25 only with the mutant",)
 
 
+@pytest.mark.whole
 def test_a_value_returned_to_a_fixture_is_compared(tmp_path: Path) -> None:
     """Also where the fixture is shared, so that in other runs another test sets it up."""
     tests = """
@@ -106,7 +106,7 @@ def test_notes_and_mutants_of_the_text_stand_in_the_same_functions(tmp_path: Pat
             mission.when(Arm(0.5))
     """
     folder = write_project(tmp_path, MISSION, tests, vocabulary=PROBED)
-    found = both_engines(folder, families=("robot", "classical"))
+    found = by_branches(folder, families=("robot", "classical"))
     returned = [one.divergence for (mutant, _), one in found.items() if "arm" not in mutant]
     assert any("run returned" in line for lines in returned for line in lines)
     negate = next(one for (mutant, _), one in found.items() if ":when:" in mutant and "negate" in mutant)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from textwrap import dedent
+from textwrap import indent
 from typing import Any
 
 import pytest
@@ -13,6 +13,7 @@ from mutabot.campaign.check import check
 from mutabot.campaign.run import run_campaign
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import CONFIGURATION, ROBOT, Quiet, outcomes, request_for, write_project
+from tests.campaign.scripted import CHECKED, Died, Script
 
 MISSION = """
     def approach(arm):
@@ -197,7 +198,12 @@ SUITES = {
 SHARING = ("fixtures of every scope", "unittest")
 
 
-@pytest.mark.parametrize("suite", SUITES)
+WHOLE = pytest.mark.whole
+
+
+@pytest.mark.parametrize(
+    "suite", [pytest.param(name, marks=() if name == "parametrised" else WHOLE) for name in SUITES]
+)
 def test_both_engines_agree(tmp_path: Path, suite: str) -> None:
     write_project(tmp_path, MISSION, SUITES[suite])
     found = both_engines(tmp_path)
@@ -206,6 +212,7 @@ def test_both_engines_agree(tmp_path: Path, suite: str) -> None:
     assert {outcome.verdict for outcome in found.values()} & {Verdict.KILLED, Verdict.SURVIVED}
 
 
+@WHOLE
 def test_settings_of_the_users_own_do_not_disturb(tmp_path: Path) -> None:
     more = {
         "pytest.ini": "[pytest]\naddopts = -x -s -v --strict-markers\nfilterwarnings = error\n",
@@ -231,71 +238,38 @@ def test_settings_of_the_users_own_do_not_disturb(tmp_path: Path) -> None:
     assert len(both_engines(tmp_path)) > 5
 
 
+#: what makes it unsafe to fork, as it is told, and what the test does before and after its mission
 UNSAFE = {
     "1 more thread": (
-        "import threading, time",
         "thread = threading.Thread(target=time.sleep, args=(0.4,)); thread.start()",
         "thread.join()",
     ),
-    "starts a process": ("import subprocess", "child = subprocess.Popen(['sleep', '0.5'])", "child.wait()"),
-    "open socket": ("import socket", "ends = socket.socketpair()", "[end.close() for end in ends]"),
+    "starts a process": ("child = subprocess.Popen(['sleep', '0.5'])", "child.wait()"),
+    "open socket": ("ends = socket.socketpair()", "[end.close() for end in ends]"),
+    "event loop": ("async def work():\n    mission.unsafe_3(Arm())\nasyncio.run(work())", "pass"),
 }
 
 
-@pytest.mark.parametrize("reason", UNSAFE)
-def test_where_forking_is_unsafe_the_test_falls_back_to_replay(tmp_path: Path, reason: str) -> None:
-    imports, before, after = UNSAFE[reason]
-    tests = f"""
-        {imports}
-        import mission
-        from robot import Arm
-
-        def test_unsafe():
-            {before}
-            arm = Arm()
-            mission.approach(arm)
-            {after or "pass"}
-            assert arm.x == 0.25
-
-        def test_safe():
-            arm = Arm()
-            mission.back_off(arm)
-            assert arm.x == -0.125
-    """
-    write_project(tmp_path, MISSION, tests)
+@pytest.mark.parametrize("reasons", [("1 more thread",), pytest.param(tuple(UNSAFE), marks=WHOLE)])
+def test_where_forking_is_unsafe_the_test_falls_back_to_replay(
+    tmp_path: Path, reasons: tuple[str, ...]
+) -> None:
+    mission = ["def safe(arm):\n    arm.move_by(-0.125)\n"]
+    tests = ["import asyncio, socket, subprocess, threading, time, mission\nfrom robot import Arm\n"]
+    tests.append("def test_safe():\n    mission.safe(Arm())\n")
+    for number, (before, after) in enumerate(UNSAFE[reason] for reason in reasons):
+        mission.append(f"def unsafe_{number}(arm):\n    arm.move_by(0.25)\n")
+        lines = [before, f"mission.unsafe_{number}(Arm())", after]
+        tests.append(f"def test_unsafe_{number}():\n{indent(chr(10).join(lines), '    ')}\n")
+    write_project(tmp_path, "\n".join(mission), "\n".join(tests))
     progress = Quiet()
-    path = run_campaign(request_for(tmp_path, engine="auto"), progress)
-    engines = {outcome.mutant.split(":")[1]: outcome.engine for outcome in outcomes(path)}
-    assert engines == {"approach": "replay", "back_off": "branch"}, progress.lines
-    assert any("test_unsafe" in line and reason in line for line in progress.lines)
-    report = check(request_for(tmp_path, engine="auto"), Quiet())
-    assert any("test_unsafe" in line and reason in line for line in report.lines)
-
-
-def test_a_running_event_loop_falls_back_to_replay(tmp_path: Path) -> None:
-    tests = """
-        import asyncio
-
-        import mission
-        from robot import Arm
-
-        def test_async():
-            arm = Arm()
-
-            async def work():
-                mission.approach(arm)
-
-            asyncio.run(work())
-            assert arm.x == 0.25
-    """
-    write_project(tmp_path, MISSION, tests)
-    found = both_engines_by_auto(tmp_path)
-    assert {outcome.engine for outcome in found} == {"replay"}
-
-
-def both_engines_by_auto(folder: Path) -> list[Outcome]:
-    path = run_campaign(request_for(folder, engine="auto"), Quiet())
-    return outcomes(path)
+    request = request_for(tmp_path, engine="auto", only=("*:reverse",))
+    engines = {one.mutant.split(":")[1]: one.engine for one in outcomes(run_campaign(request, progress))}
+    assert engines == {"safe": "branch", **{f"unsafe_{number}": "replay" for number in range(len(reasons))}}
+    report = check(request, Quiet())
+    for lines in (progress.lines, report.lines):
+        for number, reason in enumerate(reasons):
+            assert any(f"test_unsafe_{number}" in line and reason in line for line in lines), lines
 
 
 def test_asked_for_branches_alone_an_unsafe_test_is_an_error_and_no_kill(tmp_path: Path) -> None:
@@ -314,63 +288,42 @@ def test_asked_for_branches_alone_an_unsafe_test_is_an_error_and_no_kill(tmp_pat
     assert {outcome.verdict for outcome in outcomes(path)} == {Verdict.ERROR}
 
 
-def test_a_trunk_that_dies_leaves_its_mutants_to_replay(tmp_path: Path) -> None:
-    tests = dedent("""
-        import os
-        import pathlib
+TWO_TESTS = """
+    import mission
+    from robot import Arm
 
-        import mission
-        from robot import Arm
+    def test_a():
+        mission.back_off(Arm())
 
-        COUNTER = pathlib.Path(__file__).parent.parent / ".mutabot" / "counter"
+    def test_b():
+        mission.approach(Arm())
+        mission.look(Arm())
+"""
 
-        def test_a():
-            arm = Arm()
-            mission.back_off(arm)
-            assert arm.x == -0.125
 
-        def test_b():
-            COUNTER.write_text(str(int(COUNTER.read_text() if COUNTER.exists() else 0) + 1))
-            if COUNTER.read_text() == "2":  # the baseline is the first, the trunk the second
-                os._exit(3)
-            arm = Arm()
-            mission.approach(arm)
-            mission.look(arm)
-            assert arm.x == 0.25
-    """)
-    write_project(tmp_path, MISSION, tests)
+def test_a_trunk_that_dies_leaves_its_mutants_to_replay(tmp_path: Path, script: Script) -> None:
+    # the baseline is the first run, the trunk the second
+    script.original = lambda run: Died(3) if run.test.endswith("test_b") and run.before == 1 else {}
+    write_project(tmp_path, MISSION, TWO_TESTS)
     progress = Quiet()
     path = run_campaign(request_for(tmp_path, engine="auto"), progress)
     found = {outcome.mutant.split(":")[1]: outcome for outcome in outcomes(path)}
-    assert any("trunk of round 1 died" in line for line in progress.lines)
-    # branches die with their trunk, so what it shared with test_b may or may not have been settled
-    assert {found["approach"].engine, found["look"].engine} == {"replay"}
+    assert any("trunk of round 1 died: the process ended with exit code 3" in one for one in progress.lines)
+    assert {name: one.engine for name, one in found.items()} == {
+        "back_off": "branch", "approach": "replay", "look": "replay",
+    }  # fmt: skip
     assert Verdict.ERROR not in {outcome.verdict for outcome in found.values()}
 
 
-def test_a_test_that_fails_in_the_trunk_judges_no_mutant(tmp_path: Path) -> None:
-    tests = """
-        import pathlib
-
-        import mission
-        from robot import Arm
-
-        COUNTER = pathlib.Path(__file__).parent.parent / ".mutabot" / "counter"
-
-        def test_flaky():
-            COUNTER.write_text(str(int(COUNTER.read_text() if COUNTER.exists() else 0) + 1))
-            mission.approach(Arm())
-            assert COUNTER.read_text() == "1"
-
-        def test_sound():
-            arm = Arm()
-            mission.back_off(arm)
-            assert arm.x == -0.125
-    """
-    write_project(tmp_path, MISSION, tests)
+def test_a_test_that_fails_in_the_trunk_judges_no_mutant(tmp_path: Path, script: Script) -> None:
+    script.original = lambda run: CHECKED if run.test.endswith("test_b") and run.before else {}
+    script.mutated = lambda run: CHECKED
+    write_project(tmp_path, MISSION, TWO_TESTS)
     path = run_campaign(request_for(tmp_path, engine="auto"), Quiet())
     verdicts = {outcome.mutant.split(":")[1]: outcome.verdict for outcome in outcomes(path)}
-    assert verdicts == {"approach": Verdict.UNSTABLE, "back_off": Verdict.KILLED}
+    assert verdicts == {
+        "approach": Verdict.UNSTABLE, "look": Verdict.UNSTABLE, "back_off": Verdict.KILLED,
+    }  # fmt: skip
 
 
 BUSY = """

@@ -102,16 +102,24 @@ def alike(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 def test_mutants_that_are_alike_share_a_branch_until_they_differ(tmp_path: Path, alike: list[int]) -> None:
     write_project(tmp_path, MISSION, CHECK)
-    found = both(tmp_path)
-    assert {one.verdict for one in found.values()} >= {Verdict.KILLED}
+    found = run(tmp_path, engine="branch", families=("classical",), only=("*:is_far:*",))
+    assert {one.verdict for one in found.values()} == {Verdict.KILLED, Verdict.SURVIVED, Verdict.NO_EFFECT}
     assert alike, "no branch was several mutants"
 
 
+@pytest.mark.whole
+def test_mutants_that_share_a_branch_end_as_by_replay(tmp_path: Path) -> None:
+    write_project(tmp_path, MISSION, CHECK)
+    assert {one.verdict for one in both(tmp_path).values()} >= {Verdict.KILLED}
+
+
+@pytest.mark.whole
 def test_all_are_run_in_every_test_if_that_is_asked_for(tmp_path: Path) -> None:
     write_project(tmp_path, MISSION, CHECK)
     assert all(one.complete for one in both(tmp_path, every_test=True).values() if one.tests)
 
 
+@pytest.mark.whole
 def test_a_branch_of_several_that_dies_says_nothing_about_any_of_them(tmp_path: Path) -> None:
     write_project(tmp_path, DEADLY, DEADLY_CHECK)
     found = {engine: run(tmp_path, engine=engine, families=("classical",)) for engine in ("auto", "replay")}

@@ -12,34 +12,21 @@ from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers.task import Task
 from mutabot.errors import BaselineError, ControlError
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
+from tests.campaign.scripted import Died, Script
 
-#: hangs in what is neither the baseline nor a trunk: once, or always
+#: hangs in what is neither the baseline nor a trunk: these are copies of the process that imported it
 MISSION = """
     import os
-    import pathlib
     import time
 
-    HERE = pathlib.Path(__file__).parent / ".mutabot"
     IMPORTED_BY = os.getpid()
-    BASELINES, ALWAYS = {baselines}, {always}
-
-    def count():
-        file = HERE / "runs"
-        file.write_text(str(int(file.read_text() if file.exists() else 0) + 1))
-        return int(file.read_text())
-
-    def is_mutant():
-        if os.getpid() == IMPORTED_BY:
-            return count() > BASELINES
-        return os.getppid() != IMPORTED_BY
 
     def get_stuck():
-        (HERE / "stuck").touch()
         time.sleep(3600)
 
     def run(arm):
         arm.move_by(0.5)
-        if is_mutant() and (ALWAYS or not (HERE / "stuck").exists()):
+        if os.getppid() != IMPORTED_BY:
             get_stuck()
 """
 TESTS = """
@@ -62,27 +49,29 @@ def where() -> str:
     return f"it was at mission.py:{sleeps} get_stuck, {called}"
 
 
-ENGINES = pytest.mark.parametrize(("engine", "baselines"), [("replay", 2), ("branch", 0)])
-
-
 def project(folder: Path, mission: str) -> None:
     write_project(folder, mission, TESTS, configuration=CONFIGURATION + "    timeout_seconds = 2\n")
 
 
-@ENGINES
+@pytest.mark.parametrize("engine", ["replay", "branch"])
 def test_a_control_that_hangs_once_does_not_end_the_campaign(
-    tmp_path: Path, engine: str, baselines: int
+    tmp_path: Path, script: Script, engine: str
 ) -> None:
-    project(tmp_path, MISSION.format(baselines=baselines, always=False))
+    hangs = Died(overdue="no end after 2 s of wall clock", where=where())
+    script.control = lambda run: None if run.before else hangs
+    project(tmp_path, MISSION)
     progress = Quiet()
     run_campaign(request_for(tmp_path, engine=engine, only=("*:reverse",)), progress)
-    (line,) = [line for line in progress.lines if "ended wrongly once" in line]
-    assert line.startswith("the identity control of tests/test_mission.py::test_moves ended wrongly once")
-    assert where() in line
+    lines = [line for line in progress.lines if "ended wrongly once" in line]
+    assert {line.partition(" (")[0] for line in lines} == {
+        "the identity control of tests/test_mission.py::test_moves ended wrongly once",
+        "the fatal control of tests/test_mission.py ended wrongly once",
+    }
+    assert all(where() in line for line in lines)
 
 
 def test_a_control_that_hangs_twice_ends_the_campaign_and_says_where(tmp_path: Path) -> None:
-    project(tmp_path, MISSION.format(baselines=0, always=True))
+    project(tmp_path, MISSION)
     with pytest.raises(ControlError, match="no verdict of this campaign could be believed") as caught:
         run_campaign(request_for(tmp_path, engine="branch", only=("*:reverse",)), Quiet())
     assert where() in str(caught.value)

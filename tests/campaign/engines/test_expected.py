@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from mutabot.campaign.run import run_campaign
 from mutabot.model import By, Outcome, Verdict
-from tests.campaign.engines.test_branching import both_engines
-from tests.campaign.project import Quiet, outcomes, request_for, write_project
+from tests.campaign.project import Quiet, by_branches, outcomes, request_for, write_project
+from tests.campaign.scripted import Script
 
 FUNCTIONS = ("strict", "lenient", "typed", "busy", "maybe", "gives_up", "expected", "inverse")
 MISSION = "\n".join(f"def {name}(arm):\n    arm.move_by(0.25)\n" for name in FUNCTIONS)
@@ -99,7 +101,7 @@ def by_function(found: dict[tuple[str, int], Outcome]) -> dict[str, dict[str, Ou
 
 
 def test_all_that_makes_the_suite_fail_kills_and_nothing_else(tmp_path: Path) -> None:
-    found = by_function(both_engines(write_project(tmp_path, MISSION, TESTS)))
+    found = by_function(by_branches(write_project(tmp_path, MISSION, TESTS)))
     ends = {
         name: {operator: (one.verdict, one.by) for operator, one in row.items()}
         for name, row in found.items()
@@ -116,33 +118,28 @@ def test_all_that_makes_the_suite_fail_kills_and_nothing_else(tmp_path: Path) ->
     assert found["lenient"]["reverse"].divergence[0] == "the test ended xpassed instead of xfailed"
 
 
-FLICKERS = """
-    from pathlib import Path
-
+ONE_TEST = """
     import mission
-    import pytest
     from robot import Arm
 
-    COUNT = Path(__file__).parent.parent.parent / "count"
-
-    @pytest.mark.xfail
     def test_flickers():
         mission.strict(Arm())
-        times = len(COUNT.read_text()) if COUNT.exists() else 0
-        COUNT.write_text("x" * (times + 1))
-        assert times % 2
 """
 
 
-def test_a_test_that_may_fail_is_not_flaky_if_it_passes_now_and_then(tmp_path: Path) -> None:
-    folder = write_project(tmp_path / "project", MISSION, FLICKERS)
-    for engine in ("replay", "branch"):
-        progress = Quiet()
-        path = run_campaign(request_for(folder, engine=engine), progress)
-        assert not [line for line in progress.lines if "flaky" in line]
-        found = outcomes(path)
-        assert {outcome.verdict for outcome in found} == {Verdict.SURVIVED}
-        assert {outcome.indistinguishable for outcome in found} == {None}  # nobody knows
+@pytest.mark.parametrize("engine", ["replay", "branch"])
+def test_a_test_that_may_fail_is_not_flaky_if_it_passes_now_and_then(
+    tmp_path: Path, script: Script, engine: str
+) -> None:
+    script.original = lambda run: {"outcome": "xpassed" if run.before % 2 else "xfailed"}
+    script.mutated = lambda run: {"outcome": "xpassed"}
+    folder = write_project(tmp_path, MISSION, ONE_TEST)
+    progress = Quiet()
+    path = run_campaign(request_for(folder, engine=engine), progress)
+    assert not [line for line in progress.lines if "flaky" in line]
+    found = outcomes(path)
+    assert {outcome.verdict for outcome in found} == {Verdict.SURVIVED}
+    assert {outcome.indistinguishable for outcome in found} == {None}  # nobody knows
 
 
 DIVERGES = """
@@ -163,7 +160,7 @@ DIVERGES = """
 
 
 def test_a_test_in_which_the_simulator_is_to_fail_judges_nothing(tmp_path: Path) -> None:
-    found = both_engines(write_project(tmp_path, MISSION, DIVERGES))
+    found = by_branches(write_project(tmp_path, MISSION, DIVERGES))
     assert {(one.verdict, one.test) for one in found.values()} == {
         (Verdict.KILLED, "tests/test_mission.py::test_moves")
     }

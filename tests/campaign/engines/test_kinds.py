@@ -259,6 +259,7 @@ TEAR_DOWNS = """
 """
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("plugins")
 def test_an_assertion_in_a_shared_tear_down_is_a_check_and_a_watchdog_ends_in_a_time_out(
     tmp_path: Path,

@@ -11,6 +11,7 @@ from mutabot.campaign.engines import fresh, judge, trunk
 from mutabot.errors import JournalError
 from mutabot.model import Verdict
 from tests.campaign.project import run, write_project
+from tests.campaign.scripted import Script
 
 MISSION = "def run(arm):\n    arm.move_by(0.25)\n    arm.move_by(-0.5)\n    where = arm.position()\n"
 TESTS = """
@@ -26,7 +27,8 @@ CHOSEN = "mission.py:run:arm.move_by#2:dx:reverse"
 
 
 @pytest.fixture
-def project(tmp_path: Path) -> Path:
+def project(tmp_path: Path, script: Script) -> Path:
+    script.kill(CHOSEN, ":skip")
     return write_project(tmp_path, MISSION, TESTS)
 
 

@@ -12,6 +12,7 @@ from tests.campaign.project import Quiet, request_for, run_campaign
 from tests.packages.dask.clusters import ends, write
 
 
+@pytest.mark.whole
 def test_parts_find_what_one_trunk_finds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     project = write(tmp_path)
     request = request_for(project, engine="branch", rounds=2)

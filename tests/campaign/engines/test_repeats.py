@@ -20,22 +20,9 @@ from mutabot.journal.records import Repeated
 from mutabot.model import By, Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.place import Place
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+from tests.campaign.scripted import CHECKED, Script
 
-#: the test fails once for one of the mutants: in its branch, or in the first fresh process that runs it
 MISSION = """
-    import os
-    import pathlib
-
-    MARK = pathlib.Path(__file__).parent / ".mutabot" / "mark"
-    IMPORTED_BY = os.getpid()
-
-    def is_first():
-        if os.getpid() != IMPORTED_BY:
-            return True
-        first = not MARK.exists()
-        MARK.touch()
-        return first
-
     def run(arm):
         arm.move_by(0.25)
         arm.move_by(-0.0625)
@@ -48,18 +35,15 @@ TESTS = """
     def test_flaky():
         arm = Arm()
         mission.run(arm)
-        assert arm.x != 0.34375 or not mission.is_first()
+        assert arm.x > 0
 """
 FLAKY = "tests/test_mission.py::test_flaky"
-#: the one that takes the arm to 0.34375
+#: the one that is noticed, or was once
 FALSE = "mission.py:run:arm.move_by#2:dx:reverse"
 ENGINES = pytest.mark.parametrize("engine", ["replay", "branch"])
 
 
 def campaign(folder: Path, **changes: Any) -> tuple[Results, dict[str, Outcome], Quiet]:
-    if changes.get("engine") == "branch":
-        (folder / ".mutabot").mkdir(exist_ok=True)
-        (folder / ".mutabot" / "mark").touch()
     progress = Quiet()
     path = run_campaign(request_for(folder, **changes), progress)
     with Journal.open(path) as journal:
@@ -68,7 +52,10 @@ def campaign(folder: Path, **changes: Any) -> tuple[Results, dict[str, Outcome],
 
 
 @ENGINES
-def test_a_kill_in_doubt_that_does_not_come_out_again_is_unstable(tmp_path: Path, engine: str) -> None:
+def test_a_kill_in_doubt_that_does_not_come_out_again_is_unstable(
+    tmp_path: Path, script: Script, engine: str
+) -> None:
+    script.mutated = lambda run: CHECKED if run.mutant.id == FALSE and not run.before else {}
     write_project(tmp_path, MISSION, TESTS)
     results, found, progress = campaign(tmp_path, engine=engine, repeats=True)
     assert {one.verdict for mutant, one in found.items() if mutant != FALSE} == {Verdict.SURVIVED}
@@ -83,7 +70,10 @@ def test_a_kill_in_doubt_that_does_not_come_out_again_is_unstable(tmp_path: Path
     assert (estimate.expected, estimate.low, estimate.high, estimate.known) == (0.0, 0, 0, 0)
 
 
-def test_repeats_beyond_their_time_are_left_and_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_repeats_beyond_their_time_are_left_and_told(
+    tmp_path: Path, script: Script, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script.kill(FALSE)
     monkeypatch.setattr(repeats, "SECONDS", 0.0)
     monkeypatch.setattr(repeats, "SHARE", 0.0)
     write_project(tmp_path, MISSION, TESTS)
@@ -93,8 +83,11 @@ def test_repeats_beyond_their_time_are_left_and_told(tmp_path: Path, monkeypatch
     assert (results.repeats.doubted, false_kills(results.repeats)) == (Repeated(1, 0, 0), None)
 
 
-def test_a_kill_that_came_out_again_is_not_repeated_by_the_next_campaign(tmp_path: Path) -> None:
-    write_project(tmp_path, MISSION, TESTS.replace("or not mission.is_first()", ""))
+def test_a_kill_that_came_out_again_is_not_repeated_by_the_next_campaign(
+    tmp_path: Path, script: Script
+) -> None:
+    script.kill(FALSE)
+    write_project(tmp_path, MISSION, TESTS)
     _, found, progress = campaign(tmp_path, repeats=True)
     assert (found[FALSE].verdict, found[FALSE].repeats) == (Verdict.KILLED, 1)
     assert "repeats: 1 of 1 kills in doubt come out again" in progress.lines
@@ -104,29 +97,12 @@ def test_a_kill_that_came_out_again_is_not_repeated_by_the_next_campaign(tmp_pat
     assert results.repeats.certain == 1
 
 
-def test_more_runs_of_the_baseline_find_a_test_that_fails_at_random(tmp_path: Path) -> None:
-    tests = """
-        import pathlib
-
-        import mission
-        from robot import Arm
-
-        COUNTER = pathlib.Path(__file__).parent.parent / ".mutabot" / "counter"
-
-        def test_third_time():
-            COUNTER.write_text(str(int(COUNTER.read_text() if COUNTER.exists() else 0) + 1))
-            assert COUNTER.read_text() != "3"
-
-        def test_moves():
-            arm = Arm()
-            mission.run(arm)
-            assert arm.x == 0.21875
-    """
-    write_project(tmp_path, MISSION, tests, configuration=CONFIGURATION + "    unstable_limit = 0.5\n")
+def test_more_runs_of_the_baseline_find_a_test_that_fails_at_random(tmp_path: Path, script: Script) -> None:
+    script.original = lambda run: CHECKED if run.test == FLAKY and run.before == 2 else {}
+    more = TESTS[TESTS.index("    def") :].replace("test_flaky", "test_moves")
+    write_project(tmp_path, MISSION, TESTS + more, configuration=CONFIGURATION + "    unstable_limit = 0.5\n")
     _, _, progress = campaign(tmp_path, only=("*:reverse",), baseline=3)
-    assert any(
-        "set aside in round 1: tests/test_mission.py::test_third_time" in one for one in progress.lines
-    )
+    assert any(f"set aside in round 1: {FLAKY}" in one for one in progress.lines)
 
 
 # What is in doubt

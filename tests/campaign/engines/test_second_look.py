@@ -1,4 +1,4 @@
-"""A second look at outcomes: real projects, some of which are not the same twice on purpose."""
+"""A second look at outcomes, some of which are not the same twice on purpose."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from mutabot.journal.journal import Journal
 from mutabot.model import By, Outcome, Verdict
 from mutabot.model.outcome import same_end
 from tests.campaign.project import CONFIGURATION, DEPENDENT, Quiet, outcomes, request_for, write_project
+from tests.campaign.scripted import CHECKED, CRASHED, Script
 
 MISSION = """
     def run(arm):
@@ -34,29 +35,7 @@ TESTS = """
         mission.run(arm)
         assert arm.x == 0.25
 """
-#: the last command ends elsewhere in one process of its kind than in the next
-RESTLESS = """
-    import pathlib
-
-    COUNTER = pathlib.Path(__file__).parent / ".mutabot" / "counter"
-
-    def times():
-        number = int(COUNTER.read_text()) + 1 if COUNTER.exists() else 1
-        COUNTER.write_text(str(number))
-        return number
-
-    def run(arm):
-        arm.move_by(0.5)
-        if arm.x < 0 and times() > 1:
-            raise RuntimeError("it went wrong this time")
-"""
-RESTLESS_TESTS = """
-    import mission
-    from robot import Arm
-
-    def test_runs():
-        mission.run(Arm())
-"""
+FLAKY, SOUND = "tests/test_mission.py::test_flaky", "tests/test_mission.py::test_sound"
 ENGINES = pytest.mark.parametrize("engine", ["replay", "branch"])
 
 
@@ -68,7 +47,8 @@ def campaign(folder: Path, **changes: Any) -> tuple[Results, Quiet]:
 
 
 @ENGINES
-def test_verify_agrees_on_a_deterministic_program(tmp_path: Path, engine: str) -> None:
+def test_verify_agrees_on_a_deterministic_program(tmp_path: Path, script: Script, engine: str) -> None:
+    script.kill("reverse")
     write_project(tmp_path, MISSION, TESTS)
     results, progress = campaign(tmp_path, engine=engine, verify=100, only=("*:reverse", "*:negate"))
     assert results.verification is not None
@@ -79,20 +59,25 @@ def test_verify_agrees_on_a_deterministic_program(tmp_path: Path, engine: str) -
 
 
 @ENGINES
-def test_verify_finds_an_outcome_that_a_second_run_does_not_have(tmp_path: Path, engine: str) -> None:
-    write_project(tmp_path, RESTLESS, RESTLESS_TESTS)
-    results, _ = campaign(tmp_path, engine=engine, verify=100, only=("*:reverse",))
+def test_verify_finds_an_outcome_that_a_second_run_does_not_have(
+    tmp_path: Path, script: Script, engine: str
+) -> None:
+    script.mutated = lambda run: CRASHED if run.before else {}
+    write_project(tmp_path, MISSION, TESTS)
+    results, _ = campaign(tmp_path, engine=engine, verify=100, only=("*move_by#1*:reverse",))
     assert results.verification is not None
     (wrong,) = results.verification.disagreements
     assert wrong.first == "survived"
-    assert wrong.second == "killed by exception in tests/test_mission.py::test_runs: it went wrong this time"
+    assert wrong.second == "killed by exception in tests/test_mission.py::test_moves: it went wrong"
     assert results.mutants[0].outcomes[0].verdict is Verdict.SURVIVED  # what was found first stays
     decision = decide(results)
     assert decision.exit_code == 4
     assert any(wrong.mutant in line for line in decision.lines)
 
 
-def test_tests_that_pass_only_together_are_verified_together(tmp_path: Path) -> None:
+def test_tests_that_pass_only_together_are_verified_together(tmp_path: Path, script: Script) -> None:
+    script.control = lambda run: CRASHED if len(run.tests) == 1 and "finishes" in run.test else None
+    script.mutated = lambda run: CRASHED if len(run.tests) == 1 and "finishes" in run.test else {}
     write_project(tmp_path, *DEPENDENT)
     results, _ = campaign(tmp_path, engine="replay", verify=100, only=("*:reverse", "*:negate"))
     assert results.verification is not None
@@ -100,31 +85,18 @@ def test_tests_that_pass_only_together_are_verified_together(tmp_path: Path) -> 
     assert results.verification.disagreements == ()
 
 
-def flaky_project(folder: Path, limit: float) -> None:
-    tests = """
-        import pathlib
-
-        import mission
-        from robot import Arm
-
-        COUNTER = pathlib.Path(__file__).parent.parent / ".mutabot" / "counter"
-
-        def test_flaky():
-            COUNTER.write_text(str(int(COUNTER.read_text() if COUNTER.exists() else 0) + 1))
-            mission.run(Arm())
-            assert COUNTER.read_text() == "1"
-
-        def test_sound():
-            arm = Arm()
-            mission.run(arm)
-            assert arm.x == 0.25
-    """
+def flaky_project(folder: Path, script: Script, limit: float) -> None:
+    """One of its two tests passes only the first time."""
+    tests = TESTS.replace("test_moves", "test_flaky") + TESTS[TESTS.index("    def") :].replace(
+        "test_moves", "test_sound"
+    )
+    script.original = lambda run: CHECKED if run.test == FLAKY and run.before else {}
     configuration = f"{CONFIGURATION}    unstable_limit = {limit}\n"
     write_project(folder, MISSION, tests, configuration=configuration)
 
 
-def test_flaky_tests_beyond_the_limit_stop_the_run_before_any_mutant(tmp_path: Path) -> None:
-    flaky_project(tmp_path, 0.4)
+def test_flaky_tests_beyond_the_limit_stop_the_run_before_any_mutant(tmp_path: Path, script: Script) -> None:
+    flaky_project(tmp_path, script, 0.4)
     with pytest.raises(
         UnstableError, match=r"1 of 2 tests cannot be relied on \(50%\)(.|\n)*test_flaky"
     ) as caught:
@@ -134,8 +106,8 @@ def test_flaky_tests_beyond_the_limit_stop_the_run_before_any_mutant(tmp_path: P
     assert outcomes(tmp_path / ".mutabot" / "journal.sqlite") == []
 
 
-def test_flaky_tests_that_a_trunk_finds_beyond_the_limit_fail_the_run(tmp_path: Path) -> None:
-    flaky_project(tmp_path, 0.4)
+def test_flaky_tests_that_a_trunk_finds_beyond_the_limit_fail_the_run(tmp_path: Path, script: Script) -> None:
+    flaky_project(tmp_path, script, 0.4)
     results, progress = campaign(tmp_path, engine="branch")
     assert any("set aside as flaky" in line and "test_flaky" in line for line in progress.lines)
     decision = decide(results, max_unstable=0.4)
@@ -144,8 +116,10 @@ def test_flaky_tests_that_a_trunk_finds_beyond_the_limit_fail_the_run(tmp_path: 
 
 
 @ENGINES
-def test_flaky_tests_within_the_limit_are_named_in_the_results(tmp_path: Path, engine: str) -> None:
-    flaky_project(tmp_path, 0.5)
+def test_flaky_tests_within_the_limit_are_named_in_the_results(
+    tmp_path: Path, script: Script, engine: str
+) -> None:
+    flaky_project(tmp_path, script, 0.5)
     results, _ = campaign(tmp_path, engine=engine)
     assert [line.partition(" in ")[0] for line in results.flaky.tests] == [
         "tests/test_mission.py::test_flaky"
@@ -153,28 +127,32 @@ def test_flaky_tests_within_the_limit_are_named_in_the_results(tmp_path: Path, e
     assert results.flaky.share == 0.5
 
 
-def test_the_command_line_verifies_and_replays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    write_project(tmp_path, RESTLESS, RESTLESS_TESTS)
-    assert main(["-C", str(tmp_path), "run", "--only", "*:reverse", "--verify", "5"]) == 4
+def test_the_command_line_verifies_and_replays(
+    tmp_path: Path, script: Script, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script.mutated = lambda run: CRASHED if run.before else {}
+    write_project(tmp_path, MISSION, TESTS)
+    assert main(["-C", str(tmp_path), "run", "--only", "*move_by#1*:reverse", "--verify", "5"]) == 4
     out, err = capsys.readouterr()
     assert "Verified: 0 of 1 outcomes end the same in fresh processes" in out
     assert "mutant 1 (mission.py:run:arm.move_by#1:dx:reverse), round 1" in err
+    script.mutated = lambda run: CRASHED
     assert main(["-C", str(tmp_path), "replay", "1", "--round", "1"]) == 4
     out, _ = capsys.readouterr()
     assert "Round 1: otherwise than in the journal" in out
-    assert "it went wrong this time" in out
+    assert "it went wrong" in out
     assert main(["-C", str(tmp_path), "replay", "1", "--json"]) == 4
     (one,) = json.loads(capsys.readouterr().out)["rounds"]
     assert (one["round"], one["agrees"]) == (1, False)
     assert (one["journal"]["verdict"], one["replay"]["verdict"]) == ("survived", "killed")
-    (tmp_path / ".mutabot" / "counter").unlink()
+    script.mutated = lambda run: {}
     assert main(["-C", str(tmp_path), "replay", "1"]) == 0
     assert "Round 1: as in the journal" in capsys.readouterr().out
     assert main(["-C", str(tmp_path), "replay", "1", "--round", "2"]) == 2
 
 
 def test_replay_finds_a_mutant_that_edits_elsewhere_have_moved(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, script: Script, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_project(tmp_path, MISSION, TESTS)
     assert main(["-C", str(tmp_path), "run", "--only", "*:reverse"]) == 0

@@ -19,7 +19,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers import workers
 from mutabot.campaign.workers.workers import Workers
 from mutabot.model import Outcome, Verdict
-from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
+from tests.campaign.project import CONFIGURATION, REPLAY, Quiet, outcomes, request_for, write_project
 
 PROCESSOR = min(os.sched_getaffinity(0))
 LOOP = "while True: pass"
@@ -107,9 +107,10 @@ def flag() -> Iterator[Path]:
     path.unlink(missing_ok=True)
 
 
-ENGINES = ["branch", pytest.param("replay", marks=pytest.mark.whole)]
+ENGINES = ["branch", REPLAY]
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_mutant_that_is_kept_from_the_processor_gets_its_time(engine: str, tmp_path: Path) -> None:
     with loops():
@@ -118,6 +119,7 @@ def test_a_mutant_that_is_kept_from_the_processor_gets_its_time(engine: str, tmp
     assert found.wall > LIMIT
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("plugins")
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(
@@ -178,6 +180,7 @@ def test_who_had_too_little_time_is_not_judged() -> None:
     assert _ruling(Run(mutant, 0, ("test",), death=death))[0] is Verdict.TIMEOUT
 
 
+@pytest.mark.whole
 def test_time_in_the_queue_is_not_used() -> None:
     with loops(10) as (one, *_):
         used = TimeUsed.from_now([one])
@@ -190,13 +193,14 @@ def test_time_in_the_queue_is_not_used() -> None:
         assert used.left(passed / time_used.MOST, [one]) <= 0  # whatever it had
 
 
-def test_time_asleep_is_used() -> None:
+def test_time_asleep_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(time_used, "MOST", 1e9)  # whatever else would end the loop
     process = subprocess.Popen(["sleep", "600"])
     try:
         used = TimeUsed.from_now([process.pid])
         while used.left(0.5, [process.pid]) > 0:
             pass
-        assert 0.5 <= time_used.monotonic() - used.began < 0.5 * time_used.MOST
+        assert time_used.monotonic() - used.began >= 0.5
     finally:
         process.kill()
         process.wait()

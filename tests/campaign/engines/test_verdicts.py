@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.model import By, Outcome, Verdict
-from tests.campaign.project import ROBOT, fingerprint, run, write_project
+from tests.campaign.project import REPLAY, ROBOT, fingerprint, run, write_project
 
 MISSION = """
     import os
@@ -166,7 +166,7 @@ EXPECTED = {
 }
 
 
-@pytest.fixture(scope="module", params=["replay", "branch"])
+@pytest.fixture(scope="module", params=["branch", REPLAY])
 def campaign(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, dict[str, Outcome], dict[str, str]]:

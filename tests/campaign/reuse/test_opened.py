@@ -81,6 +81,7 @@ def test_a_watch_that_missed_something_knows_nothing(tmp_path: Path) -> None:
     assert watch.opened is None
 
 
+@pytest.mark.whole
 def test_notes_count_if_they_are_opened_or_beside_one_that_is_or_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import errno
 import json
 import os
@@ -10,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,18 +17,15 @@ import pytest
 
 import mutabot
 from mutabot.analysis.results import Results, read_results
-from mutabot.campaign import beginning
 from mutabot.campaign import run as campaign
-from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import changes
 from mutabot.campaign.reuse.snapshot import Snapshot
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.sink import Sink
 from mutabot.errors import BaselineError, JournalError, NothingToDoError, SelectionError
 from mutabot.journal.journal import Journal
-from mutabot.model import Mutant, Outcome, Verdict
+from mutabot.model import Outcome, Verdict
 from tests.campaign.project import Quiet, request_for, write_project
+from tests.campaign.scripted import CHECKED, Run, Script
 from tests.journal.edited import edited
 
 MISSION = """
@@ -108,77 +104,58 @@ class Project:
 
 
 @pytest.fixture
-def project(tmp_path: Path) -> Project:
+def project(tmp_path: Path, script: Script) -> Project:
+    """One whose campaigns start no process, as what is reused does not depend on how mutants are run."""
+    script.kill("reverse")
     return Project(tmp_path)
 
 
 @pytest.fixture
-def quick(project: Project, monkeypatch: pytest.MonkeyPatch) -> Project:
-    """The same without running mutants, and without running the baseline twice, for edits that keep it."""
-    known: dict[Any, Any] = {}
-    take = beginning.take_baseline
-
-    def baseline(request: Request, *arguments: Any, **options: Any) -> Any:
-        key = (request.rounds, request.seed, request.families)
-        if key not in known:
-            known[key] = take(request, *arguments, **options)
-        return copy.deepcopy(known[key])
-
-    def run_mutants(
-        under_way: Campaign, mutants: list[Mutant], sink: Sink, done: Collection[Pair] = ()
-    ) -> None:
-        for round in range(under_way.request.rounds):
-            for mutant in mutants:
-                if (mutant.id, round) not in done:
-                    sink.add_outcome(Outcome(mutant.id, round, Verdict.SURVIVED))
-                    under_way.progress.advance("#")
-
-    monkeypatch.setattr(beginning, "take_baseline", baseline)
-    monkeypatch.setattr(campaign, "run_mutants", run_mutants)
-    return project
+def real(tmp_path: Path) -> Project:
+    return Project(tmp_path)
 
 
 def of(function: str, pairs: set[Pair]) -> set[Pair]:
     return {pair for pair in pairs if f":{function}:" in pair[0]}
 
 
-def test_what_has_not_changed_is_not_run_again(project: Project) -> None:
-    first = project.run()
-    assert project.note == ""
-    assert project.run() == set()
-    assert project.note == f"reused all {len(first)} outcomes: nothing that they depend on has changed"
+def test_what_has_not_changed_is_not_run_again(real: Project) -> None:
+    first = real.run()
+    assert real.note == ""
+    assert real.run() == set()
+    assert real.note == f"reused all {len(first)} outcomes: nothing that they depend on has changed"
     for name in ("mission.py", "tests/test_right.py"):
-        os.utime(project.folder / name)  # another time, the same content
-    project.edit("README.md")
-    project.edit("mutabot.toml", lambda text: text + "jobs = 1\nmin_score = 3\n")
-    project.edit("robot.toml", lambda text: "# entries move down a line\n" + text)
-    (project.folder / "published.txt").write_text(f"# a selection\n{min(first)[0]}\n")
-    assert project.run(jobs=1, engine="replay") == set()
+        os.utime(real.folder / name)  # another time, the same content
+    real.edit("README.md")
+    real.edit("mutabot.toml", lambda text: text + "jobs = 1\nmin_score = 3\n")
+    real.edit("robot.toml", lambda text: "# entries move down a line\n" + text)
+    (real.folder / "published.txt").write_text(f"# a selection\n{min(first)[0]}\n")
+    assert real.run(jobs=1, engine="replay") == set()
 
 
-def test_a_fresh_campaign_runs_everything(quick: Project) -> None:
-    first = quick.run()
-    assert quick.run(fresh=True) == first
-    assert quick.note == ""
+def test_a_fresh_campaign_runs_everything(project: Project) -> None:
+    first = project.run()
+    assert project.run(fresh=True) == first
+    assert project.note == ""
 
 
-def test_a_changed_function_runs_what_can_reach_it_again_and_a_data_file_everything(quick: Project) -> None:
-    first = quick.run()
-    quick.edit("mission.py", lambda text: text.replace("arm.move_by(0.2)", "arm.move_by(0.1)"))
+def test_a_changed_function_runs_what_can_reach_it_again_and_a_data_file_everything(project: Project) -> None:
+    first = project.run()
+    project.edit("mission.py", lambda text: text.replace("arm.move_by(0.2)", "arm.move_by(0.1)"))
     left = of("left", first)
-    assert quick.run() == left
+    assert project.run() == left
     kept = len(first) - len(left)
-    assert quick.note == (
+    assert project.note == (
         f"reused {kept} of {len(first)} outcomes; {len(left)} run again: left() in mission.py changed"
     )
-    quick.edit("robot.py", lambda text: text.replace("self.x = x", "self.x = 0.0"))
-    assert quick.run() == first
-    assert quick.note.endswith("run again: Arm.__init__() in robot.py changed")
-    quick.edit("scene.json", lambda text: "[]")
-    (quick.folder / "new.py").write_text("def right():\n    pass\n")
-    assert quick.run() == first
-    assert "run again: right() in new.py is new, scene.json changed" in quick.note
-    assert "run again: scene.json changed" in quick.note
+    project.edit("robot.py", lambda text: text.replace("self.x = x", "self.x = 0.0"))
+    assert project.run() == first
+    assert project.note.endswith("run again: Arm.__init__() in robot.py changed")
+    project.edit("scene.json", lambda text: "[]")
+    (project.folder / "new.py").write_text("def right():\n    pass\n")
+    assert project.run() == first
+    assert "run again: right() in new.py is new, scene.json changed" in project.note
+    assert "run again: scene.json changed" in project.note
 
 
 def test_comments_and_layout_run_nothing_again(project: Project) -> None:
@@ -209,128 +186,127 @@ def test_a_changed_test_file_runs_the_mutants_again_that_it_judges(project: Proj
     )
 
 
-def test_a_test_counts_for_those_that_mention_it_and_conftest_for_all(quick: Project) -> None:
-    quick.edit(
+def test_a_test_counts_for_those_that_mention_it_and_conftest_for_all(project: Project) -> None:
+    project.edit(
         "tests/test_right.py",
         lambda text: text + "    import test_mission\n    assert test_mission.test_left\n",
     )
-    first = quick.run()
-    quick.edit("tests/test_mission.py", ASSERTS_MORE)
-    assert quick.run() == first
-    (quick.folder / "tests" / "conftest.py").write_text("")
-    assert quick.run() == first
-    assert "tests/conftest.py is new" in quick.note
+    first = project.run()
+    project.edit("tests/test_mission.py", ASSERTS_MORE)
+    assert project.run() == first
+    (project.folder / "tests" / "conftest.py").write_text("")
+    assert project.run() == first
+    assert "tests/conftest.py is new" in project.note
 
 
-def test_a_changed_operation_runs_its_own_mutants_again(quick: Project) -> None:
-    first = quick.run()
-    quick.edit("robot.toml", lambda text: text.replace("noise = 0.5", "noise = 0.4"))
-    ran = quick.run()
+def test_a_changed_operation_runs_its_own_mutants_again(project: Project) -> None:
+    first = project.run()
+    project.edit("robot.toml", lambda text: text.replace("noise = 0.5", "noise = 0.4"))
+    ran = project.run()
     assert ran == {pair for pair in first if "arm.position" in pair[0]}
-    assert "run again: robot:Arm.position in the vocabulary changed" in quick.note
-    quick.edit("robot.toml", lambda text: text.replace('failures = ["robot:Diverged"]', ""))
-    assert quick.run() == first
-    assert "failures of the vocabulary changed" in quick.note
+    assert "run again: robot:Arm.position in the vocabulary changed" in project.note
+    project.edit("robot.toml", lambda text: text.replace('failures = ["robot:Diverged"]', ""))
+    assert project.run() == first
+    assert "failures of the vocabulary changed" in project.note
 
 
 def test_another_seed_or_version_runs_everything_again(
-    quick: Project, monkeypatch: pytest.MonkeyPatch
+    project: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    first = quick.run()
-    assert quick.run(seed=2) == first
-    assert "run again: seed is 2, was 1" in quick.note
+    first = project.run()
+    assert project.run(seed=2) == first
+    assert "run again: seed is 2, was 1" in project.note
     monkeypatch.setattr(mutabot, "__version__", "99.0")
-    assert quick.run(seed=2) == first
-    assert "mutabot is 99.0, was" in quick.note
+    assert project.run(seed=2) == first
+    assert "mutabot is 99.0, was" in project.note
 
 
-def test_limits_and_settings_of_pytest_run_everything_again(quick: Project) -> None:
-    first = quick.run()
-    quick.edit("mutabot.toml", lambda text: text + "timeout_factor = 20\n")
-    assert quick.run() == first
-    assert "timeout_factor is 20.0, was 10.0" in quick.note
-    (quick.folder / "pyproject.toml").write_text("[tool.ruff]\nline-length = 80\n[quick]\nname = 'x'\n")
-    assert quick.run() == first  # pytest takes the folder with this file for its root
-    quick.edit("pyproject.toml", lambda text: text.replace("80", "90"))
-    assert quick.run() == set()
-    quick.edit("pyproject.toml", lambda text: text + "[tool.pytest.ini_options]\naddopts = '-s'\n")
-    assert quick.run() == first
-    assert "tool.pytest in pyproject.toml changed" in quick.note
+def test_limits_and_settings_of_pytest_run_everything_again(project: Project) -> None:
+    first = project.run()
+    project.edit("mutabot.toml", lambda text: text + "timeout_factor = 20\n")
+    assert project.run() == first
+    assert "timeout_factor is 20.0, was 10.0" in project.note
+    (project.folder / "pyproject.toml").write_text("[tool.ruff]\nline-length = 80\n[quick]\nname = 'x'\n")
+    assert project.run() == first  # pytest takes the folder with this file for its root
+    project.edit("pyproject.toml", lambda text: text.replace("80", "90"))
+    assert project.run() == set()
+    project.edit("pyproject.toml", lambda text: text + "[tool.pytest.ini_options]\naddopts = '-s'\n")
+    assert project.run() == first
+    assert "tool.pytest in pyproject.toml changed" in project.note
 
 
-def test_further_rounds_and_mutants_are_run_beside_those_that_hold(quick: Project) -> None:
-    reverse = quick.run(only=("reverse",))
-    all_of_first = quick.run() | reverse
-    assert "not run before" in quick.note
-    second = quick.run(rounds=2)
+def test_further_rounds_and_mutants_are_run_beside_those_that_hold(project: Project) -> None:
+    reverse = project.run(only=("reverse",))
+    all_of_first = project.run() | reverse
+    assert "not run before" in project.note
+    second = project.run(rounds=2)
     assert {round for _, round in second} == {1}
     assert len(second) == len(all_of_first)
-    assert quick.run(only=("reverse",)) == set()
-    assert quick.run(rounds=2) == set()
+    assert project.run(only=("reverse",)) == set()
+    assert project.run(rounds=2) == set()
 
 
-def test_a_selection_of_nothing_leaves_the_earlier_campaign_as_it_was(quick: Project) -> None:
-    first = quick.run()
-    before = quick.all_results()
+def test_a_selection_of_nothing_leaves_the_earlier_campaign_as_it_was(project: Project) -> None:
+    first = project.run()
+    before = project.all_results()
     with pytest.raises(SelectionError, match="revers"):
-        quick.run(only=("reversed",), fresh=True)
-    after = quick.all_results()
+        project.run(only=("reversed",), fresh=True)
+    after = project.all_results()
     assert len(after.mutants) == len(first)
     assert (after.mutants, after.groups, after.state) == (before.mutants, before.groups, "complete")
     assert (after.attempt or "").startswith("SelectionError")
-    assert quick.run() == set()
-    assert quick.all_results().attempt is None
+    assert project.run() == set()
+    assert project.all_results().attempt is None
 
 
 @pytest.mark.parametrize("fresh", [False, True])
-def test_a_narrow_run_shows_its_mutants_beside_all_others(quick: Project, fresh: bool) -> None:
-    first = quick.run()
-    whole = quick.all_results()
-    narrow = quick.run(only=("2",), fresh=fresh)
+def test_a_narrow_run_shows_its_mutants_beside_all_others(project: Project, fresh: bool) -> None:
+    first = project.run()
+    whole = project.all_results()
+    narrow = project.run(only=("2",), fresh=fresh)
     assert len(narrow) == int(fresh)
-    results = quick.all_results()
+    results = project.all_results()
     assert [one.mutant for one in results.mutants] == [one.mutant for one in whole.mutants]
     assert results.groups == whole.groups
     assert len(results.earlier) == len(first) - 1
     assert not any(one.outdated for one in results.mutants)
-    assert quick.state() == ("complete", 1)
-    assert quick.run() == set()
-    assert not quick.all_results().earlier
+    assert project.state() == ("complete", 1)
+    assert project.run() == set()
+    assert not project.all_results().earlier
 
 
-def test_results_of_earlier_runs_are_marked_where_something_has_changed(quick: Project) -> None:
-    quick.run()
-    quick.edit("tests/test_mission.py", ASSERTS_MORE)
-    narrow = quick.run(only=("1",))
-    outdated = {one.mutant.id for one in quick.all_results().mutants if one.outdated}
-    earlier = {one.mutant.id for one in quick.all_results().earlier}
+def test_results_of_earlier_runs_are_marked_where_something_has_changed(project: Project) -> None:
+    project.run()
+    project.edit("tests/test_mission.py", ASSERTS_MORE)
+    narrow = project.run(only=("1",))
+    outdated = {one.mutant.id for one in project.all_results().mutants if one.outdated}
+    earlier = {one.mutant.id for one in project.all_results().earlier}
     assert {mutant for mutant, _ in of("left", {(mutant, 0) for mutant in earlier})} == outdated
     assert outdated < earlier
     assert not outdated & {mutant for mutant, _ in narrow}
-    quick.edit("scene.json")
-    quick.run(only=("1",))
-    assert all(one.outdated for one in quick.all_results().earlier)
+    project.edit("scene.json")
+    project.run(only=("1",))
+    assert all(one.outdated for one in project.all_results().earlier)
 
 
 @pytest.mark.needs("source")
-def test_mutants_of_another_family_stay_until_the_program_has_them_no_longer(quick: Project) -> None:
-    robots = {mutant for mutant, _ in quick.run()}
-    texts = {mutant for mutant, _ in quick.run(families=("classical",))}
-    shown = quick.all_results()
+def test_mutants_of_another_family_stay_until_the_program_has_them_no_longer(project: Project) -> None:
+    robots = {mutant for mutant, _ in project.run()}
+    texts = {mutant for mutant, _ in project.run(families=("classical",))}
+    shown = project.all_results()
     assert {one.mutant.id for one in shown.mutants} == robots | texts
     assert {one.mutant.id for one in shown.earlier} == robots
     assert not any(one.outdated for one in shown.mutants)
     numbers = [one.mutant.number for one in shown.mutants]
     assert len(numbers) == len(set(numbers))
-    quick.edit("robot.py", lambda text: text.replace("self.x = x", "'docstring'; self.x = x"))
-    quick.run(families=("classical",))
-    assert {one.mutant.id for one in quick.all_results().mutants if one.outdated} == robots
-    assert {mutant for mutant, _ in quick.run(families=("robot", "classical"))} == robots
+    project.edit("robot.py", lambda text: text.replace("self.x = x", "'docstring'; self.x = x"))
+    project.run(families=("classical",))
+    assert {one.mutant.id for one in project.all_results().mutants if one.outdated} == robots
+    assert {mutant for mutant, _ in project.run(families=("robot", "classical"))} == robots
 
 
 def test_mutants_that_the_program_has_no_longer_are_not_shown(project: Project) -> None:
     project.run()
-    project.edit("mission.py", lambda text: text.replace("        return arm.position()\n", ""))
     project.edit(
         "mission.py", lambda text: text.replace("arm.move_by(0.3)", "arm.move_by(0.3)\n    return 1")
     )
@@ -342,81 +318,81 @@ def test_mutants_that_the_program_has_no_longer_are_not_shown(project: Project) 
 
 
 def test_an_interrupted_campaign_shows_what_was_there_before(
-    quick: Project, monkeypatch: pytest.MonkeyPatch
+    project: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    first = quick.run()
-    quick.edit("scene.json")
+    first = project.run()
+    project.edit("scene.json")
 
     def interrupted(*arguments: Any, **options: Any) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(campaign, "run_mutants", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        quick.run()
-    shown = quick.all_results()
+        project.run()
+    shown = project.all_results()
     assert (shown.state, shown.done) == ("interrupted", len(first))
     assert all(one.outdated for one in shown.mutants)
-    quick.edit("scene.json", lambda text: text.removesuffix("\n# edited\n"))
+    project.edit("scene.json", lambda text: text.removesuffix("\n# edited\n"))
     with pytest.raises(KeyboardInterrupt):
-        quick.run(fresh=True)
-    assert not any(one.outdated for one in quick.all_results().mutants)
+        project.run(fresh=True)
+    assert not any(one.outdated for one in project.all_results().mutants)
 
 
-def test_errors_and_unstable_outcomes_are_never_reused(quick: Project) -> None:
-    first = sorted(quick.run())
+def test_errors_and_unstable_outcomes_are_never_reused(project: Project) -> None:
+    first = sorted(project.run())
     bad = {first[0], first[1]}
-    with edited(quick.journal) as connection:
+    with edited(project.journal) as connection:
         for pair, verdict in zip(sorted(bad), (Verdict.ERROR, Verdict.UNSTABLE), strict=True):
             connection.execute(
                 "UPDATE outcome SET verdict = ?1, \"by\" = NULL, data = json_set(json_remove(data, '$.by'), "
                 "'$.verdict', ?1) WHERE mutant = ?2 AND round = ?3",
                 (verdict.value, *pair),
             )
-    assert quick.run() == bad
-    assert "2 run again: they ended in an error or unstable" in quick.note
+    assert project.run() == bad
+    assert "2 run again: they ended in an error or unstable" in project.note
 
 
-def test_data_that_the_tests_write_are_no_reason_to_run_again(project: Project) -> None:
-    write = (
-        "import pathlib, time\n\ndef test_log():\n    pathlib.Path('log.txt').write_text(str(time.time()))\n"
-    )
-    (project.folder / "tests" / "test_log.py").write_text(write)
-    first = project.run()
-    assert first
+def test_data_that_the_tests_write_are_no_reason_to_run_again(project: Project, script: Script) -> None:
+    def written(run: Run) -> dict[str, Any]:
+        (project.folder / "log.txt").write_text(str(time.time()))
+        return {}
+
+    script.original = written
+    assert project.run()
     assert project.run() == set()
 
 
-def test_a_new_file_that_nothing_has_to_do_with_is_no_reason_to_run_again(quick: Project) -> None:
-    quick.run()
+def test_a_new_file_that_nothing_has_to_do_with_is_no_reason_to_run_again(project: Project) -> None:
+    project.run()
     for name in ("out.txt", "run.log", "docs/plan.pdf", "tests/notes.md"):
-        path = quick.folder / name
+        path = project.folder / name
         path.parent.mkdir(exist_ok=True)
         path.write_text("a note\n")
-    assert quick.run() == set()
-    (quick.folder / "out.txt").write_text("another\n")
-    assert quick.run() == set()
-    quick.edit("tests/test_right.py", lambda text: text + "# see out.txt\n")
-    assert quick.run()
-    (quick.folder / "out.txt").write_text("a third\n")
-    assert quick.run()
-    assert "out.txt changed" in quick.note
+    assert project.run() == set()
+    (project.folder / "out.txt").write_text("another\n")
+    assert project.run() == set()
+    project.edit("tests/test_right.py", lambda text: text + "# see out.txt\n")
+    assert project.run()
+    (project.folder / "out.txt").write_text("a third\n")
+    assert project.run()
+    assert "out.txt changed" in project.note
 
 
 def test_a_program_edited_while_mutants_run_is_never_mistaken_for_the_one_they_ran(
-    quick: Project, monkeypatch: pytest.MonkeyPatch
+    project: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     original = campaign.run_mutants
 
     def edited(*arguments: Any) -> None:
-        quick.edit("mission.py")
+        project.edit("mission.py")
         original(*arguments)
 
     with monkeypatch.context() as patch:
         patch.setattr(campaign, "run_mutants", edited)
-        first = quick.run()
-    assert "mission.py changed while mutants ran" in quick.note
-    quick.edit("mission.py", lambda text: text.removesuffix("\n# edited\n"))
-    assert quick.run() == first
+        first = project.run()
+    assert "mission.py changed while mutants ran" in project.note
+    project.edit("mission.py", lambda text: text.removesuffix("\n# edited\n"))
+    assert project.run() == first
 
 
 def test_an_interrupted_campaign_goes_on(project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -439,7 +415,7 @@ def test_an_interrupted_campaign_goes_on(project: Project, monkeypatch: pytest.M
 
 @pytest.mark.parametrize("phase", ["begin", "plan_of"])
 def test_a_campaign_that_ends_before_its_first_mutant_loses_nothing(
-    project: Project, monkeypatch: pytest.MonkeyPatch, phase: str
+    project: Project, script: Script, monkeypatch: pytest.MonkeyPatch, phase: str
 ) -> None:
     first = project.run()
 
@@ -454,8 +430,10 @@ def test_a_campaign_that_ends_before_its_first_mutant_loses_nothing(
         assert project.state() == ("complete", len(first))
         assert project.all_results().attempt == "interrupted"
     project.edit("tests/test_right.py", lambda text: text + "    assert False\n")
-    with pytest.raises(BaselineError):
-        project.run()
+    with monkeypatch.context() as patch:
+        patch.setattr(script, "original", lambda run: CHECKED if "right" in run.test else {})
+        with pytest.raises(BaselineError):
+            project.run()
     assert project.state() == ("complete", len(first))
     assert (project.all_results().attempt or "").startswith("BaselineError: 1 test fails")
     project.edit("tests/test_right.py", lambda text: text.removesuffix("    assert False\n"))
@@ -510,51 +488,53 @@ def mutabot_run(project: Project, *options: str) -> subprocess.Popen[str]:
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def test_a_really_full_disk_is_exit_code_2(project: Project) -> None:
-    home = project.journal.parent
+@pytest.mark.whole
+def test_a_really_full_disk_is_exit_code_2(real: Project) -> None:
+    home = real.journal.parent
     home.mkdir()
     if not can_mount(home):
         pytest.skip("needs the right to mount a file system")
     try:
         (home / "ballast").write_bytes(b"x" * 580_000)
-        _, said = (process := mutabot_run(project)).communicate()
+        _, said = (process := mutabot_run(real)).communicate()
         assert process.returncode == 2, said
         assert str(home) in said
         assert "Traceback" not in said
-        assert_nothing_is_left(project)
+        assert_nothing_is_left(real)
         (home / "ballast").unlink()
-        project.run()
+        real.run()
     finally:
         subprocess.run(["umount", str(home)], check=True)
 
 
-def test_a_folder_that_cannot_be_written_is_exit_code_2(project: Project) -> None:
-    (project.folder / ".mutabot").write_text("in the way")
-    _, said = (process := mutabot_run(project)).communicate()
+def test_a_folder_that_cannot_be_written_is_exit_code_2(real: Project) -> None:
+    (real.folder / ".mutabot").write_text("in the way")
+    _, said = (process := mutabot_run(real)).communicate()
     assert process.returncode == 2
     assert ".mutabot" in said
     assert "Traceback" not in said
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
-def test_a_campaign_ended_from_outside_says_so_and_goes_on(project: Project, how: signal.Signals) -> None:
+def test_a_campaign_ended_from_outside_says_so_and_goes_on(real: Project, how: signal.Signals) -> None:
     slow = "import time\n\ndef test_slow():\n    time.sleep(60)\n"
-    first = project.run()
-    (project.folder / "tests" / "test_slow.py").write_text(slow)
-    process = mutabot_run(project)
-    until = time.monotonic() + 20
-    while not processes(project) and time.monotonic() < until:
+    first = real.run()
+    (real.folder / "tests" / "test_slow.py").write_text(slow)
+    process = mutabot_run(real)
+    until = time.monotonic() + 120
+    while not processes(real) and time.monotonic() < until:
         time.sleep(0.02)
     time.sleep(0.5)  # until it has told the kernel whose child it is
     process.send_signal(how)
     _, said = process.communicate()
     assert process.returncode == (130 if how == signal.SIGINT else -how), said
-    assert project.state() == ("complete", len(first))
-    assert project.all_results().attempt == ("interrupted" if how == signal.SIGINT else "killed")
-    (project.folder / "tests" / "test_slow.py").unlink()
-    assert project.run() == set()
-    assert len(first) == project.state()[1]
-    assert_nothing_is_left(project)
+    assert real.state() == ("complete", len(first))
+    assert real.all_results().attempt == ("interrupted" if how == signal.SIGINT else "killed")
+    (real.folder / "tests" / "test_slow.py").unlink()
+    assert real.run() == set()
+    assert len(first) == real.state()[1]
+    assert_nothing_is_left(real)
 
 
 def processes(project: Project) -> list[str]:
@@ -569,7 +549,7 @@ def processes(project: Project) -> list[str]:
 
 
 def assert_nothing_is_left(project: Project) -> None:
-    until = time.monotonic() + 5
+    until = time.monotonic() + 60
     while processes(project) and time.monotonic() < until:
         time.sleep(0.02)
     assert processes(project) == []

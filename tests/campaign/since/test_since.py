@@ -20,6 +20,7 @@ from mutabot.errors import UsageError
 from mutabot.exit_codes import ExitCode
 from mutabot.journal.journal import Journal
 from tests.campaign.project import Quiet, fingerprint, request_for, write_project
+from tests.campaign.scripted import Script
 
 MISSION = """
     def left(arm):
@@ -87,7 +88,8 @@ class Project:
 
 
 @pytest.fixture
-def project(tmp_path: Path) -> Project:
+def project(tmp_path: Path, script: Script) -> Project:
+    """One whose campaigns start no process."""
     return Project(tmp_path)
 
 
@@ -213,6 +215,7 @@ def edits(*options: str) -> dict[str, Any]:
     return dict(json.loads(done.stdout[done.stdout.index("\n{") :]))
 
 
+@pytest.mark.whole
 def test_since_gives_the_outcomes_of_a_whole_campaign_after_a_few_edits() -> None:
     found = edits("--edits", "2", "--projects", "errands", "--kinds", "program,renamed", "--rounds", "1")
     assert found["outcomes"] > 0

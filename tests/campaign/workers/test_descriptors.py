@@ -12,7 +12,7 @@ import pytest
 
 from mutabot.campaign.workers.descriptors import needed
 from mutabot.exit_codes import ExitCode
-from tests.campaign.project import write_project
+from tests.campaign.project import REPLAY, write_project
 
 MISSION = "def run(arm):\n    arm.move_by(0.25)\n"
 TESTS = """
@@ -41,7 +41,10 @@ def command(folder: Path, soft: int, hard: int, *words: str) -> tuple[int, str]:
     return done.returncode, done.stderr
 
 
-@pytest.mark.parametrize("words", [("run", "-j", "2"), ("check", "-j", "2"), ("list", "-j", "2")])
+SLOW = [pytest.param((one, "-j", "2"), marks=pytest.mark.whole) for one in ("check", "list")]
+
+
+@pytest.mark.parametrize("words", [("run", "-j", "2"), *SLOW])
 def test_too_few_are_refused_before_anything_runs(tmp_path: Path, words: tuple[str, ...]) -> None:
     code, err = command(tmp_path, 24, 24, *words)
     assert code == ExitCode.USAGE
@@ -50,6 +53,7 @@ def test_too_few_are_refused_before_anything_runs(tmp_path: Path, words: tuple[s
     assert not (tmp_path / ".mutabot" / "crash.txt").exists()
 
 
+@pytest.mark.whole
 def test_fewer_jobs_are_advised_where_they_would_do(tmp_path: Path) -> None:
     most = needed(3, served=False) + 1
     code, err = command(tmp_path, 24, most, "run", "-j", "500")
@@ -60,7 +64,7 @@ def test_fewer_jobs_are_advised_where_they_would_do(tmp_path: Path) -> None:
     assert command(tmp_path, 24, most, "list", "-j", advised[1])[0] == ExitCode.FINE
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["branch", REPLAY])
 def test_a_low_limit_is_raised_as_far_as_it_may_be_and_that_is_enough(tmp_path: Path, engine: str) -> None:
     code, err = command(tmp_path, 24, needed(2, served=False), "run", "-j", "2", "--engine", engine)
     assert code == ExitCode.FINE, err

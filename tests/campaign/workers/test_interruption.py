@@ -18,7 +18,7 @@ from mutabot.campaign.workers import forkserver, workers
 from mutabot.campaign.workers import token_pool as tokens
 from mutabot.campaign.workers.interruption import interruptible, interruptions_kept
 from mutabot.journal.journal import Journal
-from tests.campaign.project import Quiet, request_for, write_project
+from tests.campaign.project import REPLAY, Quiet, request_for, write_project
 
 #: what happened in the present test
 passed: list[str] = []
@@ -144,7 +144,7 @@ MOMENTS = {
 }
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
+@pytest.mark.parametrize("engine", ["branch", REPLAY])
 @pytest.mark.parametrize("moment", MOMENTS)
 def test_an_interruption_at_any_moment_leaves_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moment: str, engine: str

@@ -92,7 +92,8 @@ def ends(path: Path) -> dict[tuple[str, int], tuple[object, ...]]:
     }
 
 
-@pytest.mark.parametrize("engine", ["branch", pytest.param("replay", marks=pytest.mark.whole)])
+@pytest.mark.whole
+@pytest.mark.parametrize("engine", ["branch", "replay"])
 def test_a_paused_campaign_ends_like_one_that_is_not(
     engine: str, tmp_path: Path, log: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -15,7 +15,7 @@ from mutabot.border.processes import VARIABLE
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers.remains import end_abandoned, end_left_over
 from mutabot.model import Verdict
-from tests.campaign.project import Quiet, outcomes, request_for, write_project
+from tests.campaign.project import REPLAY, Quiet, outcomes, request_for, write_project
 
 MISSION = """
     def run(arm):
@@ -50,7 +50,8 @@ def is_alive(pid: int) -> bool:
     return state not in "ZX"
 
 
-@pytest.mark.parametrize("engine", ["replay", "warm"])
+@pytest.mark.whole
+@pytest.mark.parametrize("engine", ["warm", REPLAY])
 def test_nothing_is_left(engine: str, tmp_path: Path) -> None:
     numbers = Path("/dev/shm", tmp_path.name + str(os.getpid()))  # workers see no others' changes in /tmp
     tests = TESTS.format(numbers=str(numbers))

@@ -10,7 +10,7 @@ from textwrap import dedent, indent
 
 import pytest
 
-from campaign.project import Quiet, outcomes, request_for, write_project
+from campaign.project import REPLAY, Quiet, outcomes, request_for, write_project
 from mutabot.analysis.results import read_results
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import BaselineError
@@ -139,7 +139,7 @@ def harmful_of(found: dict[str, Outcome]) -> str:
     return next(name for name in found if "approach" in name and "reverse" in name)
 
 
-@pytest.mark.parametrize("engine", ["auto", "replay"])
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
 def test_a_mutant_that_writes_into_the_pipe_is_an_error_and_no_other_ends_otherwise(
     tmp_path: Path, harmless: dict[str, Outcome], engine: str
 ) -> None:
@@ -168,7 +168,9 @@ def test_where_each_run_writes_into_the_pipe_the_baseline_says_so(tmp_path: Path
     "harm",
     [
         pytest.param("import shutil; shutil.rmtree(home(), ignore_errors=True)", id="own folder"),
-        pytest.param("import os; os.remove(os.path.join(home(), 'job.json'))", id="job"),
+        pytest.param(
+            "import os; os.remove(os.path.join(home(), 'job.json'))", id="job", marks=pytest.mark.whole
+        ),
     ],
 )
 def test_a_mutant_that_deletes_the_folder_of_its_process_is_an_error(
@@ -184,7 +186,10 @@ def test_a_mutant_that_deletes_the_folder_of_its_process_is_an_error(
     assert mine == others
 
 
-@pytest.mark.parametrize("is_private", [True, False], ids=["private files", "shared files"])
+@pytest.mark.whole
+@pytest.mark.parametrize(
+    "is_private", [True, pytest.param(False, marks=pytest.mark.whole)], ids=["private files", "shared files"]
+)
 def test_a_mutant_that_deletes_the_folders_of_all_processes_ends_no_campaign(
     tmp_path: Path, harmless: dict[str, Outcome], is_private: bool
 ) -> None:

@@ -137,6 +137,7 @@ def test_mutants_that_only_wait_leave_their_places_to_others(tmp_path: Path, beg
 
 
 @pytest.mark.whole
+@pytest.mark.whole
 def test_beside_busy_programs_no_more_begin_than_there_are_places(tmp_path: Path, begun: list[int]) -> None:
     limits = "timeout_seconds = 6\ntimeout_factor = 1000.0\n"
     project = write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + limits)
@@ -157,6 +158,7 @@ def test_where_one_runs_at_a_time_it_is_one(tmp_path: Path) -> None:
         time.sleep(PERIOD / 2)
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(("code", "waits"), [(SLEEP, True), (POLL, True), (LOOP, False)])
 @pytest.mark.parametrize("where", ["itself", "below", "elsewhere"])
 @pytest.mark.usefixtures("_quick", "_roomy")
@@ -170,6 +172,7 @@ def test_what_a_worker_and_those_below_it_ask_for_counts(
         assert is_lent(both, PATIENCE if waits else 12 * PERIOD) is waits
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("_quick", "_roomy")
 def test_a_worker_that_gets_no_processor_does_not_wait(tmp_path: Path) -> None:
     processor = min(os.sched_getaffinity(0))
@@ -183,6 +186,7 @@ def test_a_worker_that_gets_no_processor_does_not_wait(tmp_path: Path) -> None:
     assert ran < 0.25 * (ran + after[one].queued - before[one].queued)  # it got what one that polls may take
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("_quick")
 def test_nothing_is_lent_while_processors_are_short(tmp_path: Path) -> None:
     with running(SLEEP, SLEEP, *[LOOP] * 3 * (os.cpu_count() or 1)) as (one, two, *_):

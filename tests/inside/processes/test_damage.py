@@ -100,6 +100,7 @@ TESTS = """
 """
 
 
+@pytest.mark.whole
 def test_damage_is_an_error_of_its_mutant_and_never_a_survivor(tmp_path: Path) -> None:
     folder = write_project(tmp_path, MISSION, TESTS)
     path = run_campaign(request_for(folder, engine="replay"), Quiet())

@@ -24,6 +24,7 @@ def project(tmp_path: Path) -> Path:
     return copy
 
 
+@pytest.mark.whole
 @pytest.mark.usefixtures("plugins")
 def test_the_examples_own_suite_passes(project: Path) -> None:
     done = subprocess.run(

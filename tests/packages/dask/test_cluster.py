@@ -81,6 +81,7 @@ def test_outcomes_are_those_of_a_campaign_without_a_cluster(
     assert [line.partition(",")[0] for line in told.lines if "worker" in line] == ["workers are sent 5 files"]
 
 
+@pytest.mark.whole
 def test_a_worker_that_dies_costs_nothing_but_time(
     there: ClusterSettings, in_peace: Ends, tmp_path: Path
 ) -> None:
@@ -140,6 +141,7 @@ def test_a_process_that_is_killed_from_outside_each_time_is_an_error(
     assert Verdict.ERROR in {one["verdict"] for one in found.values()}
 
 
+@pytest.mark.whole
 def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(
     there: ClusterSettings, tmp_path: Path
 ) -> None:
@@ -164,6 +166,7 @@ def test_a_machine_on_which_tests_fail_without_any_mutant_kills_nothing(
     assert "the campaign goes on on this machine" in text
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("engine", ["replay", pytest.param("branch", marks=pytest.mark.whole)])
 def test_what_takes_too_long_on_a_worker_is_decided_at_home(
     engine: str, there: ClusterSettings, tmp_path: Path

@@ -45,6 +45,7 @@ def ran_here(file: Path) -> bool:
     return file.exists() and str(os.getpid()) in file.read_text().split()
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize("attack", ATTACKS)
 def test_nothing_that_a_worker_sends_is_unpickled(attack: str, link: Link, tmp_path: Path) -> None:
     news = ask(link, attack, str(tmp_path / "ran"))
@@ -64,6 +65,7 @@ def test_what_a_worker_says_does_nothing_to_a_terminal() -> None:
     assert len(shown("x" * 5000)) == 1000
 
 
+@pytest.mark.whole
 def test_forged_outcomes_are_an_error_of_that_unit_alone(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -158,6 +158,7 @@ def test_without_cryptography_the_extra_is_named(tmp_path: Path, monkeypatch: py
         Certificates.make(tmp_path / "certificates")
 
 
+@pytest.mark.whole
 def test_nothing_is_left_of_a_cluster_that_cannot_be_made(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -184,6 +185,7 @@ class Nobody:
         pass
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("address", "warnings"),
     [

@@ -91,6 +91,7 @@ Store.take = take
 """
 
 
+@pytest.mark.whole
 @pytest.mark.parametrize(
     ("how", "has_bundle", "says"),
     [("sys.modules['mutabot'] = None", False, "mutabot"), (NO_ROOM, True, "No space left on device")],
@@ -135,6 +136,7 @@ def test_without_dask_the_extra_is_named() -> None:
     assert "pip install 'path/to/mutabot[cluster]'" in done.stderr.splitlines()[-1]
 
 
+@pytest.mark.whole
 def test_certificates_that_do_not_fit_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(link, "PATIENCE", 3.0)
     ours, others = (_certificates(tmp_path / name) for name in ("ours", "others"))
@@ -169,6 +171,7 @@ def _certificates(folder: Path) -> tuple[str, str, str]:
     return ca, cert, key
 
 
+@pytest.mark.whole
 def test_an_interruption_leaves_no_process(tmp_path: Path) -> None:
     project = write_slow(tmp_path / "project")
     mark = {"OF_TEST_INTERRUPTION": str(tmp_path)}
@@ -195,6 +198,7 @@ def test_an_interruption_leaves_no_process(tmp_path: Path) -> None:
     assert until(lambda: not processes(entry), 5.0), processes(entry)
 
 
+@pytest.mark.whole
 def test_workers_on_this_machine_end_with_whoever_started_them(tmp_path: Path) -> None:
     code = (
         "import os, sys\n"

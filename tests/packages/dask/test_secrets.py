@@ -70,6 +70,7 @@ def commit(folder: Path) -> None:
         subprocess.run([*own, *words], cwd=folder, check=True, capture_output=True)
 
 
+@pytest.mark.whole
 def test_a_worker_sees_no_secret(address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("LANGSMITH_API_KEY", "PYTHON_KEYRING_PASSWORD"):
         monkeypatch.setenv(name, "hunter2")
@@ -93,6 +94,7 @@ def test_a_worker_sees_no_secret(address: str, tmp_path: Path, monkeypatch: pyte
     assert "leads out of the project or cannot be read: folder, key" in text
 
 
+@pytest.mark.whole
 def test_a_file_that_tests_need_and_workers_lack_is_named(address: str, tmp_path: Path) -> None:
     project = write(tmp_path / "project", mission=MISSION, tests=NEEDY)
     commit(project)

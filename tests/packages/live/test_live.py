@@ -78,6 +78,7 @@ def journal_of(folder: Path) -> JournalReader:
     return JournalReader.open(folder / ".mutabot" / "journal.sqlite")
 
 
+@pytest.mark.whole
 def test_a_campaign_is_watched_paused_and_resumed_and_stays_until_the_page_is_closed(project: Path) -> None:
     with running(project, *ONE_BY_ONE) as (process, address):
         with listening(address) as events:
@@ -101,6 +102,7 @@ def test_a_campaign_is_watched_paused_and_resumed_and_stays_until_the_page_is_cl
         assert len(journal.outcomes()) == len(journal.mutants()) == 4
 
 
+@pytest.mark.whole
 def test_stop_is_like_ctrl_c_also_in_a_pause_and_the_campaign_goes_on_later(
     project: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -122,6 +124,7 @@ def test_stop_is_like_ctrl_c_also_in_a_pause_and_the_campaign_goes_on_later(
     assert f"reused {found} of" in "".join(capsys.readouterr())
 
 
+@pytest.mark.whole
 def test_what_an_earlier_campaign_found_is_not_shown_as_this_one(project: Path) -> None:
     assert main(["-C", str(project), "run", "-o", "repeats=false", "--only", "1"]) == ExitCode.FINE
     with running(project) as (_, address), listening(address) as events:

@@ -15,7 +15,14 @@ pytestmark = pytest.mark.skipif(
 )
 
 
+#: what takes longer
+SLOW = [
+    pytest.param(name, marks=pytest.mark.whole)
+    for name in ("fractions", "heapq", "dataclasses", "contextlib", "shlex")
+]
+
+
 @pytest.mark.parametrize("record", [False, True], ids=["alternatives", "recording"])
-@pytest.mark.parametrize("module", ["textwrap", "fractions", "heapq", "dataclasses", "contextlib", "shlex"])
+@pytest.mark.parametrize("module", ["textwrap", *SLOW])
 def test_a_module_of_the_standard_library_passes_its_own_tests(module: str, record: bool) -> None:
     assert runpy.run_path(str(SCRIPT))["compare"](module, record=record)

@@ -1,0 +1,358 @@
+"""An executor without processes: it answers each task by the text of a small project and by a script.
+
+What decides over results rather than makes them is tested with it: judge, controls, repeats, plan, reuse,
+shards, ``since`` and the search. Sites, traces and which test reaches what are read off the text: a test of
+``tests/`` reaches the functions of the program whose names it mentions, and these make their calls in their
+order, once. How a test ends as a mutant is what the script says; controls end as they must.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from mutabot.border.footprint import Footprint
+from mutabot.border.job import Job
+from mutabot.border.lines import (
+    Acted,
+    BranchDied,
+    BranchEnd,
+    Line,
+    PlacesReached,
+    SessionEnd,
+    SiteSeen,
+    TestStart,
+    TextsSeen,
+)
+from mutabot.border.test_end import TestEnd
+from mutabot.campaign.request import Request
+from mutabot.campaign.workers.executor import Executor
+from mutabot.campaign.workers.task import Result, Task
+from mutabot.families import CONTROL
+from mutabot.model import By, Mutant, Operation, Quantity, Span, TextPlace
+from mutabot.model.alternative import Sighting
+from mutabot.operators.control import Fatal
+
+#: what a robot answers that is asked for a number
+READING = 0.5
+#: a test that notices its mutant, one that the mutant ends, and one whose robot refuses the mutated command
+CHECKED: Mapping[str, Any] = {
+    "outcome": "failed", "by": By.CHECK, "exception": "builtins:AssertionError", "message": "assert 1 == 2",
+}  # fmt: skip
+CRASHED: Mapping[str, Any] = {
+    "outcome": "failed", "by": By.EXCEPTION, "exception": "builtins:RuntimeError", "message": "it went wrong",
+}  # fmt: skip
+REFUSED: Mapping[str, Any] = {**CRASHED, "exception": "robot:Refused", "refused": "out of reach"}
+#: a test whose mutant changes nothing
+UNCHANGED: Mapping[str, Any] = {"acted": 0}
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One test in one process.
+
+    Attributes:
+        test: the test.
+        tests: all that the process runs.
+        round: the round.
+        mutant: the mutant that it is; None for the original.
+        before: how often the suite, or this mutant, was run before in this round.
+        is_branch: whether it is a fork of the original.
+    """
+
+    test: str
+    tests: tuple[str, ...]
+    round: int
+    mutant: Mutant | None
+    before: int
+    is_branch: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Died:
+    """The process ends during the test, without a word."""
+
+    exit_code: int = -9
+    overdue: str | None = None
+    where: str | None = None
+
+
+End = Mapping[str, Any] | Died
+
+
+@dataclass(slots=True)
+class Script:
+    """How the tests of a project end, which any executor would have to find out.
+
+    Attributes:
+        mutated: how a test ends as a mutant: fields of its ``TestEnd`` that are not those of a survivor.
+        original: likewise as the original.
+        control: likewise as a control; None for the end that it must have.
+        spread: as in ``Executor``.
+        tasks: all tasks until now.
+    """
+
+    mutated: Callable[[Run], End] = lambda run: {}
+    original: Callable[[Run], End] = lambda run: {}
+    control: Callable[[Run], End | None] = lambda run: None
+    spread: int = 1
+    tasks: list[Task] = field(default_factory=list)
+
+    def kill(self, *words: str) -> None:
+        """Mutants whose ids contain one of these words are noticed; all others survive."""
+        self.mutated = lambda run: CHECKED if any(one in _id(run) for one in words) else {}
+
+    @contextmanager
+    def opened(self, request: Request, progress: object) -> Iterator[Executor]:
+        """In place of ``open_executor``."""
+        yield Scripted(self, _Suite.read(request))
+
+    def end(self, run: Run) -> End:
+        if run.mutant is None:
+            return self.original(run)
+        if run.mutant.family != CONTROL:
+            return self.mutated(run)
+        found = self.control(run)
+        return found if found is not None else CRASHED if run.mutant.operator == Fatal.name else UNCHANGED
+
+
+@dataclass(slots=True)
+class Scripted:
+    """The executor; see ``Executor``."""
+
+    script: Script
+    suite: _Suite
+    remarks: Sequence[str] = ()
+    _times: Counter[object] = field(default_factory=Counter)
+
+    @property
+    def spread(self) -> int:
+        return self.script.spread
+
+    def apart(self) -> AbstractContextManager[Executor]:
+        return nullcontext(self)
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
+        return (event for event in self.events(tasks) if isinstance(event, Result))
+
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
+        for task in tasks:
+            self.script.tasks.append(task)
+            result = Result(task, wall=0.1)
+            for line in self._lines(task.job, result):
+                result.take(line)
+                yield task, line
+            yield result
+
+    def _lines(self, job: Job, result: Result) -> Iterator[Line]:
+        tests = job.tests if job.tests is not None else tuple(self.suite.tests)
+        before = self._count(job.mutant, job.round)
+        found = {
+            one.id: self._count(one, job.round) for one in (job.branching.mutants if job.branching else ())
+        }
+        yield from self.suite.sites
+        places = self._places(job)
+        if places:
+            files = {one.span.file for one in places}
+            yield TextsSeen(
+                tuple(sorted(files)), tuple(Sighting(one.number, 1, ("number",)) for one in places)
+            )
+        for test in tests:
+            run = Run(test, tests, job.round, job.mutant, before)
+            yield TestStart(test)
+            reached = tuple(
+                one.number for one in places if one.span.function in self.suite.tests[test].functions
+            )
+            if reached:
+                yield PlacesReached(test, reached)
+            if job.branching is not None:
+                yield from self._branches(job, run, found)
+            end = self.script.end(run)
+            if isinstance(end, Died):
+                if job.mutant is not None:
+                    yield Acted(test)
+                result.exit_code, result.overdue, result.where = end.exit_code, end.overdue, end.where
+                return
+            ended = self.suite.end(run, end)
+            if ended.acted:
+                yield Acted(test)
+            yield ended
+            if job.stop_at_kill and ended.is_decided:
+                break
+        yield SessionEnd(0, tuple(self.suite.tests))
+
+    def _branches(self, job: Job, trunk: Run, found: dict[str, int]) -> Iterator[Line]:
+        """The branches of one test; a mutant that it decides about has no further ones."""
+        assert job.branching is not None
+        for mutant in job.branching.mutants:
+            if mutant.id not in found or trunk.test not in job.branching.tests[mutant.id]:
+                continue
+            run = replace(trunk, mutant=mutant, before=found[mutant.id], is_branch=True)
+            end = self.script.end(run)
+            if isinstance(end, Died):
+                yield Acted(run.test, mutant.id)
+                yield BranchDied(mutant.id, run.test, end.exit_code, end.overdue, end.where)
+                continue
+            ended = self.suite.end(run, end)
+            yield BranchEnd(mutant.id, ended, self.suite.sites)
+            if ended.is_decided and not job.branching.every_test:
+                del found[mutant.id]
+
+    @staticmethod
+    def _places(job: Job) -> list[TextPlace]:
+        """The places of the program text that a recording looks at."""
+        if job.instrumentation is None or not job.instrumentation.record:
+            return []
+        return [place for text in job.instrumentation.texts for place in text.places]
+
+    def _count(self, mutant: Mutant | None, round: int) -> int:
+        key = mutant.id if mutant is not None else None, round
+        self._times[key] += 1
+        return self._times[key] - 1
+
+
+@dataclass(frozen=True, slots=True)
+class _Call:
+    """A call of an operation in the program's text."""
+
+    site: SiteSeen
+    written: dict[str, Any]
+    read: dict[str, Any]
+
+    @property
+    def trace(self) -> list[Any]:
+        return [self.site.index, self.written, self.read, next(iter(self.read.values()), None)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Test:
+    """A test of the project.
+
+    Attributes:
+        functions: the functions of the program that it mentions.
+        calls: what these call.
+        place: where it ends, which is where it fails.
+    """
+
+    functions: frozenset[str]
+    calls: tuple[_Call, ...]
+    place: str
+
+    def hits(self, mutant: Mutant) -> int:
+        """How often the test reaches a mutant: its call, or the text of a function."""
+        span = mutant.site.span
+        if mutant.operation:
+            return sum(call.site.span == span for call in self.calls)
+        return int(span.function in self.functions)
+
+
+@dataclass(frozen=True, slots=True)
+class _Suite:
+    """The tests of a project in their order."""
+
+    tests: Mapping[str, _Test]
+
+    @classmethod
+    def read(cls, request: Request) -> _Suite:
+        """As the files stand now."""
+        operations = {one.target.rpartition(".")[2]: one for one in request.vocabulary.operations}
+        program = request.configuration.program
+        calls = {
+            name: found for file in program for name, found in _functions(request.root, file, operations)
+        }
+        order = {
+            id(call): number for number, call in enumerate(one for some in calls.values() for one in some)
+        }
+        numbered = {
+            name: [replace(one, site=replace(one.site, index=order[id(one)])) for one in some]
+            for name, some in calls.items()
+        }
+        tests = {}
+        for path in sorted(request.root.glob("tests/**/*.py")):
+            file = path.relative_to(request.root).as_posix()
+            for node in ast.walk(_parsed(path)):
+                if not isinstance(node, ast.FunctionDef) or not node.name.startswith("test"):
+                    continue
+                names = {_name(one) for one in ast.walk(node)}
+                found = tuple(call for name, some in numbered.items() if name in names for call in some)
+                functions = frozenset(name for name in numbered if name in names)
+                tests[f"{file}::{node.name}"] = _Test(functions, found, f"{file}:{node.end_lineno}")
+        return cls(tests)
+
+    @property
+    def sites(self) -> tuple[SiteSeen, ...]:
+        found = {call.site.index: call.site for test in self.tests.values() for call in test.calls}
+        return tuple(found[index] for index in sorted(found))
+
+    def end(self, run: Run, end: Mapping[str, Any]) -> TestEnd:
+        """The report of a test that ends like this, beside what the text says."""
+        test = self.tests[run.test]
+        hits = test.hits(run.mutant) if run.mutant is not None else 0
+        is_failed = end.get("outcome") == "failed"
+        usual = {
+            "outcome": "passed",
+            "hits": hits,
+            "acted": hits,
+            "operations": len(test.calls),
+            "commands": sum(1 for call in test.calls if call.written),
+            "wall": 0.01,
+            "cpu": 0.01,
+            "trace": tuple(call.trace for call in test.calls),
+            "footprint": Footprint(),
+            "example": (0, 1) if hits else None,
+            "place": test.place if is_failed else None,
+        }
+        return TestEnd(run.test, **{**usual, **end})
+
+
+def _functions(
+    root: Path, file: str, operations: Mapping[str, Operation]
+) -> Iterator[tuple[str, list[_Call]]]:
+    """The functions of a file with the calls that they make, in their order."""
+    for function in ast.walk(_parsed(root / file)):
+        if isinstance(function, ast.FunctionDef):
+            ends = next((n for n, one in enumerate(function.body, 1) if isinstance(one, ast.Return)), None)
+            reached = (node for one in function.body[:ends] for node in ast.walk(one))
+            nodes = [node for node in reached if isinstance(node, ast.Call)]
+            nodes.sort(key=lambda one: (one.end_lineno or 0, one.end_col_offset or 0))
+            found = ((node, operations.get(_name(node.func) or "")) for node in nodes)
+            yield (
+                function.name,
+                [_call(file, function.name, node, one) for node, one in found if one is not None],
+            )
+
+
+def _call(file: str, function: str, node: ast.Call, operation: Operation) -> _Call:
+    span = Span(file, node.lineno, node.col_offset, node.end_lineno or 0, node.end_col_offset or 0, function)
+    site = SiteSeen(-1, span, operation.target, None, oracle=False, direct=True)
+    written = [_literal(one) for one in node.args]
+    return _Call(site, _values(operation.arguments, written), _values(operation.result, [READING]))
+
+
+def _literal(node: ast.expr) -> Any:
+    """What is written there; what only a run would tell counts as what a robot answers."""
+    try:
+        return ast.literal_eval(node)
+    except ValueError:
+        return READING
+
+
+def _values(quantities: Sequence[Quantity], values: Sequence[Any]) -> dict[str, Any]:
+    return {one.name: value for one, value in zip(quantities, values, strict=False)}
+
+
+def _name(node: ast.AST) -> str | None:
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else None
+
+
+def _parsed(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def _id(run: Run) -> str:
+    return run.mutant.id if run.mutant is not None else ""
