@@ -33,18 +33,16 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.border.codec import to_data
-from mutabot.border.job import Branching
-from mutabot.border.lines import (
-    Acted,
+from mutabot.border.events import (
     BranchDied,
     BranchEnd,
-    Line,
-    MutatedCall,
+    Event,
     TokensHeld,
     Undiverged,
-    line_from_data,
-    line_to_data,
+    event_from_data,
+    event_to_data,
 )
+from mutabot.border.job import Branching
 from mutabot.campaign.beginning import begin, open_executor, plan_of, selected
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.choice import run_trials
@@ -88,7 +86,7 @@ class Recorder:
     spread: int = 1
     remarks: list[str] = field(default_factory=list)
 
-    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         """What the other one says."""
         for event in self.inner.events(tasks):
             task = event.task if isinstance(event, Result) else event[0]
@@ -96,7 +94,7 @@ class Recorder:
             if isinstance(event, Result):
                 told.wall, told.exit_code = event.wall, event.exit_code
             else:
-                told.lines.append(json.dumps(line_to_data(event[1])))
+                told.lines.append(json.dumps(event_to_data(event[1])))
             yield event
 
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
@@ -118,7 +116,7 @@ class Player:
     spread: int = 1
     remarks: list[str] = field(default_factory=list)
 
-    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         """What the workers of these jobs would say."""
         for task in tasks:
             self.sent += len(json.dumps(to_data(task.job)))
@@ -127,7 +125,7 @@ class Player:
             branching = task.job.branching
             texts = told.lines if branching is None else _branched(told.lines, branching)
             for text in texts:
-                line = line_from_data(json.loads(text))
+                line = event_from_data(json.loads(text))
                 result.take(line)
                 yield task, line
             if branching is None:
@@ -169,7 +167,7 @@ def _branched(lines: Iterable[str], branching: Branching) -> Iterator[str]:
             hits = data["hits"]
             data["hits"] = {copy: hits[name] for name in hits for copy in copies.get(name, ())}
             yield json.dumps(data)
-        elif kind in {one.__name__ for one in (Acted, BranchDied, BranchEnd, MutatedCall)} and mutant:
+        elif kind in {one.__name__ for one in (BranchDied, BranchEnd)} and mutant:
             yield from (json.dumps({**data, "mutant": copy}) for copy in copies.get(mutant, ()))
         else:
             yield text

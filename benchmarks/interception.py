@@ -11,8 +11,8 @@ import tempfile
 import timeit
 from pathlib import Path
 
+from mutabot.border.events import Event
 from mutabot.border.job import Job
-from mutabot.border.lines import Line
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.session import Session
 from mutabot.vocabulary import load
@@ -36,7 +36,7 @@ print((time.process_time() - start) * 1e3)
 class Nowhere:
     """A pipe that leads nowhere."""
 
-    def send(self, line: Line) -> None:
+    def send(self, line: Event) -> None:
         """Forget the line."""
 
 

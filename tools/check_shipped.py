@@ -22,9 +22,9 @@ from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from typing import Any
 
+from mutabot.border.events import Problem
 from mutabot.border.job import Job
-from mutabot.border.lines import Problem
-from mutabot.inside.pipe import Held
+from mutabot.inside.event_file import Held
 from mutabot.inside.session import Session
 from mutabot.inside.targets.callables import Callables
 from mutabot.model import Operation, Vocabulary
@@ -70,7 +70,7 @@ def compare(vocabulary: Vocabulary) -> Iterator[str]:
     with contextlib.redirect_stdout(io.StringIO()):
         session.install()
         session.inspect_targets()
-    for line in pipe.lines:
+    for line in pipe.events:
         if isinstance(line, Problem):
             yield f"{line.source}: {line.text}"
     callables = session.interception.of()

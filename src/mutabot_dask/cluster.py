@@ -16,7 +16,7 @@ from itertools import chain
 from pathlib import Path
 from types import TracebackType
 
-from mutabot.border.lines import Line
+from mutabot.border.events import Event
 from mutabot.campaign.local import on_this_machine
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import versions
@@ -128,7 +128,7 @@ class Cluster:
             if isinstance(event, Result):
                 yield event
 
-    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         """See ``Executor``. The lines of a task come when it has ended."""
         waiting = iter(tasks)
         first = next(waiting, None)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from secrets import token_hex
 from typing import Protocol
 
-from mutabot.border.lines import BranchDied, Line
+from mutabot.border.events import BranchDied, Event
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptible
 from mutabot.campaign.workers.pause import Pause
@@ -35,7 +35,7 @@ _GRACE = 300.0
 #: seconds without any worker until that is told, and until nobody waits any more
 _TOLD, _PATIENCE = 5.0, 600.0
 
-Event = Result | tuple[Task, Line]
+Heard = Result | tuple[Task, Event]
 
 
 @dataclass(slots=True)
@@ -55,7 +55,7 @@ class _Trial:
     faults: list[str] = field(default_factory=list)
     avoided: set[str] = field(default_factory=set)
     answer: Answer | None = None
-    lines: list[Line] = field(default_factory=list)
+    lines: list[Event] = field(default_factory=list)
     unit: Unit | None = None
     until: float = 0.0
 
@@ -105,12 +105,12 @@ class Dispatch:
         self._again: deque[_Trial] = deque()
         self._running: dict[int, tuple[str, _Trial]] = {}
         self._at_home: list[Task] = []
-        self._settled: deque[Event] = deque()
+        self._settled: deque[Heard] = deque()
         self._next = self._taken()
         self._lonely_since: float | None = None
         self._was_told = False
 
-    def events(self) -> Iterator[Event]:
+    def events(self) -> Iterator[Heard]:
         """Lines and results; what has to run at home comes last."""
         try:
             while self._running or self._again or self._next is not None:
@@ -204,7 +204,7 @@ class Dispatch:
         lost = f"the answer of its worker does not fit: {why} ({worker})"
         self._settled.append(Result(trial.task, lost=lost))
 
-    def _settle(self, trial: _Trial, answer: Answer, lines: list[Line]) -> None:
+    def _settle(self, trial: _Trial, answer: Answer, lines: list[Event]) -> None:
         self._cluster.done += 1
         task = trial.task
         overdue = {line.mutant for line in lines if isinstance(line, BranchDied) and line.overdue}

@@ -10,14 +10,13 @@ import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import PurePosixPath
 
-from mutabot.border.job import Job
-from mutabot.border.lines import (
+from mutabot.border.events import (
     Acted,
     BranchDied,
     BranchEnd,
     Copied,
-    CopyEnded,
-    Line,
+    Event,
+    ForkEnded,
     MutatedCall,
     PlacesReached,
     Serving,
@@ -27,6 +26,7 @@ from mutabot.border.lines import (
     Undiverged,
     Watched,
 )
+from mutabot.border.job import Job
 from mutabot.border.test_end import TestEnd
 from mutabot.evidence.recording import bytes_of, from_bytes
 
@@ -34,13 +34,13 @@ from .checked import Misfit
 
 _OUTCOMES = {"passed", "failed", "skipped", "xfailed", "xpassed"}
 #: what only fork servers say
-_NEVER = (Serving, Copied, CopyEnded)
+_NEVER = (Serving, Copied, ForkEnded)
 _BRANCHES = (BranchEnd, BranchDied, Unbranched, Undiverged)
 #: bytes of a recording, which comes packed
 _UNPACKED = 256 << 20
 
 
-def check_fit(lines: Iterable[Line], job: Job) -> None:
+def check_fit(lines: Iterable[Event], job: Job) -> None:
     """Raises Misfit for lines that this job cannot have made."""
     branching = job.branching
     mutants = {one.id for one in branching.mutants} if branching is not None else set()
@@ -64,11 +64,9 @@ def check_fit(lines: Iterable[Line], job: Job) -> None:
             _check_end(line.end, {seen.index for seen in line.sites})
 
 
-def _mutants(line: Line) -> Iterator[str]:
+def _mutants(line: Event) -> Iterator[str]:
     match line:
         case BranchEnd() | BranchDied():
-            yield line.mutant
-        case Acted() | MutatedCall() if line.mutant is not None:
             yield line.mutant
         case Unbranched():
             yield from line.mutants
@@ -76,7 +74,7 @@ def _mutants(line: Line) -> Iterator[str]:
             yield from line.hits
 
 
-def _tests(line: Line) -> Iterator[str]:
+def _tests(line: Event) -> Iterator[str]:
     match line:
         case TestEnd() | TestStart() | Watched() | BranchDied() | Unbranched() | Undiverged():
             yield line.test
@@ -86,7 +84,7 @@ def _tests(line: Line) -> Iterator[str]:
             yield line.test
 
 
-def _sites(line: Line) -> Iterator[SiteSeen]:
+def _sites(line: Event) -> Iterator[SiteSeen]:
     match line:
         case SiteSeen():
             yield line

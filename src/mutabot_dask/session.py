@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from mutabot.border.lines import Line
+from mutabot.border.events import Event
 from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.campaign.workers.workers import Workers
 from mutabot.errors import JournalError
@@ -116,10 +116,10 @@ class Session:
                 return replace(Answer.of_result(lines, result, unfit), is_unfit=True)
         return Answer.of_result(lines, result)
 
-    def _run(self, task: Task, look: Callable[[], None]) -> tuple[list[Line], Result]:
+    def _run(self, task: Task, look: Callable[[], None]) -> tuple[list[Event], Result]:
         workers = self._opened()
         workers.look = look
-        lines: list[Line] = []
+        lines: list[Event] = []
         for event in workers.events([task]):
             if isinstance(event, Result):
                 return lines, event

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.border.codec import from_data, to_data
-from mutabot.border.lines import LINES, Line, line_to_data
+from mutabot.border.events import EVENTS, Event, event_to_data
 from mutabot.campaign.workers.task import Result, Task
 
 from .checked import Misfit, checked, read
@@ -64,7 +64,7 @@ class Answer:
 
     Attributes:
         lines: what its process reported.
-        acted, exit_code, overdue, where, wall, log: as in ``Result``.
+        exit_code, overdue, where, wall, log: as in ``Result``.
         fault: why it says nothing about the mutant, if it does not: the fault of the worker or its machine.
         is_unfit: whether that worker is of no use to the campaign any more.
         lost: as in ``Result``.
@@ -72,7 +72,6 @@ class Answer:
     """
 
     lines: tuple[Any, ...] = ()
-    acted: tuple[str, ...] = ()
     exit_code: int = 0
     overdue: str | None = None
     where: str | None = None
@@ -84,10 +83,10 @@ class Answer:
     ticket: str = ""
 
     @classmethod
-    def of_result(cls, lines: Iterable[Line], result: Result, fault: str | None = None) -> Answer:
+    def of_result(cls, lines: Iterable[Event], result: Result, fault: str | None = None) -> Answer:
         """The answer with what a worker process told and came to."""
         return cls(
-            tuple(map(line_to_data, lines)), tuple(result.acted), result.exit_code, result.overdue,
+            tuple(map(event_to_data, lines)), result.exit_code, result.overdue,
             result.where, result.wall, result.log, fault,
         )  # fmt: skip
 
@@ -96,8 +95,8 @@ class Answer:
         return _bytes(self).replace(_in_json(here), _in_json(there))
 
     @classmethod
-    def of(cls, data: bytes, unit: Unit) -> tuple[Answer, list[Line]]:
-        """The answer in such bytes, and its report lines. Raises Misfit if it is none to this unit."""
+    def of(cls, data: bytes, unit: Unit) -> tuple[Answer, list[Event]]:
+        """The answer in such bytes, and its events. Raises Misfit if it is none to this unit."""
         answer = checked(cls, read(data))
         if answer.ticket != unit.ticket:
             raise Misfit("it is the answer to something else")
@@ -105,12 +104,11 @@ class Answer:
         check_fit(lines, unit.task.job)
         return answer, lines
 
-    def result(self, task: Task, lines: Iterable[Line]) -> Result:
+    def result(self, task: Task, lines: Iterable[Event]) -> Result:
         """The result of a task of which this is the answer."""
         found = Result(task)
         for line in lines:
             found.take(line)
-        found.acted = list(self.acted)
         found.exit_code, found.overdue, found.where = self.exit_code, self.overdue, self.where
         found.wall, found.log, found.lost = self.wall, self.log, self.lost
         return found
@@ -138,12 +136,12 @@ class Introduction:
         return checked(cls, read(data))
 
 
-def _line(index: int, data: Any) -> Line:
-    kind = LINES.get(str(data.get("type"))) if isinstance(data, dict) else None
+def _line(index: int, data: Any) -> Event:
+    kind = EVENTS.get(str(data.get("type"))) if isinstance(data, dict) else None
     if kind is None:
         raise Misfit(f".lines[{index}] is no report line")
     try:
-        line: Line = checked(kind, {name: value for name, value in data.items() if name != "type"})
+        line: Event = checked(kind, {name: value for name, value in data.items() if name != "type"})
     except Misfit as error:
         raise Misfit(f".lines[{index}] ({kind.__name__}): {error}") from None
     return line

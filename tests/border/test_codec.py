@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from mutabot import model
 from mutabot.border import job
 from mutabot.border.codec import from_data, to_data
-from mutabot.border.lines import Line, line_from_data, line_to_data
+from mutabot.border.events import Event, event_from_data, event_to_data
 from mutabot.model import Call, Reply
 from mutabot.model.values.path import Step
 
@@ -30,7 +30,7 @@ few = settings(max_examples=25, deadline=None)
 STAY_INSIDE = {Call, Reply}
 KINDS = [
     kind
-    for kind in [*vars(model).values(), *vars(job).values(), *get_args(Line)]
+    for kind in [*vars(model).values(), *vars(job).values(), *get_args(Event)]
     if isinstance(kind, type) and is_dataclass(kind)
 ]
 
@@ -88,12 +88,12 @@ def test_every_dataclass_survives_the_way_over_json(kind: type[Any]) -> None:
     survives()
 
 
-@pytest.mark.parametrize("kind", get_args(Line))
+@pytest.mark.parametrize("kind", get_args(Event))
 def test_every_report_line_survives_the_way_over_json_with_its_type(kind: type[Any]) -> None:
     @few
     @given(line=instances_of(kind))
     def survives(line: Any) -> None:
-        assert line_from_data(over_json(line_to_data(line))) == line
+        assert event_from_data(over_json(event_to_data(line))) == line
 
     survives()
 
@@ -104,7 +104,7 @@ def test_the_job_of_a_mutant_survives_with_its_vocabulary_and_mutant() -> None:
 
 def test_an_unknown_type_of_line_is_refused() -> None:
     with pytest.raises(KeyError):
-        line_from_data({"type": "Gossip"})
+        event_from_data({"type": "Gossip"})
 
 
 @pytest.mark.parametrize("kind", KINDS)

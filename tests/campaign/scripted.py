@@ -16,19 +16,19 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.footprint import Footprint
-from mutabot.border.job import Job
-from mutabot.border.lines import (
+from mutabot.border.events import (
     Acted,
     BranchDied,
     BranchEnd,
-    Line,
+    Event,
     PlacesReached,
     SessionEnd,
     SiteSeen,
     TestStart,
     TextsSeen,
 )
+from mutabot.border.footprint import Footprint
+from mutabot.border.job import Job
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.request import Request
 from mutabot.campaign.workers.executor import Executor
@@ -140,7 +140,7 @@ class Scripted:
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         return (event for event in self.events(tasks) if isinstance(event, Result))
 
-    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
         for task in tasks:
             self.script.tasks.append(task)
             result = Result(task, wall=0.1)
@@ -149,7 +149,7 @@ class Scripted:
                 yield task, line
             yield result
 
-    def _lines(self, job: Job, result: Result) -> Iterator[Line]:
+    def _lines(self, job: Job, result: Result) -> Iterator[Event]:
         tests = job.tests if job.tests is not None else tuple(self.suite.tests)
         before = self._count(job.mutant, job.round)
         found = {
@@ -186,7 +186,7 @@ class Scripted:
                 break
         yield SessionEnd(0, tuple(self.suite.tests))
 
-    def _branches(self, job: Job, trunk: Run, found: dict[str, int]) -> Iterator[Line]:
+    def _branches(self, job: Job, trunk: Run, found: dict[str, int]) -> Iterator[Event]:
         """The branches of one test; a mutant that it decides about has no further ones."""
         assert job.branching is not None
         for mutant in job.branching.mutants:
@@ -195,8 +195,7 @@ class Scripted:
             run = replace(trunk, mutant=mutant, before=found[mutant.id], is_branch=True)
             end = self.script.end(run)
             if isinstance(end, Died):
-                yield Acted(run.test, mutant.id)
-                yield BranchDied(mutant.id, run.test, end.exit_code, end.overdue, end.where)
+                yield BranchDied(mutant.id, run.test, end.exit_code, end.overdue, end.where, acted=True)
                 continue
             ended = self.suite.end(run, end)
             yield BranchEnd(mutant.id, ended, self.suite.sites)

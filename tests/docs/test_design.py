@@ -84,7 +84,8 @@ TRAVELS = {
 }
 #: steps that are on other ways as well: to be called after the step before is all that is asked of them
 ON_MANY_WAYS = {
-    "border.lines.line_from_data", "inside.pipe.Pipe.send", "report.terminal.progress.Lines.advance",
+    "border.event_file.unsealed", "inside.event_file.EventFile.send",
+    "report.terminal.progress.Lines.advance",
     "settings.document.Document.read",
 }  # fmt: skip
 

@@ -16,8 +16,8 @@ from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
+from mutabot.border.events import SiteSeen
 from mutabot.border.job import Budget, Job
-from mutabot.border.lines import SiteSeen
 from mutabot.inside.calls.activation import Activation
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.session import Session

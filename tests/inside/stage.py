@@ -15,8 +15,8 @@ from textwrap import dedent
 from types import ModuleType
 from typing import Any
 
+from mutabot.border.events import Event, SiteSeen
 from mutabot.border.job import Budget, Job
-from mutabot.border.lines import Line, SiteSeen
 from mutabot.inside.calls.activation import Activation
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.session import Session
@@ -30,9 +30,9 @@ class ListPipe:
     """Takes report lines like the real pipe and keeps them."""
 
     def __init__(self) -> None:
-        self.lines: list[Line] = []
+        self.lines: list[Event] = []
 
-    def send(self, line: Line) -> None:
+    def send(self, line: Event) -> None:
         self.lines.append(line)
 
 

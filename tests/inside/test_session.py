@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from mutabot.border.events import Acted, Problem
 from mutabot.border.job import Budget
-from mutabot.border.lines import Acted, Problem
 from mutabot.inside.limits import BudgetExceeded
 from tests.inside.stage import Make
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import Problem
+from mutabot.border.events import Problem
 from mutabot.errors import ConfigurationError, UnknownNameError, VocabularyError
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load, problem_error

@@ -1,1 +1,1 @@
-"""What crosses the process border: a job description in, report lines out."""
+"""What crosses the process border: a job description in, events out."""

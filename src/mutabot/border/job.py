@@ -1,4 +1,4 @@
-"""What crosses the process border: a job description in, report lines out.
+"""What crosses the process border: a job description in, events out.
 
 The controller writes one ``Job`` as JSON; the process that runs the robot program answers with lines of
 JSON, each one of the report classes below.
@@ -136,7 +136,7 @@ class Job:
         pictures: which test is filmed; None for none.
         extensions: references to what packages bring, by kind and name, see ``extensions.use``.
         faults: what puts the mutant in place, or parts of it, if it does so by itself: by the part's id.
-        key: of the seals on its report lines, see ``frame``.
+        key: of the seals on its events, see ``event_file``.
     """
 
     root: str

@@ -6,3 +6,5 @@ import signal
 
 #: a program dies of these by its own fault; others come from outside
 OWN_FAULT = {signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL}
+#: stands for any process, as in kill(2)
+ANYBODY = -1

@@ -11,6 +11,9 @@ from mutabot.model.verdict import By
 
 from .footprint import Footprint
 
+#: hits per test that are reported with their values; a test is compared and planned from these
+TRACE_LIMIT = 5000
+
 
 @dataclass(frozen=True, slots=True)
 class TestEnd:

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from mutabot.border.lines import Line, Problem, Remark
+from mutabot.border.events import Event, Problem, Remark
 from mutabot.errors import PathError
 from mutabot.inside.calls.bypasses import Bypasses
 from mutabot.inside.readings.probes import is_bound, needed_arguments
@@ -31,7 +31,7 @@ class Inspection:
         elsewhere: modules that processes below the tests have, and that may not be importable here.
     """
 
-    def __init__(self, vocabulary: Vocabulary, is_asked: bool, send: Callable[[Line], None]) -> None:
+    def __init__(self, vocabulary: Vocabulary, is_asked: bool, send: Callable[[Event], None]) -> None:
         self._vocabulary = vocabulary
         self.is_asked = is_asked
         self._send = send

@@ -12,8 +12,8 @@ from random import Random
 from types import CodeType, FrameType
 from typing import Any
 
+from mutabot.border.events import Acted, CalledAtImport, Event, MutatedCall, SiteSeen, TextsSeen
 from mutabot.border.job import Budget, Job
-from mutabot.border.lines import Acted, CalledAtImport, Line, MutatedCall, SiteSeen, TextsSeen
 from mutabot.inside.calls.activation import Activation, is_refusal
 from mutabot.inside.calls.answers import Answers, handles_of
 from mutabot.inside.calls.bypasses import Bypasses
@@ -36,10 +36,10 @@ from mutabot.inside.text.session_text import SessionText
 from mutabot.model import Moment, Mutant, Operation, Probe, Role, Span
 from mutabot.model.values.quantity import Value
 
+from .event_file import Sink
 from .evidence import Evidence, together
 from .inspection import Inspection
 from .limits import Meter
-from .pipe import Sink
 from .process_fault import ProcessFaults
 from .seeds import derive
 
@@ -426,7 +426,7 @@ class Session:
     def _calls_of(self, target: str) -> int:
         return sum(door.calls for door in self._doors if door.operation.target == target)
 
-    def _send(self, line: Line) -> None:
+    def _send(self, line: Event) -> None:
         self.pipe.send(line)  # which is another one once a copy knows its job
 
     def _site_seen(self, site: SiteSeen) -> None:
@@ -442,7 +442,7 @@ class Session:
         if self.text is not None and self.text.is_mutant and not self.text.has_acted:
             return
         if self.part_names - {""} <= self.parts:
-            self.pipe.send(Acted(self.test, self.branch))
+            self.pipe.send(Acted(self.test))
 
     @property
     def part_names(self) -> set[str]:
@@ -454,7 +454,7 @@ class Session:
         return self.meter.simulated if self.meter is not None else None
 
     def _in_mutated_call(self, began: bool) -> None:
-        self.pipe.send(MutatedCall(self.test, began, self.branch))
+        self.pipe.send(MutatedCall(self.test, began))
 
     def _clock_is_wrong(self, key: str, text: str) -> None:
         clock = self.job.vocabulary.clock

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from time import monotonic  # before a simulation takes over the clock
 from typing import TYPE_CHECKING
 
-from mutabot.border.lines import Watched
+from mutabot.border.events import Watched
 from mutabot.inside.node_ids import node_id
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from mutabot.border.lines import Problem
+from mutabot.border.events import Problem
 from mutabot.errors import ConfigurationError, UnknownNameError, nearest_name, unknown_name_text
 from mutabot.limits import shortened
 

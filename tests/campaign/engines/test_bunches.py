@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import BranchEnd
+from mutabot.border.events import BranchEnd
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers.workers import Workers
 from mutabot.model import Outcome, Verdict

@@ -70,7 +70,7 @@ ROBOT = """
         def position(self):
             return self.x
 
-    def pipes():
+    def opened(is_reported):
         import os, stat
         for name in os.listdir("/proc/self/fd"):
             try:
@@ -78,7 +78,8 @@ ROBOT = """
             except OSError:
                 continue
             flags = open(f"/proc/self/fdinfo/{name}").read().split("flags:")[1].split()[0]
-            if stat.S_ISFIFO(status.st_mode) and int(flags, 8) & 3 and int(name) > 2:
+            is_kind = target.endswith(".jsonl") if is_reported else stat.S_ISFIFO(status.st_mode)
+            if is_kind and int(flags, 8) & 3 and int(name) > 2:
                 yield int(name)
 
     def home():
@@ -104,13 +105,16 @@ GARBAGE = """
             b"0123456789abcdef " + json.dumps(forged).encode(),
             b"half a li",
         ]
-        for descriptor in pipes():
+        for descriptor in opened({is_reported}):
             try:
                 flags = open(f"/proc/self/fdinfo/{descriptor}").read()
                 os.write(descriptor, b"\\n" + b"\\n".join(lines))
             except OSError:
                 pass
 """
+
+
+INTO_REPORT, INTO_PIPES = (GARBAGE.replace("{is_reported}", str(one)) for one in (True, False))
 
 
 def project(folder: Path, harm: str = "pass") -> Path:
@@ -140,10 +144,10 @@ def harmful_of(found: dict[str, Outcome]) -> str:
 
 
 @pytest.mark.parametrize("engine", ["auto", REPLAY])
-def test_a_mutant_that_writes_into_the_pipe_is_an_error_and_no_other_ends_otherwise(
+def test_a_mutant_that_writes_into_its_report_is_an_error_and_no_other_ends_otherwise(
     tmp_path: Path, harmless: dict[str, Outcome], engine: str
 ) -> None:
-    found, _, path = run(project(tmp_path, GARBAGE), engine=engine)
+    found, _, path = run(project(tmp_path, INTO_REPORT), engine=engine)
     harmful = harmful_of(found)
     assert found[harmful].verdict is Verdict.ERROR
     assert found[harmful].message is not None
@@ -156,8 +160,37 @@ def test_a_mutant_that_writes_into_the_pipe_is_an_error_and_no_other_ends_otherw
         assert read_results(journal).state == "complete"
 
 
-def test_where_each_run_writes_into_the_pipe_the_baseline_says_so(tmp_path: Path) -> None:
-    folder = project(tmp_path, GARBAGE)
+#: what becomes of the process's own report -> what is said of it
+SPOILT = {
+    "import os; os.write(own, b'half an ev'); os.kill(os.getpid(), 9)": "in the midst of",
+    "import os; os.truncate(own, 10)": "is shorter than it was",
+    "import os; os.write(own, os.pread(os.open(f'/proc/self/fd/{own}', 0), 10**6, 0))": "comes twice",
+}
+
+
+@pytest.mark.parametrize(("harm", "said"), SPOILT.items(), ids=["killed in a write", "shortened", "repeated"])
+def test_a_mutant_that_spoils_its_own_report_is_an_error_and_no_other_ends_otherwise(
+    tmp_path: Path, harmless: dict[str, Outcome], harm: str, said: str
+) -> None:
+    found, _, _ = run(project(tmp_path, f"own = list(opened(True))[0]; {harm}"))
+    harmful = harmful_of(found)
+    assert found[harmful].verdict is Verdict.ERROR
+    assert said in (found[harmful].message or "")
+    mine, others = ends(found), ends(harmless)
+    del mine[harmful], others[harmful]
+    assert mine == others
+
+
+@pytest.mark.parametrize("engine", ["auto", "replay"])
+def test_what_a_mutant_writes_into_the_pipe_means_nothing(
+    tmp_path: Path, harmless: dict[str, Outcome], engine: str
+) -> None:
+    found, _, _ = run(project(tmp_path, INTO_PIPES), engine=engine)
+    assert ends(found) == ends(harmless)
+
+
+def test_where_each_run_writes_into_its_report_the_baseline_says_so(tmp_path: Path) -> None:
+    folder = project(tmp_path, INTO_REPORT)
     tests = folder / "tests/test_mission.py"
     tests.write_text(f"{tests.read_text()}\n\ndef test_harm():\n    import robot\n    robot.harm()\n")
     with pytest.raises(BaselineError, match=r"unreadable: b.* \(during tests/test_mission.py::test_harm\)"):

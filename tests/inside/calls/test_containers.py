@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from mutabot.border.lines import Problem
+from mutabot.border.events import Problem
 from mutabot.errors import PathError
 from mutabot.model import Path
 from tests.inside.stage import Make

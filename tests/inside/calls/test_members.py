@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.border.lines import Problem
+from mutabot.border.events import Problem
 from tests.inside.stage import Make, Stage
 
 ROBOT = """

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import Problem
+from mutabot.border.events import Problem
 from mutabot.inside.calls.activation import Activation
 from tests.inside.stage import Make, Stage
 

@@ -4,77 +4,104 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
+import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from mutabot.border.processes import SUFFIX, Node
+from mutabot.border.event_file import sealed
+from mutabot.border.events import Began, Event, Found, SessionEnd
+from mutabot.border.fold import Children
+from mutabot.border.processes import FOLDER, SUFFIX
 from mutabot.campaign.run import run_campaign
-from mutabot.inside.processes.diary import Diary
-from mutabot.inside.processes.host import Diaries
+from mutabot.inside.event_file import EventFile
+from mutabot.inside.processes.now import Now
 from mutabot.model import Verdict
 from tests.campaign.project import Quiet, outcomes, request_for, write_project
 
+KEY = "0123456789abcdef"
+NAME = f"{os.getpid()}-1"
+BEGAN = Began(os.getpid(), 1, ("python", "mission.py"), 0.0)
+
+
+def folder_of(home: Path) -> Path:
+    (home / FOLDER).mkdir()
+    return home / FOLDER
+
 
 def only_file(folder: Path) -> Path:
-    (found,) = folder.glob(f"*{SUFFIX}")
-    return found
+    return folder / f"{NAME}{SUFFIX}"
 
 
-def shorten(folder: Path) -> None:
-    os.truncate(only_file(folder), 3)
+def line_of(event: Event, number: int) -> bytes:
+    return sealed(event, number, NAME, KEY)
 
 
-def scribble(folder: Path) -> None:
+def append(folder: Path, *data: bytes) -> None:
     with only_file(folder).open("ab") as file:
-        file.write(b"progress: 10 %\n")
-
-
-def write_a_value(folder: Path) -> None:
-    with only_file(folder).open("ab") as file:
-        file.write(b'[{"type": "Node"}]\n')
-
-
-def tear(folder: Path) -> None:
-    with only_file(folder).open("ab") as file:
-        file.write(b'{"type":"Node","na\n')
+        file.write(b"".join(data))
 
 
 def forge(folder: Path) -> None:
-    data = only_file(folder).read_bytes()
-    (folder / f"1-1{SUFFIX}").write_bytes(data)
+    (folder / f"1-1{SUFFIX}").write_bytes(sealed(BEGAN, 1, "1-1", KEY))
 
 
-DAMAGE = {
+def twice(folder: Path) -> None:
+    append(folder, only_file(folder).read_bytes().splitlines(keepends=True)[-1])
+
+
+DAMAGE: dict[str, Callable[[Path], object]] = {
     "deleted": lambda folder: only_file(folder).unlink(),
     "all deleted": shutil.rmtree,
-    "shorter": shorten,
-    "scribbled": scribble,
-    "a value": write_a_value,
-    "torn": tear,
+    "shorter": lambda folder: os.truncate(only_file(folder), 3),
+    "scribbled": lambda folder: append(folder, b"progress: 10 %\n"),
+    "a value": lambda folder: append(folder, b'[{"type": "Found"}]\n'),
+    "torn": lambda folder: append(folder, line_of(SessionEnd(), 3)[:-9] + b"\n"),
     "of another": forge,
+    "one removed": lambda folder: append(folder, line_of(SessionEnd(), 4)),
+    "one twice": twice,
+    "of a process that could not write": lambda folder: Now(str(folder)).note_unwritten(),
 }
 
 
 @pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
 def test_damage_is_noticed(tmp_path: Path, damage: Callable[[Path], object]) -> None:
-    diary, diaries = Diary(str(tmp_path), 0), Diaries(str(tmp_path))
-    diary.write(Node("a"))
-    assert [len(entries) for _, entries in diaries.new()] == [2]
-    assert diaries.doubt is None
-    damage(tmp_path)
-    diaries.new()
-    assert "was damaged" in (diaries.doubt or "")
+    folder = folder_of(tmp_path)
+    Now(str(folder), is_host=True)
+    file, children = EventFile(str(folder), NAME, KEY), Children(str(tmp_path), KEY)
+    for event in (BEGAN, Found(nodes=("a",))):
+        file.send(event)
+    assert children.read() == [BEGAN, Found(nodes=("a",))]
+    assert children.doubt is None
+    damage(folder)
+    children.read()
+    assert "was damaged" in (children.doubt or "")
 
 
-def test_a_line_that_is_being_written_is_no_damage(tmp_path: Path) -> None:
-    diary, diaries = Diary(str(tmp_path), 0), Diaries(str(tmp_path))
-    os.write(diary._file, b'{"type":"Node",')
-    diaries.new()
-    os.write(diary._file, b'"name":"a"}\n')
-    assert [entries for _, entries in diaries.new()] == [[Node("a")]]
-    assert diaries.doubt is None
+def test_an_event_that_is_being_written_is_no_damage(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path)
+    children = Children(str(tmp_path), KEY)
+    line = line_of(Found(nodes=("a",)), 2)
+    append(folder, line_of(BEGAN, 1), line[:20])
+    later = threading.Timer(0.2, append, (folder, line[20:]))
+    later.start()
+    assert children.read() == [BEGAN, Found(nodes=("a",))]
+    assert children.doubt is None
+    later.join()
+
+
+def test_a_process_that_was_killed_while_it_wrote_is_not_waited_for(tmp_path: Path) -> None:
+    folder = folder_of(tmp_path)
+    with subprocess.Popen([sys.executable, "-c", ""]) as gone:
+        name = f"{gone.pid}-1"
+    line = sealed(Began(gone.pid, 1, ("python",), 0.0), 1, name, KEY)
+    (folder / f"{name}{SUFFIX}").write_bytes(line + line_of(Found(), 2)[:20])
+    children = Children(str(tmp_path), KEY)
+    children.read()
+    assert f"{name} ends in the midst of event 2" in (children.doubt or "")
 
 
 MISSION = """
@@ -95,7 +122,7 @@ TESTS = """
     def test_moves():
         found = subprocess.run([sys.executable, "mission.py"], capture_output=True, text=True, check=True)
         if float(found.stdout) != 0.25:  # it is a mutant: as if it had scribbled all over the place
-            for path in Path(os.environ["MUTABOT_PROCESSES"]).glob("*.jsonl"):
+            for path in Path(os.environ["MUTABOT_PROCESSES"]).glob("[0-9]*.jsonl"):
                 path.write_text("?\\n")
 """
 
@@ -107,3 +134,52 @@ def test_damage_is_an_error_of_its_mutant_and_never_a_survivor(tmp_path: Path) -
     found = outcomes(path)
     assert {one.verdict for one in found} == {Verdict.ERROR}
     assert all("what processes below the tests reported was damaged" in str(one.message) for one in found)
+
+
+#: a mutant fills the disk, as far as its processes are concerned: no file of theirs may grow any more
+FULL = """
+    import resource, subprocess, sys
+    import mission
+
+    def test_moves():
+        found = subprocess.run([sys.executable, "mission.py"], capture_output=True, text=True)
+        assert found.returncode == 0 and float(found.stdout) == 0.25
+
+    def test_moves_again():
+        assert mission.run() == 0.25
+"""
+FULL_MISSION = """
+    import resource
+    from robot import Arm
+
+    def run():
+        arm = Arm()
+        arm.move_by(0.25)
+        if arm.x == -0.25:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+            arm.position()
+        return arm.x
+
+    if __name__ == "__main__":
+        print(run())
+"""
+
+
+@pytest.mark.parametrize("engine", ["replay", "auto"])
+def test_a_process_that_cannot_write_is_an_error_of_its_mutant_and_touches_no_other(
+    tmp_path: Path, engine: str
+) -> None:
+    harmless = FULL_MISSION.replace("resource.RLIMIT_FSIZE, (1,", "resource.RLIMIT_CORE, (0,")
+    found = {}
+    for name, mission in (("harmless", harmless), ("full", FULL_MISSION)):
+        folder = write_project(tmp_path / name, mission, FULL)
+        path = run_campaign(request_for(folder, engine=engine, only=("*move_by*",)), Quiet())
+        found[name] = {one.mutant: one for one in outcomes(path)}
+    harmful = next(one for one in found["full"] if "reverse" in one)
+    assert found["full"].keys() == found["harmless"].keys()
+    assert found["harmless"][harmful].verdict is Verdict.KILLED
+    assert found["full"][harmful].verdict is Verdict.ERROR
+    assert "could not write what it had to tell" in str(found["full"][harmful].message)
+    assert {one: each.verdict for one, each in found["full"].items() if one != harmful} == {
+        one: each.verdict for one, each in found["harmless"].items() if one != harmful
+    }

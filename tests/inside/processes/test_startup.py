@@ -11,17 +11,29 @@ from pathlib import Path
 
 import pytest
 
+from mutabot.border.event_file import EventReader
+from mutabot.border.events import Began
 from mutabot.border.processes import FOLDER, VARIABLE, WAKE
 from mutabot.inside.processes import startup
 
+KEY = "0123456789abcdef"
 STARTUP = str(Path(startup.__file__).parent)
 
 
 def folder_of(home: Path, *lines: str) -> Path:
     folder = home / FOLDER
     folder.mkdir(parents=True)
+    (home / "job.json").write_text(json.dumps({"key": KEY}))
     (folder / WAKE).write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
     return folder
+
+
+def only_event(folder: Path) -> Began:
+    """What the one process told that there was."""
+    (file,) = folder.glob("*.jsonl")
+    (told,) = EventReader(str(file), KEY).read(is_last=True)
+    assert isinstance(told, Began)
+    return told
 
 
 def run(python: str, *arguments: str, folder: Path, more: str = "") -> subprocess.CompletedProcess[str]:
@@ -74,10 +86,18 @@ def test_an_older_python_says_that_it_cannot_be_looked_into(tmp_path: Path) -> N
     script.write_text("print('it ran')")
     folder = folder_of(tmp_path / "home", "path /nowhere", f"file {script}")
     assert run(old[0], str(script), folder=folder).stdout == "it ran\n"
-    (diary,) = folder.glob("*.jsonl")
-    told = json.loads(diary.read_text())
-    assert "is older than 3.11" in told["unable"]
-    assert told["command"][-1].endswith("mission.py")
+    told = only_event(folder)
+    assert "is older than 3.11" in (told.unable or "")
+    assert told.command[-1].endswith("mission.py")
+
+
+@pytest.mark.parametrize("python", interpreters(), ids=lambda path: Path(path).name)
+def test_a_python_that_cannot_load_us_says_so(python: str, tmp_path: Path) -> None:
+    script = tmp_path / "mission.py"
+    script.write_text("print('it ran')")
+    folder = folder_of(tmp_path / "home", "join module_that_nobody_has", f"file {script}")
+    assert run(python, str(script), folder=folder).stdout == "it ran\n"
+    assert only_event(folder).unable is not None
 
 
 def test_a_sitecustomize_that_is_there_already_is_loaded_as_ever(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import Problem
+from mutabot.border.events import Problem
 from mutabot.campaign.comparing.observation import Observation, compare
 from mutabot.inside.readings.probes import Reading
 from tests.inside.stage import Make, Stage

@@ -8,7 +8,7 @@ from textwrap import dedent
 
 import pytest
 
-from mutabot.border.lines import Problem
+from mutabot.border.events import Problem
 from tests.inside.stage import Make
 
 ROBOT = """

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import Problem
+from mutabot.border.events import Problem
 from mutabot.inside.session import Session
 from mutabot.inside.targets.target import Finding, Handler, Targets, Tell
 from mutabot.model import Operation

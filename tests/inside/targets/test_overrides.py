@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import Problem, Remark
+from mutabot.border.events import Problem, Remark
 from tests.inside.stage import Make, Stage
 
 ROBOT = """

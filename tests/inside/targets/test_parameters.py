@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import Problem, Remark
+from mutabot.border.events import Problem, Remark
 from tests.inside.stage import Make, Stage
 
 #: ``hexlify(data, sep, bytes_per_sep)`` of the standard library tells no signature and takes keywords:

@@ -105,7 +105,7 @@ ATTACKS = (
 #: a worker that says of every unit that mutants were killed which it was not asked for
 FORGER = """
 from dataclasses import replace
-from mutabot.border.lines import BranchEnd, SessionEnd
+from mutabot.border.events import BranchEnd, SessionEnd
 from mutabot.border.test_end import TestEnd
 from mutabot_dask import far
 from mutabot_dask.unit import Answer, Unit

@@ -15,17 +15,17 @@ from typing import Any
 import pytest
 
 from mutabot.border.codec import to_data
-from mutabot.border.job import Branching, Job
-from mutabot.border.lines import (
+from mutabot.border.events import (
     Acted,
     BranchEnd,
     CalledAtImport,
-    CopyEnded,
+    ForkEnded,
     SessionEnd,
     SiteSeen,
     TestStart,
-    line_to_data,
+    event_to_data,
 )
+from mutabot.border.job import Branching, Job
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.observed import observation
 from mutabot.campaign.comparing.observation import compare
@@ -125,9 +125,9 @@ _WRONG: dict[str, bytes] = {
     "a line that is no object": changed(lambda a: a["lines"].append(7)),
     "a kind that is no text": changed(lambda a: a["lines"].append({"type": ["TestEnd"]})),
     "a line without its test": changed(lambda a: a["lines"][END_LINE].pop("test")),
-    "a line of fork servers": changed(lambda a: a["lines"].append(line_to_data(CopyEnded(1, 1)))),
+    "a line of fork servers": changed(lambda a: a["lines"].append(event_to_data(ForkEnded(1, 1)))),
     "an outcome of a mutant of others": changed(
-        lambda a: a["lines"].append(line_to_data(BranchEnd(mutant(2).id, END)))
+        lambda a: a["lines"].append(event_to_data(BranchEnd(mutant(2).id, END)))
     ),
     "a test of others": changed(lambda a: a["lines"][END_LINE].update(test="tests/test_other.py::test")),
     "an outcome that there is not": changed(lambda a: a["lines"][END_LINE].update(outcome="great")),
@@ -154,10 +154,10 @@ def test_an_answer_of_absurd_size_is_not_read() -> None:
 
 def test_a_trunk_tells_of_its_own_mutants_only() -> None:
     data = good()
-    data["lines"].append(line_to_data(BranchEnd(mutant(1).id, replace(END, trace=()))))
+    data["lines"].append(event_to_data(BranchEnd(mutant(1).id, replace(END, trace=()))))
     _, lines = Answer.of(packed(data), trunk())
     assert sum(isinstance(line, BranchEnd) for line in lines) == 1
-    data["lines"].append(line_to_data(BranchEnd(mutant(2).id, replace(END, trace=()))))
+    data["lines"].append(event_to_data(BranchEnd(mutant(2).id, replace(END, trace=()))))
     with pytest.raises(Misfit, match="is no mutant of this unit"):
         Answer.of(packed(data), trunk())
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import Problem
+from mutabot.border.events import Problem
 from mutabot.model.values.answer import keep, restore
 from mutabot_ros import _master
 from tests.inside.stage import Make, Stage

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from mutabot.border.events import Problem
 from mutabot.border.idle import Idle
-from mutabot.border.lines import Problem
 from mutabot.inside.calls.answers import LOST
 from mutabot.model.values.answer import keep, restore
 from tests.inside.stage import Make, Stage

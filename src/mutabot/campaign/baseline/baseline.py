@@ -10,8 +10,8 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from mutabot.border.events import Remark
 from mutabot.border.job import Budget, RefusedAt
-from mutabot.border.lines import Remark
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.observation import Observation, as_steady
 from mutabot.faults import Original, Planned, Preparation

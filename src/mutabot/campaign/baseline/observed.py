@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from mutabot.border.events import SiteSeen
 from mutabot.border.job import RefusedAt
-from mutabot.border.lines import SiteSeen
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.observation import Event, Observation
 from mutabot.campaign.workers.task import Result

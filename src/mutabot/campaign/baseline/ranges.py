@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from mutabot.border.lines import Remark
+from mutabot.border.events import Remark
 from mutabot.campaign.request import Progress
 from mutabot.model import Operation, Pattern, Quantity, Vocabulary
 from mutabot.model.values.quantity import is_number

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from mutabot.border.lines import SiteSeen
+from mutabot.border.events import SiteSeen
 from mutabot.languages.front_end import Name
 from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import unused_calls

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mutabot.border.lines import Line, Remark
+from mutabot.border.events import Event, Remark
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.moments import moments_in, note_moments, strides_of
 from mutabot.campaign.request import Progress, Request
@@ -159,7 +159,7 @@ def _not_private(results: Iterable[Result]) -> str | None:
 
 
 def _told_as_they_come(
-    events: Iterator[Result | tuple[Task, Line]], progress: Progress, remarks: list[Remark]
+    events: Iterator[Result | tuple[Task, Event]], progress: Progress, remarks: list[Remark]
 ) -> Iterator[Result]:
     """Results; remarks are told when they are made, which is before the tests run where that is possible."""
     for event in events:

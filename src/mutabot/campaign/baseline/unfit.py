@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from mutabot.border.lines import Problem
+from mutabot.border.events import Problem
 from mutabot.campaign.comparing.orientations import parts_of, readings_of
 from mutabot.extensions import brought
 from mutabot.model import Quantity, Vocabulary

@@ -11,25 +11,22 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from mutabot.border.job import Branching
-from mutabot.border.lines import (
-    Acted,
+from mutabot.border.events import (
     BranchDied,
     BranchEnd,
-    Line,
-    MutatedCall,
+    Event,
     SiteSeen,
-    TestStart,
     Unbranched,
     Undiverged,
     Untrusted,
 )
+from mutabot.border.job import Branching
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.observed import observation, place_of
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.moments import moments_in
 from mutabot.campaign.comparing.observation import Observation
-from mutabot.campaign.workers.task import Result, Task, at, death
+from mutabot.campaign.workers.task import Result, Task, at, death, how_ended
 from mutabot.model import Instrumentation, Mutant, Outcome, Verdict
 from mutabot.model.place import Place
 
@@ -134,8 +131,6 @@ class _Branches:
         tests: the tests that judge it, in order.
         ends, observations: its tests that have ended.
         deaths: set for the tests in which its branch died.
-        acted: tests in which it has changed something.
-        calling: tests in which it was in the midst of a mutated call when it was last heard of.
         shared: simulated seconds its branches inherited.
     """
 
@@ -144,8 +139,6 @@ class _Branches:
     ends: dict[str, TestEnd] = field(default_factory=dict)
     observations: dict[str, Observation] = field(default_factory=dict)
     deaths: dict[str, Death] = field(default_factory=dict)
-    acted: set[str] = field(default_factory=set)
-    calling: set[str] = field(default_factory=set)
     shared: float | None = None
 
     def take(self, line: BranchEnd) -> None:
@@ -176,7 +169,6 @@ class _Trunk:
         self._waiting: dict[str, set[str]] = {}
         self._undiverged: dict[str, Mapping[str, int]] = {}
         self._trunk_places: dict[int, Place] = {}
-        self._begun: set[str] = set()
         self._doubted: list[Mutant] = []
 
     def add(self, mutant: Mutant, tests: tuple[str, ...]) -> None:
@@ -267,8 +259,8 @@ class _Trunk:
         patience = 2.0 * longest + _PATIENCE
         return Task(key, job, {}, patience, patience, is_trunk=True, may_share=True)
 
-    def take(self, line: Line) -> Iterator[Outcome]:
-        """Sort in a report line; yields the outcomes that it settles.
+    def take(self, line: Event) -> Iterator[Outcome]:
+        """Sort in an event; yields the outcomes that it settles.
 
         What goes wrong with it is an error of its mutant, or leaves its test to replay.
         """
@@ -277,7 +269,7 @@ class _Trunk:
         except Exception as error:
             yield from self._give_up(line, error)
 
-    def _give_up(self, line: Line, error: Exception) -> Iterator[Outcome]:
+    def _give_up(self, line: Event, error: Exception) -> Iterator[Outcome]:
         refuse_others(error)
         branches = self._open.get(line.mutant) if isinstance(line, BranchEnd | BranchDied) else None
         if branches is not None:
@@ -288,40 +280,33 @@ class _Trunk:
         if isinstance(line, TestEnd):
             self._failed.add(line.test)
 
-    def _take(self, line: Line) -> Iterator[Outcome]:
+    def _take(self, line: Event) -> Iterator[Outcome]:
         match line:
             case BranchEnd() if line.mutant in self._open:
                 yield from self._branch_ended(line)
             case BranchDied() if line.mutant in self._open:
                 yield from self._branch_died(line)
-            case Acted() | MutatedCall():
-                self._note(line)
             case Unbranched():
                 self._left.reasons.setdefault(line.test, line.reason)
             case Undiverged():
                 self._undiverged[line.test] = line.hits
             case SiteSeen():
                 self._trunk_places[line.index] = place_of(line, self._sources)
-            case TestStart():
-                self._begun.add(line.test)
             case TestEnd():
                 yield from self._test_ended(line)
             case Untrusted():
                 self._doubt(line)
 
     def _doubt(self, line: Untrusted) -> None:
-        """Nobody knows which process of the trunk wrote this: one of the mutants whose branches may run.
+        """What the trunk itself tells cannot be relied on; branches have files of their own.
 
-        They are left to an engine in which each has a process of its own. A branch reports last of all, so
-        outcomes that are settled are not concerned.
+        All that is open is left to an engine in which each mutant has a process of its own. Outcomes that are
+        settled are not concerned.
         """
-        doubted = [name for name, one in self._open.items() if not self._begun.isdisjoint(one.tests)]
-        if not self._doubted:
-            self._left.notes.append(
-                f"round {self._round + 1}: {line.reason}; mutants that may have to do with it run in "
-                "processes of their own"
-            )
-        self._doubted += [self._open.pop(name).mutant for name in doubted]
+        why = f"round {self._round + 1}: {line.reason}; mutants that may have to do with it run in processes"
+        self._left.notes.append(f"{why} of their own")
+        self._doubted += [branches.mutant for branches in self._open.values()]
+        self._open.clear()
 
     def finish(self, result: Result) -> Iterator[Outcome]:
         """The trunk is gone: settle what can be settled, and leave the rest to replay."""
@@ -343,30 +328,18 @@ class _Trunk:
     def _branch_died(self, line: BranchDied) -> Iterator[Outcome]:
         branches = self._open[line.mutant]
         code = line.exit_code
-        how = f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
         branches.deaths[line.test] = Death(
-            text=f"{line.overdue or how} during {line.test}",
+            text=f"{line.overdue or how_ended(code)} during {line.test}",
             test=line.test,
             signal=-code if code < 0 and line.overdue is None else None,
             overdue=line.overdue is not None,
-            acted=line.test in branches.acted,
-            in_mutated_call=line.test in branches.calling,
+            acted=line.acted,
+            in_mutated_call=line.in_mutated_call,
             where=line.where,
             hindered=line.hindered,
             is_starved=line.is_starved,
         )
         yield from self._settle(line.mutant)
-
-    def _note(self, line: Acted | MutatedCall) -> None:
-        branches = self._open.get(line.mutant or "")
-        if branches is None:
-            return
-        if isinstance(line, Acted):
-            branches.acted.add(line.test)
-        elif line.began:
-            branches.calling.add(line.test)
-        else:
-            branches.calling.discard(line.test)
 
     def _test_ended(self, end: TestEnd) -> Iterator[Outcome]:
         """The trunk has run a test: the second opinion on the original."""

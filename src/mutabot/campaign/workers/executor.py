@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from typing import Protocol
 
-from mutabot.border.lines import Line
+from mutabot.border.events import Event
 
 from .task import Result, Task
 
@@ -33,8 +33,8 @@ class Executor(Protocol):
     def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
         """Results in the order in which tasks end. Tasks are taken from the iterable as places free up."""
 
-    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
-        """The same, with each report line as it comes.
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
+        """The same, with each event as it comes.
 
         A task whose job branches is a trunk: the executor gives it and its branches the tokens by which they
         share its places with the other tasks. A task that is ``alone`` has nothing beside it.

@@ -12,11 +12,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
+from mutabot.border.events import Copied, ForkEnded, Serving
 from mutabot.border.job import Job
-from mutabot.border.lines import Copied, CopyEnded, Serving
 
 from .interruption import interruptible
-from .processes import Home, LineReader, Spawned, kill_group
+from .processes import EventStream, Home, Spawned, kill_group
 
 #: seconds that a server may take to answer, and to end, once its tests are collected
 _PATIENCE = 30.0
@@ -74,7 +74,7 @@ class ForkServer:
         descriptors: what copies inherit.
 
     Attributes:
-        pipe: reading end of its own reports.
+        events: what it tells.
         startup: seconds it took to start.
     """
 
@@ -87,16 +87,12 @@ class ForkServer:
         self.serving: Serving | None = None
         self._copied: int | None = None
         self._codes: dict[int, int | None] = {}
-        self.pipe, writing = os.pipe()
         self._jobs, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         with theirs:
             self._home = Home.make(folder, replace(self._template, serving=theirs.fileno()))
-            self._lines = LineReader(self.pipe, self._home.key)
-            try:
-                passed = (theirs.fileno(), *descriptors)
-                self._process = Spawned(root, arguments, self._home, writing, passed)
-            finally:
-                os.close(writing)
+            self.events = EventStream(self._home)
+            passed = (theirs.fileno(), *descriptors)
+            self._process = Spawned(root, arguments, self._home, self.events.writing, passed)
 
     def serves(self, job: Job) -> bool:
         """Whether a copy can do this job: all that counts before the first test is the same."""
@@ -126,7 +122,7 @@ class ForkServer:
         return self.serving.reason
 
     def copy(self, home: Home, writing: int) -> Copy | None:
-        """A copy that does the job in ``home`` and reports to ``writing``; None if the server is gone."""
+        """A copy that does the job in ``home`` and rings at ``writing``; None if the server is gone."""
         self._copied = None
         try:
             socket.send_fds(self._jobs, [os.fsencode(home.folder)], [writing])
@@ -137,15 +133,15 @@ class ForkServer:
 
     def listen(self) -> None:
         """Take in what it reports."""
-        for line in self._lines.read():
-            match line:
+        for event in self.events.own():
+            match event:
                 case Serving():
-                    self.serving = line
+                    self.serving = event
                 case Copied():
-                    self._copied = line.pid
-                    self._codes[line.pid] = None
-                case CopyEnded():
-                    self._codes[line.pid] = line.exit_code
+                    self._copied = event.pid
+                    self._codes[event.pid] = None
+                case ForkEnded():
+                    self._codes[event.fork] = event.exit_code
 
     def exit_code_of(self, pid: int) -> int | None:
         """The exit code of a copy; None while it runs. With the server its copies die."""
@@ -170,14 +166,14 @@ class ForkServer:
         self._listen_until(lambda: False, _PATIENCE if self.serving is not None else 0.0)
         self._process.end()
         self._process.release()
-        os.close(self.pipe)
+        self.events.close()
         return self._process.left or [], self._home.remove()
 
     def _listen_until(self, done: Callable[[], bool], seconds: float, period: float = float("inf")) -> None:
         """Listen until something is so, asked once a ``period``, the server has ended, or time is up."""
         until = time.monotonic() + seconds
         poll = select.poll()
-        poll.register(self.pipe, select.POLLIN)
+        poll.register(self.events.bell, select.POLLIN)
         poll.register(self._process.pidfd, select.POLLIN)
         while not done():
             left = until - time.monotonic()

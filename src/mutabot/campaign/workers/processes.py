@@ -1,4 +1,4 @@
-"""What a worker process needs from the system: a folder, a command line, an environment, a pipe, an end."""
+"""What a worker process needs: a folder, a command line, an environment, an end; and what it tells."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from shutil import disk_usage
 
-from mutabot.border.frame import MOST_BYTES, unframed, unreadable
+from mutabot.border.event_file import EventReader
+from mutabot.border.events import BranchDied, Event, ForkEnded
+from mutabot.border.fold import fold_fork
 from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE, Job, job_file, write_job
 from mutabot.border.keeper import FILE as KEEPER
 from mutabot.border.keeper import LEFT
-from mutabot.border.lines import Line, Untrusted
-from mutabot.border.processes import FOLDER
+from mutabot.border.processes import FOLDER, SESSION, SUFFIX
 from mutabot.border.starter import Starter
 
 from .removal import remove_folder
@@ -31,7 +32,7 @@ _LOG_BYTES = 4000
 _PATIENCE = 15.0
 #: bytes that must be free on the disk for a process to print what it prints
 _ROOM = 1 << 14
-#: bytes that are read of one pipe before others are looked at; more than what a pipe holds
+#: more bytes than what a pipe holds
 _AT_ONCE = 1 << 21
 
 
@@ -53,6 +54,8 @@ class Home:
         parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         home = cls(Path(tempfile.mkdtemp(dir=parent)))
         write_job(home.folder, replace(job, key=home.key))
+        home.processes.mkdir()
+        Path(home.events(SESSION)).touch(mode=0o600)
         return home
 
     @property
@@ -69,6 +72,10 @@ class Home:
     def processes(self) -> Path:
         """The folder that processes below it know it by."""
         return self.folder / FOLDER
+
+    def events(self, name: str) -> str:
+        """Where the process of this name tells what it does."""
+        return f"{self.processes}/{name}{SUFFIX}"
 
     def log_text(self) -> str:
         """The last of what the process printed."""
@@ -185,61 +192,59 @@ def kill_group(pid: int) -> None:
         os.killpg(pid, signal.SIGKILL)
 
 
-class LineReader:
-    """Report lines from the reading end of a pipe, which it sets not to block.
+class EventStream:
+    """The events of a test process, and those of its forks once they have ended.
 
-    What a process writes there that is no line of ours is told as ``Untrusted``, wherever it was written.
+    What a fork has told counts as a whole or not at all: where something is missing, or is none of ours, its
+    mutants have not been run.
 
     Args:
-        descriptor: the reading end.
-        key: of the seals on the lines.
+        home: that of the test process.
 
     Attributes:
-        is_over: whether nobody is left who could write.
+        bell: can be read when there is something new. What is in it means nothing.
+        writing: with which the test process says so.
     """
 
-    def __init__(self, descriptor: int, key: str) -> None:
-        self.is_over = False
-        self._descriptor, self._key = descriptor, key
-        self._parts: list[bytes] = []
-        self._size = 0
-        os.set_blocking(descriptor, False)
+    def __init__(self, home: Home) -> None:
+        self.bell, self.writing = os.pipe()
+        self._home = home
+        self._reader = EventReader(home.events(SESSION), home.key)
+        os.set_blocking(self.bell, False)
 
-    def read(self) -> list[Line]:
-        """The lines that are there by now; of an endless number the first, so that others are heard too."""
-        lines: list[Line] = []
-        taken = 0
-        while taken < _AT_ONCE:
-            try:
-                data = os.read(self._descriptor, 1 << 16)
-            except BlockingIOError:
-                break
-            self.is_over = not data
-            if not data:
-                break
-            taken += len(data)
-            lines += self._lines(data)
-        return lines
+    def read(self, *, is_last: bool = False) -> list[Event]:
+        """The events that are there by now; ``is_last``: all processes are gone."""
+        return self._with_forks(SESSION, self.own(is_last=is_last))
 
-    def _lines(self, data: bytes) -> list[Line]:
-        *whole, rest = data.split(b"\n")
-        found: list[Line] = []
-        for part in whole:
-            self._add(part)
-            size, text = self._size, b"".join(self._parts)
-            self._parts, self._size = [], 0
-            if not text:
-                continue
-            line = unframed(text, self._key) if size <= MOST_BYTES else unreadable(text, size)
-            if not (found and isinstance(line, Untrusted) and isinstance(found[-1], Untrusted)):
-                found.append(line)  # of a flood, the first tells enough
-        self._add(rest)
+    def own(self, *, is_last: bool = False) -> list[Event]:
+        """Those of the process itself, with the ends of its forks."""
+        with contextlib.suppress(BlockingIOError):
+            os.read(self.bell, _AT_ONCE)
+        return self._reader.read(is_last=is_last)
+
+    def close(self) -> None:
+        """Hear nothing any more."""
+        os.close(self.bell)
+        os.close(self.writing)
+
+    def _with_forks(self, name: str, events: Iterable[Event]) -> list[Event]:
+        """The events of a process, with those of its forks at their ends."""
+        found: list[Event] = []
+        for event in events:
+            if isinstance(event, ForkEnded):
+                found += self._of_fork(f"{name}.{event.fork}", event.died)
+            else:
+                found.append(event)
         return found
 
-    def _add(self, data: bytes) -> None:
-        self._size += len(data)
-        if data and self._size <= MOST_BYTES:
-            self._parts.append(data)
+    def _of_fork(self, name: str, died: BranchDied | None) -> list[Event]:
+        """What a fork told that has ended; nothing if it cannot be relied on."""
+        reader = EventReader(self._home.events(name), self._home.key)
+        events = reader.read(is_last=True)
+        if reader.damage is not None:
+            return []
+        Path(self._home.events(name)).unlink(missing_ok=True)
+        return self._with_forks(name, fold_fork(events, died))
 
 
 def command(arguments: Iterable[str], home: Path) -> list[str]:

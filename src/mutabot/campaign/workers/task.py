@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.border.job import Job
-from mutabot.border.lines import (
+from mutabot.border.events import (
     Acted,
     CalledAtImport,
-    Line,
+    Event,
     MutatedCall,
     NotInstrumented,
     PlacesReached,
@@ -23,6 +22,8 @@ from mutabot.border.lines import (
     Untrusted,
     Watched,
 )
+from mutabot.border.job import Job
+from mutabot.border.processes import UNWRITTEN
 from mutabot.border.test_end import TestEnd
 
 from .said import last_line
@@ -112,8 +113,8 @@ class Result:
     lost: str | None = None
     untrusted: str | None = None
 
-    def take(self, line: Line) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
-        """Sort in one report line."""
+    def take(self, line: Event) -> None:  # noqa: PLR0912  # one case per kind of line is the clearest there is
+        """Sort in one event."""
         match line:
             case SiteSeen():
                 self.sites.append(line)
@@ -122,7 +123,7 @@ class Result:
                 self.watched.clear()
             case Watched():
                 self.watched.append(line)
-            case Acted() if line.mutant is None:
+            case Acted():
                 self.acted.append(line.test)
             case PlacesReached() if line.elsewhere:
                 self.reached_elsewhere[line.test] = line.places
@@ -134,7 +135,7 @@ class Result:
                 self.seen = line
             case NotInstrumented():
                 self.not_instrumented[line.file] = line.reason
-            case MutatedCall() if line.mutant is None:
+            case MutatedCall():
                 self.in_mutated_call = line.began
             case TokensHeld():
                 self.held = line.held
@@ -164,10 +165,16 @@ def death(result: Result, *, said: bool = True) -> str:
     during = f" during {result.running}" if result.running else ""
     if result.overdue:
         return f"{result.overdue}{during}"
-    code = result.exit_code
-    how = f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
+    how = how_ended(result.exit_code)
     line = last_line(result.log) if said else ""
     return f"{how}{during}{f'; it said last: {line}' if line else ''}"
+
+
+def how_ended(code: int) -> str:
+    """How a process ended that did not say that it did, by its exit code."""
+    if code == UNWRITTEN:
+        return "the tests' process could not write what it had to tell; is the disk full?"
+    return f"killed by signal {-code}" if code < 0 else f"the process ended with exit code {code}"
 
 
 def at(result: Result) -> str:

@@ -1,12 +1,11 @@
-"""Worker processes: each runs one job in a fresh Python and answers over a pipe.
+"""Worker processes: each runs one job in a fresh Python and tells what it does.
 
-One thread looks after all of them: it waits for lines, for exits and for deadlines, and never for one
+One thread looks after all of them: it waits for events, for exits and for deadlines, and never for one
 worker alone. Workers are process groups of their own, so that ending one ends all it started.
 """
 
 from __future__ import annotations
 
-import os
 import selectors
 import tempfile
 import time
@@ -16,8 +15,8 @@ from pathlib import Path
 from types import TracebackType
 
 from mutabot.border import stack
-from mutabot.border.lines import Line, TestStart, Untrusted
-from mutabot.border.processes import acted_in
+from mutabot.border.events import Acted, Event, TestStart, Untrusted
+from mutabot.border.fold import Children, acted_in
 from mutabot.border.starter import is_supported
 from mutabot.border.test_end import TestEnd
 from mutabot.border.time_used import MOST, TimeUsed
@@ -26,7 +25,7 @@ from mutabot.errors import JournalError
 from .forkserver import LOOKS, Copy, ForkServer
 from .interruption import interruptible
 from .pause import Pause
-from .processes import Home, LineReader, Spawned, refuse_full_disk, usual_environment
+from .processes import EventStream, Home, Spawned, refuse_full_disk, usual_environment
 from .remains import claim, end_abandoned, end_left_over
 from .removal import remove_folder
 from .task import Result, Task
@@ -127,8 +126,8 @@ class Workers:
             if isinstance(event, Result):
                 yield event
 
-    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Line]]:
-        """Report lines as they come, with their task, and results in the order in which they end."""
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
+        """Events as they come, with their task, and results in the order in which they end."""
         waiting = iter(tasks)
         next_task = next(waiting, None)
         while True:
@@ -188,14 +187,12 @@ class Workers:
             branching = replace(task.job.branching, tokens=self.pool.descriptors, gate=gate)
             task = replace(task, job=replace(task.job, branching=branching))
         home = Home.make(self._folder, task.job)
-        reading, writing = os.pipe()
+        events = EventStream(home)
         try:
-            worker = _Worker(task, home, reading, self._process(task, home, writing))
+            worker = _Worker(task, home, events, self._process(task, home, events.writing))
         except BaseException:
-            os.close(reading)
+            events.close()
             raise
-        finally:
-            os.close(writing)
         worker.watch(self._selector)
         self._workers.append(worker)
 
@@ -235,7 +232,7 @@ class Workers:
             self._end_server(idle)  # what it was for is over
         server = ForkServer(task.job, self._root, self._arguments, self._folder, self._inherited)
         self._servers.append(server)
-        self._selector.register(server.pipe, selectors.EVENT_READ, server)
+        self._selector.register(server.events.bell, selectors.EVENT_READ, server)
         reason = server.wait_until_ready(task.startup, self.look)
         if reason is None:
             return server
@@ -245,7 +242,7 @@ class Workers:
         return None
 
     def _end_server(self, server: ForkServer) -> None:
-        self._selector.unregister(server.pipe)
+        self._selector.unregister(server.events.bell)
         self._servers.remove(server)
         left, remains = server.close()
         self._tell_left(left)
@@ -257,7 +254,7 @@ class Workers:
             self._has_told_left = True
             self._on_left(left)
 
-    def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Line]]:
+    def _wait(self, next_task: Task | None) -> Iterator[Result | tuple[Task, Event]]:
         """Until something happens, or might: ``next_task`` has no place yet."""
         timeout = self._patience(next_task)
         awaited = self._awaited(next_task)
@@ -273,10 +270,9 @@ class Workers:
         for key, _ in ready:
             if isinstance(key.data, ForkServer):
                 key.data.listen()
-            elif isinstance(key.data, _Worker) and key.fd == key.data.pipe:
+            elif isinstance(key.data, _Worker) and key.fd == key.data.events.bell:
                 for line in key.data.read():
                     yield key.data.task, line
-                key.data.stop_listening_if_over(self._selector)
         now = time.monotonic()
         for worker in list(self._workers):
             if now >= worker.deadline(self._pause) and not worker.has_ended and worker.is_out_of_time():
@@ -302,7 +298,7 @@ class Workers:
             return self._pause.reading
         return self.pool.reading if next_task.is_trunk and len(self._workers) < self._jobs else None
 
-    def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Line]]:
+    def _finish(self, worker: _Worker) -> Iterator[Result | tuple[Task, Event]]:
         self._workers.remove(worker)
         lines, result, remains = worker.finish(self._selector)
         self._tell_left(worker.left)
@@ -319,12 +315,10 @@ class Workers:
 class _Worker:
     """One running worker process."""
 
-    def __init__(self, task: Task, home: Home, pipe: int, process: Spawned | Copy) -> None:
+    def __init__(self, task: Task, home: Home, events: EventStream, process: Spawned | Copy) -> None:
         self.task = task
         self.result = Result(task, held=1 if task.is_trunk else 0)
-        self.pipe = pipe
-        self._lines = LineReader(pipe, home.key)
-        self._is_heard = False
+        self.events = events
         self._home, self._process = home, process
         self.left: list[str] | None = None
         self._started = time.monotonic()
@@ -346,31 +340,23 @@ class _Worker:
         return self._process.exit_code is not None
 
     def watch(self, selector: selectors.BaseSelector) -> None:
-        selector.register(self.pipe, selectors.EVENT_READ, self)
-        self._is_heard = True
+        selector.register(self.events.bell, selectors.EVENT_READ, self)
         if self._process.pidfd is not None:
             selector.register(self._process.pidfd, selectors.EVENT_READ, self)
 
-    def read(self) -> list[Line]:
-        """Take what the pipe holds."""
-        lines = self._lines.read()
-        for line in lines:
-            self._take(line)
-        return lines
+    def read(self) -> list[Event]:
+        """Take what it has told by now."""
+        return self._taken(self.events.read())
 
-    def stop_listening_if_over(self, selector: selectors.BaseSelector) -> None:
-        """A pipe that nobody can write to any more would be ready for ever."""
-        if self._is_heard and self._lines.is_over:
-            selector.unregister(self.pipe)
-            self._is_heard = False
-
-    def _take(self, line: Line) -> None:
-        self.result.take(line)
-        if isinstance(line, TestEnd):
-            self._allow(self.task.startup)
-        elif isinstance(line, TestStart) or self.task.is_trunk:
-            running = self.result.running or ""
-            self._allow(self.task.deadlines.get(running, self.task.deadline))
+    def _taken(self, events: list[Event]) -> list[Event]:
+        for event in events:
+            self.result.take(event)
+            if isinstance(event, TestEnd):
+                self._allow(self.task.startup)
+            elif isinstance(event, TestStart) or self.task.is_trunk:
+                running = self.result.running or ""
+                self._allow(self.task.deadlines.get(running, self.task.deadline))
+        return events
 
     def _allow(self, seconds: float) -> None:
         """From now on it may take so long."""
@@ -407,31 +393,31 @@ class _Worker:
     def kill(self) -> None:
         self._process.kill()
 
-    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Line], Result, str | None]:
+    def finish(self, selector: selectors.BaseSelector) -> tuple[list[Event], Result, str | None]:
         """Collect the rest of a process that has ended.
 
         Returns its last lines, what became of it, and what of it cannot be removed.
         """
         self.result.exit_code = self._end()
-        lines = self.read()
-        if not self._home.is_whole:
-            lines.append(_HOME_LOST)
-            self._take(_HOME_LOST)
+        lines = self._taken([] if self._home.is_whole else [_HOME_LOST])
+        lines += self._taken(self.events.read(is_last=True))
         if self.result.find_overdue(time.monotonic()):
             self.result.hindered = self._used.hindrance()
         if self.result.end is None:
-            self.result.acted += acted_in(self._home.folder)
+            children = Children(str(self._home.folder), self._home.key)
+            children.read()
+            lines += self._taken([Acted(test) for test in acted_in(children.records.values())])
+            lines += self._taken([Untrusted(children.doubt)] if children.doubt is not None else [])
         self.result.wall = time.monotonic() - self._started + self._process.startup
         self.result.log = self._home.log_text()
         return lines, self.result, self.close(selector)
 
     def close(self, selector: selectors.BaseSelector) -> str | None:
         """Let go of all; what of it cannot be removed, in words, or None."""
-        if self._is_heard:
-            selector.unregister(self.pipe)
+        selector.unregister(self.events.bell)
         if self._process.pidfd is not None:
             selector.unregister(self._process.pidfd)
-        os.close(self.pipe)
+        self.events.close()
         self._end()
         self._process.release()
         return self._home.remove()

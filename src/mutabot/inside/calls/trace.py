@@ -6,15 +6,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.border.lines import SiteSeen
+from mutabot.border.events import SiteSeen
+from mutabot.border.test_end import TRACE_LIMIT
 from mutabot.evidence.recording import Told
 from mutabot.model import Role, Span
 
 from .answers import Answers, Returned
 
-#: hits per test that are reported with their values; a test is compared and planned from these
-TRACE_LIMIT = 5000
-#: of these, how many are recorded with their times
+#: of the calls of a trace, how many are recorded with their times
 _TOLD = 2000
 
 

@@ -19,8 +19,8 @@ import weakref
 from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.border.lines import Copied, CopyEnded, Serving
-from mutabot.inside.pipe import Pipe
+from mutabot.border.events import Copied, ForkEnded, Serving
+from mutabot.inside.event_file import EventFile
 
 from .forkable import open_now, why_not
 from .isolate import isolate_files
@@ -35,7 +35,7 @@ class Commission:
 
     Attributes:
         home: its folder, with the job file in it.
-        descriptor: writing end of its pipe.
+        descriptor: writing end of the pipe by which the controller is told that it has written events.
     """
 
     home: str
@@ -53,7 +53,7 @@ class CopyServer:
     """
 
     descriptor: int
-    pipe: Pipe
+    pipe: EventFile
     log_file: str
     _known: frozenset[int] = field(default_factory=open_now)
     _copies: dict[int, int] = field(default_factory=dict)
@@ -103,7 +103,7 @@ class CopyServer:
         _, status = os.waitpid(pid, 0)
         os.close(pidfd)
         del self._copies[pidfd]
-        self.pipe.send(CopyEnded(pid, os.waitstatus_to_exitcode(status)))
+        self.pipe.send(ForkEnded(pid, os.waitstatus_to_exitcode(status)))
 
     def _fork(self, jobs: socket.socket) -> bool:
         """True in the copy."""
@@ -120,7 +120,7 @@ class CopyServer:
         jobs.close()
         for pidfd in self._copies:
             os.close(pidfd)
-        os.close(self.pipe.descriptor)
+        self.pipe.close()
         forget_exit_handlers()
         return True
 

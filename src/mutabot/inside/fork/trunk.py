@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 from time import monotonic, perf_counter  # tests may replace those of the module
 from typing import Protocol
 
+from mutabot.border.events import BranchDied, ForkEnded, TokensHeld, Unbranched, Undiverged
 from mutabot.border.job import Branching
-from mutabot.border.lines import BranchDied, TokensHeld, Unbranched, Undiverged
 from mutabot.border.time_used import MOST, TimeUsed
-from mutabot.inside.pipe import Pipe
+from mutabot.inside.event_file import EventFile
 from mutabot.inside.watchdogs import alarm_held
 from mutabot.model import Call, Mutant, Span
 from mutabot.model.alternative import AT_ONCE
@@ -53,6 +53,7 @@ class Child:
     Attributes:
         mutants: ids of the mutants that it began as.
         test: the test it is in.
+        fork: its number among those that were forked here.
         pid, pidfd: its process.
         until: moment (``time.monotonic``) at which its time is up.
         limit: the seconds it was given.
@@ -63,6 +64,7 @@ class Child:
 
     mutants: tuple[str, ...]
     test: str
+    fork: int
     pid: int
     pidfd: int
     until: float
@@ -102,7 +104,7 @@ class Trunk:
 
     Attributes:
         branching: what to branch.
-        pipe: where reports go.
+        pipe: the file of events.
         log: device and inode of this process's log.
         branch: what every branch does.
         where_is: tells where a process is, in words, or None.
@@ -111,7 +113,7 @@ class Trunk:
     """
 
     branching: Branching
-    pipe: Pipe
+    pipe: EventFile
     log: tuple[int, int] | None
     branch: Branch
     where_is: Callable[[int], str | None] = lambda _: None
@@ -249,7 +251,9 @@ class Trunk:
                     pid = self._fork_one(parting)
                     if pid == 0:
                         return
-                    os.waitpid(pid, 0)
+                    fork = self.pipe.forks
+                    _, status = os.waitpid(pid, 0)
+                    self.pipe.send(ForkEnded(fork, os.waitstatus_to_exitcode(status)))
                     bunch.waited += perf_counter() - began
 
     def finish(self) -> None:
@@ -284,7 +288,8 @@ class Trunk:
             pidfd = os.pidfd_open(pid)
             ids = tuple(mutant.id for mutant in bunch)
             used = TimeUsed.from_now()
-            self._children[pidfd] = Child(ids, self._test, pid, pidfd, used.began + limit, limit, used)
+            until, fork = used.began + limit, self.pipe.forks
+            self._children[pidfd] = Child(ids, self._test, fork, pid, pidfd, until, limit, used)
             self._take_token()
 
     def _fork_one(self, bunch: list[Mutant]) -> int:
@@ -292,6 +297,7 @@ class Trunk:
         for mutant in bunch:
             self._board.clear(mutant.id)
         foot = Foot()
+        self.pipe.forks += 1
         self._forking = True
         pid = os.fork()
         self._forking = False
@@ -307,6 +313,7 @@ class Trunk:
 
     def _become_branch(self, mutants: list[Mutant], foot: Foot) -> None:
         self.branch.begin()
+        self._known |= {self.pipe.go_on_apart()}
         for child in self._children.values():
             os.close(child.pidfd)
         self._children.clear()
@@ -375,7 +382,9 @@ class Trunk:
         code = os.waitstatus_to_exitcode(status)
         if not self.branching.every_test:
             self._decided.update(one for one in child.mutants if self._board.code(one) != ALIVE)
+        died = None
         if code not in (ALIVE, DECIDED, STOPPED) and len(child.mutants) == 1:  # of several, who knows
             overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None
             end = (overdue, child.where, child.hindered, child.is_starved)
-            self.pipe.send(BranchDied(child.mutants[0], child.test, code, *end))
+            died = BranchDied(child.mutants[0], child.test, code, *end)
+        self.pipe.send(ForkEnded(child.fork, code, died))

@@ -7,7 +7,9 @@ import subprocess
 import sys
 from typing import Any
 
-from .killers import ANYBODY, starts_a_killer
+from mutabot.border.signals import ANYBODY
+
+from .killers import starts_a_killer
 
 
 class Exits:

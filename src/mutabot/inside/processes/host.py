@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
 
+from mutabot.border.fold import Children
 from mutabot.border.job import Job
-from mutabot.border.processes import FOLDER, SUFFIX, Began, Entry, entry_of
+from mutabot.border.processes import FOLDER
 from mutabot.extensions import brought
 
 from .carried import carry
@@ -18,73 +18,6 @@ from .wake import write_wake
 _JOIN = "mutabot.inside.processes.member"
 
 
-@dataclass(slots=True)
-class Diaries:
-    """The files of all members, as far as they have been read.
-
-    The tests know the folder, and so does whatever they start: files may be gone or damaged.
-
-    Attributes:
-        doubt: why what they tell cannot be relied on, or None.
-    """
-
-    folder: str
-    doubt: str | None = None
-    _read: dict[str, int] = field(default_factory=dict)
-
-    def new(self) -> list[tuple[str, list[Entry]]]:
-        """Entries that are new, by file."""
-        try:
-            names = [name for name in sorted(os.listdir(self.folder)) if name.endswith(SUFFIX)]
-        except OSError:
-            names = []
-            self._doubt("their folder was deleted")
-        if not self._read.keys() <= set(names):
-            self._doubt("a file was deleted")
-        found = []
-        for name in names:
-            try:
-                entries = self._new_in(name)
-            except OSError as error:
-                self._doubt(f"{name} cannot be read ({error.strerror})")
-                continue
-            if entries:
-                found.append((name, entries))
-        return found
-
-    def _doubt(self, why: str) -> None:
-        self.doubt = self.doubt or f"what processes below the tests reported was damaged: {why}"
-
-    def _new_in(self, name: str) -> list[Entry]:
-        start = self._read.get(name, 0)
-        with open(os.path.join(self.folder, name), "rb") as file:
-            if os.fstat(file.fileno()).st_size < start:
-                self._doubt(f"{name} is shorter than it was")
-            file.seek(start)
-            data = file.read()
-        # What comes after the last line break is being written, or its writer was killed meanwhile.
-        whole = data[: data.rfind(b"\n") + 1]
-        self._read[name] = start + len(whole)
-        found = [entry for line in whole.splitlines() if (entry := self._entry(line, name)) is not None]
-        if start == 0 and found and not _is_by_owner(found[0], name):
-            self._doubt(f"{name} was not begun by its process")
-        return found
-
-    def _entry(self, line: bytes, name: str) -> Entry | None:
-        try:
-            entry = entry_of(line)
-        except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError):
-            entry = None
-        if entry is None:
-            self._doubt(f"{name} holds a line that no process writes")
-        return entry
-
-
-def _is_by_owner(first: Entry, name: str) -> bool:
-    """Whether a file begins as that of the process that it is named after."""
-    return isinstance(first, Began) and str(first.pid) == name.partition("-")[0]
-
-
 class Host:
     """The processes below a test process.
 
@@ -93,17 +26,17 @@ class Host:
         job: its job.
 
     Attributes:
-        diaries: what members have written.
+        children: what members have written.
         exits: how processes ended, as far as the test process knows.
         number: the running test's.
     """
 
     def __init__(self, home: str, job: Job) -> None:
         self.folder = os.path.join(home, FOLDER)
-        os.mkdir(self.folder)
+        os.makedirs(self.folder, exist_ok=True)
         self._write_wake(job)
         self._now = Now(self.folder, is_host=True)
-        self.diaries = Diaries(self.folder)
+        self.children = Children(home, job.key)
         self.exits = Exits()
 
     @property

@@ -7,8 +7,6 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-#: stands for any process, as in kill(2)
-ANYBODY = -1
 #: with ``timeout`` and the launchers of ROS, which end what they have started
 _KILLERS = {
     "kill",

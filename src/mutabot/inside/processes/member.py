@@ -1,7 +1,7 @@
 """A process below the tests that is part of a campaign: it runs the session of its test process's job.
 
-It finds, mutates and records calls as the test process does. What it sees goes into its diary at once. Which
-test runs is looked up at each call, since a process may outlive the test that started it.
+It finds, mutates and records calls as the test process does. What it sees goes into its own file at once.
+Which test runs is looked up at each call, since a process may outlive the test that started it.
 """
 
 from __future__ import annotations
@@ -17,35 +17,32 @@ from functools import partial
 from typing import Any
 
 from mutabot import extensions
-from mutabot.border.job import Job, read_job
-from mutabot.border.lines import (
+from mutabot.border.events import (
     Acted,
-    Line,
+    Began,
+    Called,
+    Did,
+    Event,
+    Found,
     MutatedCall,
+    Noted,
     NotInstrumented,
     PlacesReached,
     Problem,
+    Raised,
     Remark,
+    SessionEnd,
+    Signalled,
     SiteSeen,
     TextsSeen,
-)
-from mutabot.border.processes import (
-    Called,
-    Did,
-    Ended,
-    Exceeded,
-    Found,
-    Live,
-    Node,
-    Places,
-    Raised,
-    RefusedCall,
-    Signalled,
     Used,
 )
+from mutabot.border.job import Job, read_job
+from mutabot.border.signals import ANYBODY
 from mutabot.errors import MutabotError
 from mutabot.inside import FOLDER as OURS
 from mutabot.inside.calls.locate import Locator
+from mutabot.inside.event_file import EventFile
 from mutabot.inside.evidence import Evidence
 from mutabot.inside.exception_groups import everything, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
@@ -53,12 +50,10 @@ from mutabot.inside.session import Session
 from mutabot.inside.targets.names import is_named
 from mutabot.inside.text.scripts import hook_script
 from mutabot.model import Call
-from mutabot.model.class_name import class_name
 from mutabot.model.values.quantity import Value
 
 from .carried import carry
-from .diary import Diary
-from .killers import ANYBODY, starts_a_killer
+from .killers import starts_a_killer
 from .now import Now
 
 #: the member that this process is; None in all others
@@ -83,11 +78,11 @@ def is_member() -> bool:
 def note_node(name: str) -> None:
     """A node of this resolved name was made in this process."""
     if _member is not None:
-        _member.diary.write(Node(name))
+        _member.file.send(Found(nodes=(name,)))
 
 
 class Member:
-    """This process, as part of a campaign. Also what a session takes for its pipe.
+    """This process, as part of a campaign. Also what a session sends its events to.
 
     Args:
         folder: the folder of the campaign's processes.
@@ -99,7 +94,11 @@ class Member:
         self._folder = folder
         self._now = Now(folder)
         self._test = self._now.number
-        self.diary = Diary(folder, self._test)
+        now = time.monotonic()
+        name = f"{os.getpid()}-{int(now * 1e6)}"
+        self.file = EventFile(folder, name, job.key, self._now.note_unwritten)
+        command = tuple(getattr(sys, "orig_argv", sys.argv))
+        self.file.send(Began(os.getpid(), os.getpgrp(), command, now, self._test))
         locator = Locator(job.root, job.program, job.oracle)
         self.session = session or Session(
             replace(job, inspect=False, moments={}, evidence=False),
@@ -128,7 +127,7 @@ class Member:
         """In a process that was forked: go on with the session that it has, and tell of it."""
         session = self.session
         for site in session.recorder.sites:
-            self.diary.write(site)
+            self.file.send(site)
         self._told = _copy_of(session.evidence)
         self._attend()
         session.pipe = self
@@ -160,11 +159,11 @@ class Member:
             self._places.clear()
             self.session.start_test(self._now.name_of(self._test))
 
-    def send(self, line: Line) -> None:
+    def send(self, line: Event) -> None:
         """What the session tells: written down, as far as it is news."""
         match line:
             case SiteSeen() | MutatedCall() | NotInstrumented() | Problem() | Remark() | TextsSeen():
-                self.diary.write(line)
+                self.file.send(line)
             case Acted():
                 self.poll()
             case PlacesReached():
@@ -179,20 +178,19 @@ class Member:
         parts = frozenset(session.parts)
         if now.hits != before.hits or now != before or parts != self._parts:
             self._told = _copy_of(now)
-            self.diary.write(self._did(before, now, parts - self._parts))
+            self.file.send(self._did(before, now, parts - self._parts))
             self._parts = parts
         self._tell_found()
         meter = session.meter
         if meter is not None and meter.exceeded is not None and not self._exceeded:
             self._exceeded = True
-            self.diary.write(Exceeded(self._test, meter.exceeded))
+            self._use()
 
     def _did(self, before: Evidence, now: Evidence, parts: frozenset[str]) -> Did:
         away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
         is_refused = now.refusals != before.refusals or now.said != before.said
         return Did(
-            self._test,
-            time.monotonic(),
+            self.session.test,
             hits=now.hits - before.hits,
             acted=now.acted - before.acted,
             away={why: count for why, count in away.items() if count},
@@ -205,13 +203,13 @@ class Member:
         )
 
     def _hit(self, site: int, written: Any, read: Any, answer: Any) -> None:
-        self.diary.write(Called(self._test, time.monotonic(), site, written, read, answer))
+        self.file.send(Called(time.monotonic(), site, written, read, answer))
 
     def _refused(self, site: int, number: int) -> None:
-        self.diary.write(RefusedCall(self._test, site, number))
+        self.file.send(Noted(site, number))
 
     def _is_live(self, site: int) -> None:
-        self.diary.write(Live(self._test, site))
+        self.file.send(Noted(site))
 
     def _after(self, call: Call, read: Mapping[str, Value]) -> None:
         self.poll()
@@ -229,12 +227,13 @@ class Member:
             for operation in self.session.job.vocabulary.operations:
                 if operation.target in targets:
                     self.session.inspection.check_target(operation, self.session.interception)
-            self.diary.write(Found(targets=tuple(sorted(targets))))
+            self.file.send(Found(targets=tuple(sorted(targets))))
 
     def _use(self) -> None:
         meter = self.session.meter
         if meter is not None:
-            self.diary.write(Used(self._test, meter.operations, self.session.commands, meter.simulated))
+            commands = self.session.commands
+            self.file.send(Used(meter.operations, commands, meter.simulated, meter.exceeded))
 
     def _watch_text(self) -> None:
         """Places of the program text are told when they are reached first: the process may die any time."""
@@ -251,7 +250,7 @@ class Member:
         new = set(places) - self._places
         if new:
             self._places |= new
-            self.diary.write(Places(self._test, tuple(sorted(new))))
+            self.file.send(PlacesReached(self.session.test, tuple(sorted(new))))
 
     def end(self) -> None:
         """The process ends: tell what is left to tell."""
@@ -263,8 +262,8 @@ class Member:
         self._use()
         if self.session.text is not None:
             self.session.text.finish()
-        self.diary.write(Found(modules=tuple(sorted(self._modules_of_vocabulary()))))
-        self.diary.write(Ended(time.monotonic()))
+        self.file.send(Found(modules=tuple(sorted(self._modules_of_vocabulary()))))
+        self.file.send(SessionEnd())
 
     def _modules_of_vocabulary(self) -> set[str]:
         vocabulary = self.session.job.vocabulary
@@ -296,12 +295,11 @@ class Member:
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event in ("os.kill", "os.killpg") and _member is self:
-            pid, number = arguments
-            self.diary.write(Signalled(-pid if event == "os.killpg" else pid, int(number)))
+            self.file.send(Signalled(-arguments[0] if event == "os.killpg" else arguments[0]))
         elif event == "os.exec" and _member is self:
             self.end()
         if _member is self and starts_a_killer(event, arguments):
-            self.diary.write(Signalled(ANYBODY, 0))
+            self.file.send(Signalled(ANYBODY))
 
     def _raised(self, error: BaseException, *, in_thread: bool) -> None:
         if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:
@@ -312,12 +310,9 @@ class Member:
         first = leaves(error)[0]
         if isinstance(first, BudgetExceeded):
             return
-        self.diary.write(
+        self.file.send(
             Raised(
-                self._test,
-                time.monotonic(),
-                class_name(type(first)),
-                str(first)[:2000],
+                f"{type(first).__qualname__}: {str(first)[:2000].strip()}",
                 is_refusal=bool(culprits) and is_due_to(error, culprits),
                 failure=self._failure(error),
                 in_thread=in_thread,

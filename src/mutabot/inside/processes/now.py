@@ -39,6 +39,10 @@ class Now:
         number: int = _NUMBER.unpack_from(self._memory)[0]
         return number
 
+    def note_unwritten(self) -> None:
+        """This process could not: that takes no room on any disk."""
+        _NUMBER.pack_into(self._memory, _NUMBER.size, 1)
+
     def begin(self, test: str) -> int:
         """In the test process: a test begins. Returns its number."""
         with open(os.path.join(self._folder, TESTS), "a", encoding="utf-8") as file:

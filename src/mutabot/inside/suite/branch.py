@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.lines import BranchEnd, Unbranched
+from mutabot.border.events import BranchEnd, Unbranched
 from mutabot.border.test_end import TestEnd
 from mutabot.inside.footprint.deeds import Deed
 from mutabot.inside.footprint.footprints import Footprints

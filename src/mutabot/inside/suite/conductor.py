@@ -13,20 +13,20 @@ import pytest
 
 from mutabot import extensions
 from mutabot.border import stack
+from mutabot.border.events import SessionEnd
 from mutabot.border.job import Branching, Job, read_job
-from mutabot.border.lines import SessionEnd
 from mutabot.border.test_end import TestEnd
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.assertions import Assertions
 from mutabot.inside.checks.comparisons import Comparisons
+from mutabot.inside.event_file import EventFile, Held
 from mutabot.inside.footprint.footprints import Footprints
 from mutabot.inside.fork.lifeline import die_with_parent, nobody_listens
 from mutabot.inside.fork.trunk import FAILED as BRANCH_FAILED
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import limit_memory
 from mutabot.inside.node_ids import node_id
-from mutabot.inside.pipe import Held, Pipe
 from mutabot.inside.processes.host import Host
 from mutabot.inside.processes.member import watch_forks
 from mutabot.inside.processes.members import Members
@@ -52,7 +52,7 @@ class Conductor:
 
     Args:
         job: the job at hand.
-        pipe: where reports go; those of a server's session wait for its copies.
+        pipe: what takes the events; those of a server's session wait for its copies.
         server: forks a copy of this process for each job that comes; None if it runs its job itself.
 
     Attributes:
@@ -60,7 +60,7 @@ class Conductor:
         footprints: what tests leave.
     """
 
-    def __init__(self, job: Job, pipe: Pipe, server: CopyServer | None = None) -> None:
+    def __init__(self, job: Job, pipe: EventFile, server: CopyServer | None = None) -> None:
         self.locator = Locator(job.root, job.program, job.oracle)
         self._held = Held()
         where = (self.locator.locate, self.locator.locate_definition)
@@ -91,14 +91,14 @@ class Conductor:
             limit_memory(job.memory)
         # what the program draws while it is imported is the same in all rounds: a server imports it once
         seeds.seed_all(seeds.derive(job.seed, "import"))
+        pipe = EventFile.of_session(home, job.key, descriptor)
         if job.serving is not None:
             from mutabot.inside.fork.copies import CopyServer  # noqa: PLC0415  # of no use to other jobs
 
             preload()
-            pipe = Pipe(descriptor, job.key)
             conductor = cls(job, pipe, CopyServer(job.serving, pipe, os.path.join(home, LOG)))
         else:
-            conductor = cls(job, pipe_of(job, home, descriptor))
+            conductor = cls(job, pipe)
             if job.pictures is not None:  # before its folder is hidden from this process
                 conductor.session.recording.film(job.pictures)
             conductor._make_private(job, home)
@@ -127,7 +127,7 @@ class Conductor:
     def grow(self, branching: Branching, log_file: str) -> None:
         """Be a trunk: fork a branch for every live mutant."""
         log, pipe = os.stat(log_file), self.session.pipe
-        assert isinstance(pipe, Pipe)
+        assert isinstance(pipe, EventFile)
         file = os.path.join(os.path.dirname(log_file), stack.FILE)
         branch = self.running.branch
         branch.expect()
@@ -246,10 +246,10 @@ class Conductor:
         job = read_job(commission.home)
         self._server = None
         self._make_private(job, commission.home)
-        pipe = pipe_of(job, commission.home, commission.descriptor)
+        pipe = EventFile.of_session(commission.home, job.key, commission.descriptor)
         self.session.take_on(job, pipe)
-        for line in self._held.lines:
-            pipe.send(line)
+        for event in self._held.events:
+            pipe.send(event)
         self._select(session.items)
         cache = getattr(session.config, "cache", None)
         if cache is not None:  # what one job keeps there, others must not find
@@ -280,15 +280,9 @@ class Conductor:
         """Say what is left to say, and goodbye."""
         members = self.running.members
         self.session.finish(members.texts_seen() if members is not None else ())
+        if members is not None and members.doubt is not None:
+            self._errors.append(members.doubt)
         self.session.pipe.send(SessionEnd(status, self._collected, tuple(self._errors), self._not_private))
-
-
-def pipe_of(job: Job, home: str, descriptor: int) -> Pipe:
-    """The pipe of a job; a trunk shares it with its branches."""
-    if job.branching is None:
-        return Pipe(descriptor, job.key)
-    lock = os.open(os.path.join(home, "lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
-    return Pipe(descriptor, job.key, lock)
 
 
 def drop_idle_plugins(config: pytest.Config) -> None:

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
+from mutabot.border.events import TestStart
 from mutabot.border.footprint import Footprint
-from mutabot.border.lines import TestStart
 from mutabot.border.test_end import TestEnd
 from mutabot.border.time_used import TimeUsed
 from mutabot.inside import seeds

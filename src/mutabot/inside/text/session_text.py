@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
+from mutabot.border.events import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.border.job import Job
-from mutabot.border.lines import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.inside.calls.activation import is_refusal, with_refusal
+from mutabot.inside.event_file import Sink
 from mutabot.inside.evidence import Evidence
 from mutabot.inside.fork.bunch import Bunch
-from mutabot.inside.pipe import Sink
 from mutabot.model import Call
 
 from .import_hook import ImportHook

@@ -83,10 +83,18 @@ def _tell_unable(folder: str, why: str) -> None:
         return '"%s"' % "".join(one if one.isalnum() or one in " ._-/:()'," else "?" for one in text)
 
     command = ",".join(quoted(one) for one in getattr(sys, "orig_argv", sys.argv))
-    entry = '{"type":"Began","pid":%d,"parent":%d,"group":%d,"command":[%s],"time":0.0,"unable":%s}\n'
+    name = "%d-unable" % os.getpid()
+    event = '{"type":"Began","pid":%d,"group":%d,"command":[%s],"time":0.0,"unable":%s}'
+    text = event % (os.getpid(), os.getpgrp(), command, quoted(why))
     try:
-        with open(os.path.join(folder, "%d-unable.jsonl" % os.getpid()), "w") as file:
-            file.write(entry % (os.getpid(), os.getppid(), os.getpgrp(), command, quoted(why)))
+        import hashlib  # the form of a line is that of border.event_file
+        import json
+
+        with open(os.path.join(os.path.dirname(folder), "job.json")) as file:
+            key = json.load(file)["key"]
+        seal = hashlib.blake2b(("%s 1 %s" % (name, text)).encode(), key=key.encode(), digest_size=8)
+        with open(os.path.join(folder, name + ".jsonl"), "w") as file:
+            file.write("%s 1 %s\n" % (seal.hexdigest(), text))
     except OSError:
         pass
 

@@ -1,9 +1,13 @@
-"""Report lines: what a worker process tells while it runs a job, one JSON object a line."""
+"""Events: what the processes of a job tell, each in a file of its own, see ``event_file``.
+
+The test process, its forks and the processes below the tests tell them alike. Times are those of
+``time.monotonic``, which all processes share.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, get_args
 
 from mutabot.model.alternative import Sighting
@@ -58,11 +62,9 @@ class Acted:
     """The mutant changed something for the first time in this test: proof that mutated code ran.
 
     ``test`` is empty for a mutant of the program text that did so before any test began.
-    ``mutant`` is the branch that says so; None in a session that is one mutant altogether.
     """
 
     test: str
-    mutant: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +113,6 @@ class MutatedCall:
 
     test: str
     began: bool
-    mutant: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +143,8 @@ class BranchDied:
         overdue: which wall-clock limit it exceeded, in words, or None.
         hindered, is_starved: as in ``Result``.
         where: where it was then, if that is known.
+        acted: whether the mutant had changed anything.
+        in_mutated_call: whether it was in the midst of a mutated call.
     """
 
     mutant: str
@@ -151,6 +154,24 @@ class BranchDied:
     where: str | None = None
     hindered: str | None = None
     is_starved: bool = False
+    acted: bool = False
+    in_mutated_call: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ForkEnded:
+    """A process that this one forked has ended.
+
+    Attributes:
+        fork: the number of a branch among the forks of its parent, from 1; that of the process for a copy of
+            a fork server.
+        exit_code: its exit code, negative for a signal.
+        died: what else is known of it, if it was a branch that did not say how its test ended.
+    """
+
+    fork: int
+    exit_code: int
+    died: BranchDied | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,25 +256,130 @@ class Copied:
 
 
 @dataclass(frozen=True, slots=True)
-class CopyEnded:
-    """A copy of a fork server has ended, with an exit code that is negative for a signal."""
+class Began:
+    """A process below the tests has begun to tell.
+
+    Attributes:
+        pid, group: its number, and that of its process group.
+        command: its command line.
+        test: number of the test that was running.
+        unable: why nothing in it can be seen; None if it can.
+    """
 
     pid: int
-    exit_code: int
+    group: int
+    command: tuple[str, ...]
+    time: float
+    test: int = 0
+    unable: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Called:
+    """A call of an operation; the fields from ``site`` on are those of a trace."""
+
+    time: float
+    site: int
+    written: Any
+    read: Any
+    answer: Any = None
+
+
+@dataclass(frozen=True, slots=True)
+class Noted:
+    """A call of the original that the robot refused, or that returned the robot's own memory.
+
+    Attributes:
+        site: its site.
+        refused: its number there in this process, from 1, if it was refused; else None.
+    """
+
+    site: int
+    refused: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Did:
+    """What the mutant did since the last time: counts are to be added up.
+
+    Attributes:
+        test: the test that runs.
+        hits, acted, away, example, invalid, failure: as in ``TestEnd``.
+        refused: how the robot refused a mutated call; None if it did not.
+        is_final: whether this refusal decides about a test that fails, since it was told as data.
+        parts: the mutants of which it is made that changed something.
+    """
+
+    test: str
+    hits: int = 0
+    acted: int = 0
+    away: Mapping[str, int] = field(default_factory=dict)
+    example: tuple[Any, ...] | None = None
+    invalid: bool = False
+    failure: str | None = None
+    refused: str | None = None
+    is_final: bool = False
+    parts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Used:
+    """What the process used of the running test's budget by now: the last one counts.
+
+    ``exceeded`` is the limit that was exceeded, in words.
+    """
+
+    operations: int
+    commands: int
+    simulated: float | None = None
+    exceeded: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Raised:
+    """An exception that nobody caught ended the process, or one of its threads.
+
+    Attributes:
+        text: its type and what it says.
+        is_refusal: whether it is the robot's refusal of a mutated call.
+        failure: the simulator's failure, or None.
+        in_thread: whether only a thread ended.
+    """
+
+    text: str
+    is_refusal: bool = False
+    failure: str | None = None
+    in_thread: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Targets of the vocabulary, modules that it names, and nodes, that the process has."""
+
+    targets: tuple[str, ...] = ()
+    modules: tuple[str, ...] = ()
+    nodes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Signalled:
+    """The process sends a signal to another, or to a group (negative), or to ``ANYBODY``."""
+
+    pid: int
 
 
 @dataclass(frozen=True, slots=True)
 class SessionEnd:
-    """The session has ended in an orderly way.
+    """The process ends in an orderly way: the last of its events.
 
     Attributes:
-        exit_status: pytest's exit status.
+        exit_status: pytest's exit status; 0 for a process below the tests.
         collected: node ids of the tests collected, in order.
         errors: texts of collection errors.
         not_private: why its files were not its own, though that was asked for; None if they were.
     """
 
-    exit_status: int
+    exit_status: int = 0
     collected: tuple[str, ...] = ()
     errors: tuple[str, ...] = ()
     not_private: str | None = None
@@ -261,7 +387,7 @@ class SessionEnd:
 
 @dataclass(frozen=True, slots=True)
 class Untrusted:
-    """What a process reports cannot be relied on: said of it by whoever reads its pipe.
+    """What a process reports cannot be relied on: said of it by whoever reads its events.
 
     Attributes:
         reason: in words.
@@ -270,7 +396,7 @@ class Untrusted:
     reason: str
 
 
-Line = (
+Event = (
     SiteSeen
     | TestStart
     | Watched
@@ -290,28 +416,36 @@ Line = (
     | Remark
     | Serving
     | Copied
-    | CopyEnded
+    | ForkEnded
+    | Began
+    | Called
+    | Noted
+    | Did
+    | Used
+    | Raised
+    | Found
+    | Signalled
     | SessionEnd
     | Untrusted
 )
 
-#: the kinds of line by their names
-LINES: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Line)}
+#: the kinds of event by their names
+EVENTS: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(Event)}
 
 
-def line_to_data(line: Line) -> dict[str, Any]:
-    """JSON-like data of a report line, with its type."""
-    data: dict[str, Any] = to_data(line)
-    return {"type": type(line).__name__, **data}
+def event_to_data(event: Event) -> dict[str, Any]:
+    """JSON-like data of an event, with its type."""
+    data: dict[str, Any] = to_data(event)
+    return {"type": type(event).__name__, **data}
 
 
-def line_from_data(data: dict[str, Any]) -> Line:
-    """The report line in such data.
+def event_from_data(data: dict[str, Any]) -> Event:
+    """The event in such data.
 
     Raises KeyError for a type that is not known, TypeError or ValueError for data that does not fit it.
     """
     if not isinstance(data, dict):
-        raise TypeError(f"a report line is an object, not {type(data).__name__}")
-    kind = LINES[data["type"]]
-    line: Line = from_data(kind, {key: value for key, value in data.items() if key != "type"})
-    return line
+        raise TypeError(f"an event is an object, not {type(data).__name__}")
+    kind = EVENTS[data["type"]]
+    event: Event = from_data(kind, {key: value for key, value in data.items() if key != "type"})
+    return event
