@@ -55,6 +55,7 @@ def test_list_and_run_number_alike_with_and_without_a_selection(
 
 
 @pytest.mark.needs("source")
+@pytest.mark.whole
 @pytest.mark.parametrize("vocabulary", ["", "vocabulary = []", 'vocabulary = ["robot.toml"]'])
 def test_mutants_of_the_text_alone_need_no_vocabulary(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], vocabulary: str
