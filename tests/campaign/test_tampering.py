@@ -82,6 +82,7 @@ def harmless(tmp_path_factory: pytest.TempPathFactory) -> Verdicts:
     return found
 
 
+@pytest.mark.whole
 def test_a_mutant_cannot_write_its_own_mark(tmp_path: Path, harmless: Verdicts) -> None:
     results, said = run(project(tmp_path, FORGE))
     assert verdicts(results) == harmless

@@ -35,6 +35,7 @@ def printed(capsys: pytest.CaptureFixture[str], *words: str) -> dict[str, int]:
     return {one["id"]: one["number"] for one in json.loads(capsys.readouterr().out)["mutants"]}
 
 
+@pytest.mark.whole
 def test_list_and_run_number_alike_with_and_without_a_selection(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -55,6 +56,7 @@ def test_list_and_run_number_alike_with_and_without_a_selection(
 
 
 @pytest.mark.needs("source")
+@pytest.mark.whole
 @pytest.mark.parametrize("vocabulary", ["", "vocabulary = []", 'vocabulary = ["robot.toml"]'])
 def test_mutants_of_the_text_alone_need_no_vocabulary(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], vocabulary: str

@@ -165,6 +165,7 @@ def written_as(name: str) -> Callable[[Path], None]:
     return write
 
 
+@pytest.mark.whole
 def test_rows_may_hold_anything(whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     chance = random.Random(SEED)
     ways = [read_all, read_all, *(written_as(name) for name in FORMATS)]

@@ -250,7 +250,8 @@ UNSAFE = {
 }
 
 
-@pytest.mark.parametrize("reasons", [("1 more thread",), pytest.param(tuple(UNSAFE), marks=WHOLE)])
+@WHOLE
+@pytest.mark.parametrize("reasons", [tuple(UNSAFE)], ids=["all"])
 def test_where_forking_is_unsafe_the_test_falls_back_to_replay(
     tmp_path: Path, reasons: tuple[str, ...]
 ) -> None:

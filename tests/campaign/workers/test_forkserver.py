@@ -63,6 +63,7 @@ def campaign(root: Path, engine: str = "branch") -> tuple[Quiet, dict[tuple[str,
     return progress, {(outcome.mutant, outcome.round): outcome.verdict for outcome in outcomes(path)}
 
 
+@pytest.mark.whole
 def test_program_is_imported_once_for_all_rounds_and_mutants_and_draws_the_same_in_both_engines(
     tmp_path: Path,
 ) -> None:
