@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field, replace
 from time import monotonic, sleep  # tests may replace those of the module
 
@@ -229,7 +228,7 @@ class Known:
     job: Job
     index_of: Callable[[SiteSeen], int]
     parts: Collection[str] = ()
-    part_names: AbstractSet[str] = frozenset()
+    part_names: Collection[str] = ()
     has_acted: bool = False
     codes: Mapping[int, int] = field(default_factory=dict)
     signalled: Collection[int] = ()
@@ -297,7 +296,7 @@ def _of_all_parts(end: TestEnd, did: list[Did], known: Known) -> TestEnd:
     if mutant is None or len(mutant.singles) < 2:
         return end
     parts = {part for one in did for part in one.parts}.union(known.parts)
-    is_whole = known.part_names <= parts
+    is_whole = parts.issuperset(known.part_names)
     return replace(end, acted=max(end.acted, 1) if is_whole else 0, partly=bool(parts) and not is_whole)
 
 

@@ -20,8 +20,6 @@ from mutabot.border.test_end import TestEnd
 
 #: what the controller is to hear of at once; it finds all else when it looks
 _PROMPT = (TestStart, TestEnd, ForkEnded, Serving, Copied)
-#: exit code of a process that finds nobody to tell anything
-_UNHEARD = 70
 
 
 class Sink(Protocol):
@@ -113,7 +111,7 @@ class EventFile:
         except BlockingIOError:
             pass  # it will be heard
         except BrokenPipeError:
-            os._exit(_UNHEARD)
+            os._exit(70)  # there is nobody to tell anything
 
     def _open(self) -> None:
         path = os.path.join(self._folder, self.name + SUFFIX)

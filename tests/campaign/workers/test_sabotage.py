@@ -5,6 +5,7 @@ Each is an error of its own; all others end as they do in the same project witho
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from textwrap import dedent, indent
 
@@ -160,10 +161,10 @@ def test_a_mutant_that_writes_into_its_report_is_an_error_and_no_other_ends_othe
         assert read_results(journal).state == "complete"
 
 
-#: what becomes of the process's own report -> what is said of it
+#: what becomes of the process's own report -> what is said of it, as far as it had been read by then
 SPOILT = {
     "import os; os.write(own, b'half an ev'); os.kill(os.getpid(), 9)": "in the midst of",
-    "import os; os.truncate(own, 10)": "is shorter than it was",
+    "import os; os.truncate(own, 10)": "is shorter than it was|reported something unreadable",
     "import os; os.write(own, os.pread(os.open(f'/proc/self/fd/{own}', 0), 10**6, 0))": "comes twice",
 }
 
@@ -175,13 +176,13 @@ def test_a_mutant_that_spoils_its_own_report_is_an_error_and_no_other_ends_other
     found, _, _ = run(project(tmp_path, f"own = list(opened(True))[0]; {harm}"))
     harmful = harmful_of(found)
     assert found[harmful].verdict is Verdict.ERROR
-    assert said in (found[harmful].message or "")
+    assert re.search(said, found[harmful].message or "")
     mine, others = ends(found), ends(harmless)
     del mine[harmful], others[harmful]
     assert mine == others
 
 
-@pytest.mark.parametrize("engine", ["auto", "replay"])
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
 def test_what_a_mutant_writes_into_the_pipe_means_nothing(
     tmp_path: Path, harmless: dict[str, Outcome], engine: str
 ) -> None:

@@ -32,8 +32,6 @@ _LOG_BYTES = 4000
 _PATIENCE = 15.0
 #: bytes that must be free on the disk for a process to print what it prints
 _ROOM = 1 << 14
-#: more bytes than what a pipe holds
-_AT_ONCE = 1 << 21
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,7 +217,7 @@ class EventStream:
     def own(self, *, is_last: bool = False) -> list[Event]:
         """Those of the process itself, with the ends of its forks."""
         with contextlib.suppress(BlockingIOError):
-            os.read(self.bell, _AT_ONCE)
+            os.read(self.bell, 1 << 21)  # more than what a pipe holds
         return self._reader.read(is_last=is_last)
 
     def close(self) -> None:
