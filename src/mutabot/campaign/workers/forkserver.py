@@ -75,6 +75,7 @@ class ForkServer:
 
     Attributes:
         events: what it tells.
+        process: the server.
         startup: seconds it took to start.
     """
 
@@ -92,7 +93,7 @@ class ForkServer:
             self._home = Home.make(folder, replace(self._template, serving=theirs.fileno()))
             self.events = EventStream(self._home)
             passed = (theirs.fileno(), *descriptors)
-            self._process = Spawned(root, arguments, self._home, self.events.writing, passed)
+            self.process = Spawned(root, arguments, self._home, self.events.writing, passed)
 
     def serves(self, job: Job) -> bool:
         """Whether a copy can do this job: all that counts before the first test is the same."""
@@ -146,7 +147,7 @@ class ForkServer:
     def exit_code_of(self, pid: int) -> int | None:
         """The exit code of a copy; None while it runs. With the server its copies die."""
         code = self._codes[pid]
-        if code is None and self._process.exit_code is not None:
+        if code is None and self.process.exit_code is not None:
             self.listen()
             code = self._codes[pid]
             return -signal.SIGKILL if code is None else code
@@ -156,7 +157,7 @@ class ForkServer:
         """The exit code of a copy that is about to end."""
         self._listen_until(lambda: self._codes[pid] is not None, _PATIENCE)
         if self._codes[pid] is None:  # it cannot be relied on any more
-            self._process.kill()
+            self.process.kill()
         code = self.exit_code_of(pid)
         return -signal.SIGKILL if code is None else code
 
@@ -164,22 +165,22 @@ class ForkServer:
         """End it and all copies; returns what these had left running, and what cannot be removed."""
         self._jobs.close()
         self._listen_until(lambda: False, _PATIENCE if self.serving is not None else 0.0)
-        self._process.end()
-        self._process.release()
+        self.process.end()
+        self.process.release()
         self.events.close()
-        return self._process.left or [], self._home.remove()
+        return self.process.left or [], self._home.remove()
 
     def _listen_until(self, done: Callable[[], bool], seconds: float, period: float = float("inf")) -> None:
         """Listen until something is so, asked once a ``period``, the server has ended, or time is up."""
         until = time.monotonic() + seconds
         poll = select.poll()
         poll.register(self.events.bell, select.POLLIN)
-        poll.register(self._process.pidfd, select.POLLIN)
+        poll.register(self.process.pidfd, select.POLLIN)
         while not done():
             left = until - time.monotonic()
             if left <= 0:
                 return
-            ended = self._process.exit_code is not None
+            ended = self.process.exit_code is not None
             if not ended:
                 poll.poll(min(left, period) * 1e3)
             self.listen()

@@ -232,7 +232,8 @@ class Workers:
             self._end_server(idle)  # what it was for is over
         server = ForkServer(task.job, self._root, self._arguments, self._folder, self._inherited)
         self._servers.append(server)
-        self._selector.register(server.events.bell, selectors.EVENT_READ, server)
+        for descriptor in (server.events.bell, server.process.pidfd):  # with it, its copies end
+            self._selector.register(descriptor, selectors.EVENT_READ, server)
         reason = server.wait_until_ready(task.startup, self.look)
         if reason is None:
             return server
@@ -242,7 +243,8 @@ class Workers:
         return None
 
     def _end_server(self, server: ForkServer) -> None:
-        self._selector.unregister(server.events.bell)
+        for descriptor in (server.events.bell, server.process.pidfd):
+            self._selector.unregister(descriptor)
         self._servers.remove(server)
         left, remains = server.close()
         self._tell_left(left)
