@@ -43,6 +43,7 @@ def asked(*folders: Path) -> list[str]:
     return done.stdout.splitlines()
 
 
+@pytest.mark.needs("cell")
 def test_what_a_package_brings_comes_after_what_mutabots_own_bring_and_is_not_loaded(tmp_path: Path) -> None:
     installed(tmp_path, 'EXTENSION = Extension(interface=1, vocabularies={"arm": "lab:arm.toml"})')
     own, other, loaded = asked(tmp_path)
@@ -74,6 +75,7 @@ def test_a_declaration_that_cannot_be_used_is_an_error_that_names_the_package(
     assert told in line
 
 
+@pytest.mark.needs("cell")
 def test_two_parts_of_one_name_are_an_error_that_names_both_packages(tmp_path: Path) -> None:
     code = 'EXTENSION = Extension(interface=1, vocabularies={"cell": "lab:cell.toml"})'
     line = asked(installed(tmp_path, code))[-1]

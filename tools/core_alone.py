@@ -22,7 +22,8 @@ ROOT = Path(__file__).resolve().parents[1]
 #: tests of the packages themselves, of the examples, which drive the cell, and of the repository
 NOT_OF_THE_CORE = (
     "tests/packages", "tests/examples", "tests/docs", "tests/benchmarks", "tests/test_architecture.py",
-    "tests/test_release.py", "tests/test_recipes.py",
+    "tests/test_release.py", "tests/test_recipes.py", "tests/plugins/test_operators_page.py",
+    "tests/plugins/test_configuration_page.py",
 )  # fmt: skip
 
 

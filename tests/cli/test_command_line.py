@@ -459,6 +459,7 @@ def test_the_short_option_asks_for_help_too(command: list[str], capsys: pytest.C
     assert not re.search(r"<(str|int|float|path)[^>]*>\s{2}", short.partition("Options:")[2])
 
 
+@pytest.mark.needs("source")
 def test_the_shell_completes_commands_and_names(project: Path) -> None:
     def completed(words: str) -> list[str]:
         variables = {"_MUTABOT_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": "2"}

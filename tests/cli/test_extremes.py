@@ -17,6 +17,7 @@ from mutabot import limits
 from mutabot.cli.app import app, main
 from mutabot.errors import ConfigurationError
 from mutabot.exit_codes import ExitCode
+from mutabot.extensions import brought
 from mutabot.settings.configuration import Settings, load_configuration
 from mutabot.settings.demands import DemandTable
 from mutabot.vocabulary import load, schema
@@ -41,10 +42,11 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def declared() -> Iterator[tuple[str, set[type], set[str], Any]]:
     """Command, types, names and declaration of every option."""
-    for command in app.registered_commands:
-        assert command.callback is not None
-        name = command.name or command.callback.__name__
-        for hint in get_type_hints(command.callback, include_extras=True).values():
+    own = [(command.name, command.callback) for command in app.registered_commands if command.callback]
+    of_packages = [(part.name, part.load()) for part in brought("commands").values()]
+    for named, callback in [*own, *of_packages]:
+        name = named or callback.__name__
+        for hint in get_type_hints(callback, include_extras=True).values():
             if get_origin(hint) is Annotated and isinstance(hint.__metadata__[0], OptionInfo):
                 kind = get_args(hint)[0]
                 option = hint.__metadata__[0]
@@ -65,6 +67,7 @@ def options() -> list[tuple[str, str]]:
 OPTIONS = options()
 
 
+@pytest.mark.needs("live")
 def test_all_numbers_of_the_command_line_are_tried_and_bounded() -> None:
     tried = {option for _, option in OPTIONS}
     assert tried >= {

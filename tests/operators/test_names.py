@@ -66,6 +66,7 @@ def test_no_operator_is_named() -> None:
 @pytest.mark.parametrize(
     "text", ['rule.name == "skip"', 'Mutant("SVR")', 'f"{site}:BSR"', 'id.endswith(":noise")', '{"by-to": 1}']
 )
+@pytest.mark.needs("source")
 def test_a_name_in_the_code_is_found(text: str) -> None:
     assert knows(ast.parse(text))
 

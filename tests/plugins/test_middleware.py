@@ -212,6 +212,7 @@ def test_names_where_no_middleware_is_installed_are_refused_with_what_is_needed(
     assert "mutabot_ros" in done.stderr
 
 
+@pytest.mark.needs("ros")
 def test_a_campaign_without_its_client_library_says_which_middlewares_are_known(project: Path) -> None:
     written(project, {"mission.py": "", "tests/test_mission.py": "def test_nothing(): pass\n"})
     done = mutabot(Path(), project, "check")

@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 
-from mutabot import vocabulary as package
 from mutabot.border.codec import from_data, to_data
 from mutabot.model import Clock, Kind, Mode, Operation, Probe, Quantity, Vocabulary
 from mutabot.model.values.answer import restore
@@ -16,7 +15,7 @@ from mutabot.vocabulary import load
 from mutabot.vocabulary.load import shipped
 from pages import blocks
 
-PAGE = Path(package.__file__).parents[3] / "docs" / "vocabulary.md"
+PAGE = Path(__file__).parents[2] / "docs" / "vocabulary.md"
 
 #: the example of the design, with the operation that its `current` names
 DESIGN = """

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from mutabot import vocabulary as package
 from mutabot.border.codec import from_data, to_data
 from mutabot.errors import ConfigurationError
 from mutabot.model import Mode, Operation, Vocabulary
@@ -15,7 +14,7 @@ from mutabot.operators.operator import with_operation
 from mutabot.vocabulary import load
 from pages import blocks
 
-PAGE = Path(package.__file__).parents[3] / "docs" / "vocabulary.md"
+PAGE = Path(__file__).parents[2] / "docs" / "vocabulary.md"
 X = '{ kind = "translation", axis = "x", unit = "m", mode = "to" }'
 GOAL = 'topic = "/arm/goal"\ndirection = "publish"\n'
 

@@ -33,6 +33,7 @@ def test_a_file_of_ones_own_goes_before_a_shipped_one(names: list[str], tmp_path
     assert len(found) == len(load(["urx"], tmp_path).operations)
 
 
+@pytest.mark.needs("cell")
 def test_the_clock_and_probes_of_ones_own_go_before_shipped_ones(tmp_path: Path) -> None:
     (tmp_path / "own.toml").write_text(
         'clock = { tick = "pybullet:stepSimulation", step = 0.01 }\n'
@@ -52,6 +53,7 @@ def test_two_files_of_ones_own_still_may_not_disagree(tmp_path: Path) -> None:
         load(["a.toml", "urx", "b.toml"], tmp_path)
 
 
+@pytest.mark.needs("cell")
 def test_the_cell_that_comes_with_mutabot_has_what_its_vocabulary_says(tmp_path: Path) -> None:
     assert list(compare(load(["cell"], tmp_path))) == []
 

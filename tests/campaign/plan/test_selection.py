@@ -107,6 +107,7 @@ OPERATORS = [
 ]
 
 
+@pytest.mark.needs("source")
 def test_operators_of_all_families_can_be_chosen_by_name() -> None:
     mutants = [
         replace(REVERSE, number=number, family=family, operator=name, quantity=f"q{number}")

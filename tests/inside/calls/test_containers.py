@@ -117,19 +117,19 @@ def test_a_path_leads_into_a_container(make_stage: Make, given: str, path: str) 
 
 
 @pytest.mark.parametrize(
-    ("given", "operator", "changed"),
+    ("given", "operator", "variant", "changed"),
     [
-        ("array('i', [2, 1])", "deg-for-rad", math.degrees(2)),
-        ("array('B', [2, 1])", "reverse", -2),
-        ("np.array([2, 1])", "deg-for-rad", math.degrees(2)),
-        ("np.array([2, 1], dtype='uint8')", "reverse", -2),
+        ("array('i', [2, 1])", "deg-for-rad", "given-deg", math.degrees(2)),
+        ("array('B', [2, 1])", "reverse", "", -2),
+        ("np.array([2, 1])", "deg-for-rad", "given-deg", math.degrees(2)),
+        ("np.array([2, 1], dtype='uint8')", "reverse", "", -2),
     ],
 )
 def test_an_array_of_whole_numbers_takes_what_it_could_not_hold(
-    make_stage: Make, given: str, operator: str, changed: float
+    make_stage: Make, given: str, operator: str, variant: str, changed: float
 ) -> None:
     stage = make_stage(ROBOT, PROGRAM.format(given=given), VOCABULARY.format(path="[0]"))
-    (sent, _), activation = stage.mutated(operator, "positions[0]")
+    (sent, _), activation = stage.mutated(operator, "positions[0]", variant=variant)
     assert (activation.evidence.acted, list(sent)) == (1, [pytest.approx(changed), 1])
 
 

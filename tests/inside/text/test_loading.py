@@ -13,6 +13,8 @@ from types import ModuleType
 import pytest
 
 from mutabot.inside.text import loading
+from mutabot.inside.text.import_hook import ImportHook
+from mutabot.model import Instrumentation
 
 
 class Doubling:
@@ -82,3 +84,16 @@ def test_without_steps_nothing_is_patched(name: str) -> None:
     assert SourceFileLoader.get_code is not original
     loading.remove(step)
     assert "get_code" not in vars(SourceFileLoader)
+
+
+def test_what_only_claims_to_be_a_module_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Library:
+        """As the libraries of cffi: a module by what it says, without a namespace."""
+
+        __slots__ = ()
+        __class__ = ModuleType  # type: ignore[assignment]
+
+    monkeypatch.setitem(sys.modules, "_of_cffi", Library())  # type: ignore[arg-type]
+    hook = ImportHook("/", Instrumentation(()))
+    hook.install()
+    hook.remove()

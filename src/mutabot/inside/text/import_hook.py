@@ -115,5 +115,8 @@ def _file_of(module: Any) -> str:
     """A module's file; empty if it has none. Modules that are loaded when first used stay asleep."""
     if not isinstance(module, ModuleType):
         return ""
-    file = object.__getattribute__(module, "__dict__").get("__file__")
+    try:
+        file = object.__getattribute__(module, "__dict__").get("__file__")
+    except AttributeError:  # libraries of cffi claim to be modules
+        return ""
     return file if isinstance(file, str) else ""
