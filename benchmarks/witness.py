@@ -4,6 +4,10 @@
     python benchmarks/witness.py FOLDER --as RECORDED    the same mutants as in an earlier record
     python benchmarks/same_results.py RECORDED FOLDER    what differs
 
+``benchmarks/witness_records`` holds what commit 96189ca said, before the redesign; where a project is missing
+there, that commit can still be recorded. Install both versions as wheels to compare projects that use
+Hypothesis, which takes constants for its examples from every module that lies outside of site-packages.
+
 Only the command line is used (``list``, ``run``, ``results``), so ``--command`` may name another version. Of
 each mutant and round a record keeps the verdict, what noticed the mutant, the test, the exception, its
 message, the hits, and what ended otherwise than in the original; not what it cost. Over DDS, where messages
