@@ -594,16 +594,16 @@ def test_timers_and_rates_are_sites(make: Making) -> None:
 
 
 @pytest.mark.parametrize(
-    ("operator", "quantity", "seen"),
+    ("operator", "variant", "quantity", "seen"),
     [
-        ("wrong-durability", "durability", ("reliable", "volatile", 3, 0.5)),
-        ("wrong-reliability", "reliability", ("best_effort", "transient_local", 3, 0.5)),
-        ("short-queue", "depth", ("reliable", "transient_local", 1, 0.5)),
-        ("wrong-deadline", "deadline", None),
+        ("wrong-durability", "", "durability", ("reliable", "volatile", 3, 0.5)),
+        ("wrong-reliability", "", "reliability", ("best_effort", "transient_local", 3, 0.5)),
+        ("short-queue", "", "depth", ("reliable", "transient_local", 1, 0.5)),
+        ("wrong-deadline", "none", "deadline", None),
     ],
 )
 def test_a_publisher_is_set_up_with_other_qualities(
-    make: Making, operator: str, quantity: str, seen: tuple[Any, ...] | None
+    make: Making, operator: str, variant: str, quantity: str, seen: tuple[Any, ...] | None
 ) -> None:
     program = """
     from rclpy.duration import Duration
@@ -621,7 +621,7 @@ def test_a_publisher_is_set_up_with_other_qualities(
             found.deadline.nanoseconds / 1e9,
         )
     """
-    came, activation = make(program, GOAL).mutated(operator, quantity)
+    came, activation = make(program, GOAL).mutated(operator, quantity, variant=variant)
     assert activation.evidence.acted == 1, activation.evidence
     if seen is not None:
         assert came == seen
