@@ -17,9 +17,13 @@ SITE   := $(VENV)-site
 AUDIT  := $(VENV)-audit
 LOCKS  := $(wildcard requirements*.lock)
 
+# tests of the core that need no example
+CORE    = $(addprefix tests/,model settings operators languages border analysis journal vocabulary campaign/plan plugins \
+    test_extensions.py)
+
 of_ros  = $(wildcard tests/packages/ros/test_ros$(1)*.py)
 
-.PHONY: demo test whole check format docs site pictures comparison bench stress judged shipped foreign audit sbom locks dist clean
+.PHONY: demo test whole alone check format docs site pictures comparison bench stress judged shipped foreign audit sbom locks dist clean
 
 ## run the published experiment: 26 mutants, five rounds, in physics
 demo: $(READY)
@@ -38,6 +42,11 @@ whole: $(READY) $(REPORTS) $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) -m pytest -n 2 --dist worksteal -m whole
 	$(ROS1)/bin/python -m pytest -n 2 --dist worksteal -m whole $(call of_ros,1) tests/model/values/test_messages.py || test $$? -eq 5  # all skipped
 	$(ROS2)/bin/python -m pytest -n 2 --dist worksteal -m whole $(call of_ros,2) || test $$? -eq 5
+	$(MAKE) alone
+
+## tests of the core, on a wheel from which the packages beside it are deleted
+alone: $(READY)
+	$(RUN) tools/core_alone.py -n 2 --dist worksteal $(CORE)
 
 ## lint and types only
 check: $(READY) $(REPORTS)
