@@ -98,5 +98,6 @@ def test_it_fills_is_paused_and_says_how_it_ended(page: Any, tmp_path: Path) -> 
         assert page.locator("#live li").inner_text() == "<b>a note</b>"
         assert given == ["pause", "resume", "stop"]
     finally:
+        page.close()  # a server that ends resets what the browser still listens to
         feed.close()
         server.close()
