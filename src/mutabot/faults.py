@@ -194,17 +194,14 @@ def brought_providers() -> tuple[FaultProvider, ...]:
 
 
 def _made(part: Part) -> FaultProvider:
-    kind = part.load()
-    where = f"provider {part.name!r} of package {part.owner!r} ({part.reference})"
-    if not (isinstance(kind, type) and issubclass(kind, FaultProvider)):
-        raise ExtensionError(f"{where} is no subclass of mutabot.faults.FaultProvider")
+    kind = part.load_class(FaultProvider)  # type: ignore[type-abstract]
     try:
         made = kind()
     except Exception as error:  # a package of others may fail in any way
-        raise ExtensionError(f"{where} cannot be made: {error!r}") from error
+        raise ExtensionError(f"{part.words} cannot be made: {error!r}") from error
     if getattr(made, "name", None) != part.name:
         name = getattr(made, "name", None)
-        raise ExtensionError(f"{where} calls itself {name!r}; the extension and the class must agree")
+        raise ExtensionError(f"{part.words} calls itself {name!r}; the extension and the class must agree")
     return made
 
 

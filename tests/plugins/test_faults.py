@@ -174,7 +174,7 @@ def test_its_operators_are_listed_and_its_family_is_known(site: Path, project: P
 @pytest.mark.parametrize(
     ("code", "told"),
     [
-        ("class Parameters:\n    name = 'toy'", "no subclass of mutabot.faults.FaultProvider"),
+        ("class Parameters:\n    name = 'toy'", "is not a subclass of mutabot.faults.FaultProvider"),
         ("raise RuntimeError('no licence')", "RuntimeError('no licence')"),
     ],
 )
