@@ -194,6 +194,7 @@ class Running(Planning, total=False):
 
 
 _DEFAULTS: Mapping[str, Any] = {"engine": "auto", "fresh": False, "verify": 0}
+_FIRST = ("context", "only", "skip", "family", "rounds", "jobs", "min_score", "json", "settings")
 #: a parameter of this name stands for the options of all executors
 _EXECUTOR = "executor"
 
@@ -218,11 +219,17 @@ def with_options(
             values[_EXECUTOR] = _chosen({name: value for name, value in given.items() if value is not None})
         return function(**values)
 
-    parameters = [*_parameters(own.parameters.values(), options)]
+    found = _parameters(own.parameters.values(), options)
+    parameters = sorted((one.replace(kind=one.KEYWORD_ONLY) for one in found), key=_place)
     changed: Any = command
     changed.__signature__ = own.replace(parameters=parameters)
     changed.__annotations__ = {one.name: one.annotation for one in parameters}
     return command
+
+
+def _place(one: Parameter) -> int:
+    """Where it stands in ``--help``: what the first week needs comes first."""
+    return _FIRST.index(one.name) if one.name in _FIRST else len(_FIRST)
 
 
 def _parameters(own: Iterable[Parameter], executors: Mapping[str, Part]) -> Iterator[Parameter]:
