@@ -59,8 +59,8 @@ def _calls(folder: Path) -> None:
     arm = bench_robot.Arm()
     plain = _per_call(lambda: bench_program.run(arm))
     job = Job(str(folder), ("bench_program.py",), (), load(["robot.toml"], folder), 1, 0)
-    locate = Locator(job.root, job.program, job.oracle).locate
-    session = Session(job, Nowhere(), locate)  # type: ignore[arg-type]  # it has the one method that is used
+    locator = Locator(job.root, job.program, job.oracle)
+    session = Session(job, Nowhere(), locator)  # type: ignore[arg-type]  # it has the one method that is used
     session.install()
     print(f"a plain call                        {plain:7.2f} µs")
     print(f"intercepted, nothing active        +{_per_call(lambda: bench_program.run(arm)) - plain:7.2f} µs")

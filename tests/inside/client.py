@@ -212,7 +212,7 @@ class ClientStage:
             oracle_nodes=oracle_nodes,
         )
         locator = Locator(job.root, job.program, job.oracle)
-        session = Session(job, self.pipe, locator.locate, locator.locate_definition)  # type: ignore[arg-type]
+        session = Session(job, self.pipe, locator)  # type: ignore[arg-type]
         session.install()
         self.sessions.append(session)
         session.start_test("test")
@@ -238,7 +238,7 @@ class ClientStage:
         session, client = self.session(program)
         client.coming = list(coming)
         program.run(client)
-        session.interception.remove()
+        session.remove()
         return self.again(program, operator, variant, quantity, coming=coming, oracle_nodes=oracle_nodes)
 
     def again(
@@ -261,5 +261,5 @@ class ClientStage:
             result: Any = program.run(client)
         except Exception as error:
             result = error
-        session.interception.remove()
+        session.remove()
         return result, client, session.activations[0]

@@ -68,7 +68,7 @@ class Stage:
 
     def close(self) -> None:
         for session in self.sessions:
-            session.interception.remove()
+            session.remove()
         sys.path.remove(str(self.folder))
         for name in (self.robot_name, self.program_name):
             sys.modules.pop(name, None)
@@ -93,8 +93,7 @@ class Stage:
             inspect=inspect,
         )
         locator = Locator(job.root, job.program, job.oracle)
-        where = (locator.locate, locator.locate_definition)
-        session = Session(job, self.pipe, *where)  # type: ignore[arg-type]  # the same two methods
+        session = Session(job, self.pipe, locator)  # type: ignore[arg-type]  # it has the one method
         session.install()
         session.start_test("test")
         self.sessions.append(session)
@@ -129,7 +128,7 @@ class Stage:
         """
         recording = self.session()
         self.run(recording)
-        recording.interception.remove()
+        recording.remove()
         seen = self.sites()[index]
         mutant = Mutant(
             1, "robot", operator, _site(seen.span), seen.operation, seen.pattern, quantity, variant, "", idle

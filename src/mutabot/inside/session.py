@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
 from random import Random
-from types import CodeType, FrameType
 from typing import Any
 
 from mutabot.border.events import Acted, CalledAtImport, Event, MutatedCall, SiteSeen, TextsSeen
@@ -18,6 +17,7 @@ from mutabot.inside.calls.activation import Activation, is_refusal
 from mutabot.inside.calls.answers import Answers, handles_of
 from mutabot.inside.calls.bypasses import Bypasses
 from mutabot.inside.calls.door import Door
+from mutabot.inside.calls.locate import Locator
 from mutabot.inside.calls.passing import Aside, Passing, is_under_way
 from mutabot.inside.calls.refusing import Made
 from mutabot.inside.calls.trace import Recorder
@@ -29,10 +29,13 @@ from mutabot.inside.readings.instances import Instances
 from mutabot.inside.readings.probes import Reading, take
 from mutabot.inside.readings.program_time import ProgramTime
 from mutabot.inside.readings.recording import TestRecording
+from mutabot.inside.targets.callables import Callables
 from mutabot.inside.targets.interception import Interception
 from mutabot.inside.targets.target import Finding, Handler
+from mutabot.inside.text.call_sites import CallSites
 from mutabot.inside.text.returns import Returns
 from mutabot.inside.text.session_text import SessionText
+from mutabot.inside.text.standing import Candidate, Standing, last_name
 from mutabot.model import Moment, Mutant, Operation, Probe, Role, Span
 from mutabot.model.values.quantity import Value
 
@@ -51,13 +54,14 @@ class Session:
     Attributes:
         job: what to do.
         pipe: where reports go.
-        locate, locate_definition: find the site of a frame, and of a function that is called back.
+        locator: finds the site of a frame, and of a function that is called back.
         recorder: traces; always kept, since survivors are compared with the original.
         interception: what stands around the vocabulary's targets.
         passing: the way of the program's calls.
         inspection: what is wrong with the vocabulary.
         branch: id of the mutant that this process was forked to be; None in all others.
         text: the program text, if it is instrumented.
+        call_sites: calls that are seen where they are written.
         returns: what the program returns to its tests; None if that is not noted.
         recording: what the world does while the test runs.
         test: node id of the running test.
@@ -71,8 +75,7 @@ class Session:
 
     job: Job
     pipe: Sink
-    locate: Callable[[FrameType | None], tuple[Span, Role] | None]
-    locate_definition: Callable[[CodeType], tuple[Span, Role] | None] = lambda code: None
+    locator: Locator
     recorder: Recorder = field(init=False)
     interception: Interception = field(init=False)
     passing: Passing = field(init=False)
@@ -85,6 +88,7 @@ class Session:
     branch: str | None = None
     text: SessionText | None = None
     returns: Returns | None = None
+    call_sites: CallSites = field(init=False)
     test: str = ""
     refused_calls: list[tuple[int, int]] = field(default_factory=list)
     live: set[int] = field(default_factory=set)
@@ -96,6 +100,7 @@ class Session:
     _telling: list[Door] = field(default_factory=list)
     _bypasses: Bypasses = field(init=False)
     _time: ProgramTime = field(init=False)
+    _sees_itself: set[Handler] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         self.recorder = Recorder(self._site_seen)
@@ -106,17 +111,17 @@ class Session:
         self.placed = ProcessFaults(self._acted)
         self.interception = Interception(self.inspection.target_is_wrong)
         self.passing = Passing(
-            self.locate,
+            self.locator.locate,
             self.recorder,
             self.instances,
             self.along,
             self._raised,
             self._on_end,
-            self.locate_definition,
+            self.locator.locate_definition,
         )
         self.passing.oracle_nodes = self.job.oracle_nodes
         self._time = ProgramTime(self.job.vocabulary, lambda: self.meter, self.instances)
-        self._bypasses = Bypasses(self.locate, self._calls_of, is_under_way)
+        self._bypasses = Bypasses(self.locator.locate, self._calls_of, is_under_way)
 
     def install(self) -> None:
         """Put the interception of the whole vocabulary in place, and the mutant with it."""
@@ -124,9 +129,14 @@ class Session:
         if self.returns is not None:
             self.returns.install()  # after the alternatives, which are found by where they stand
         vocabulary = self.job.vocabulary
+        candidates: list[Candidate] = []
         for operation in vocabulary.operations:
             overrides = partial(self._handler_of_override, operation) if operation.overrides else None
-            self.interception.wrap(operation, self._handler(operation), overrides)
+            handler = self._handler(operation)
+            self.interception.wrap(operation, handler, overrides)
+            if operation.kind is None:
+                candidates.append(Candidate(operation, handler, self._doors[-1].use_signature))
+        self._see_calls(candidates)
         self.instances.watch(probe.owner for probe in vocabulary.probes)
         if vocabulary.wait is not None:
             self.instances.watch([vocabulary.wait.owner])
@@ -139,6 +149,26 @@ class Session:
             self.activate(self.job.mutant)
         if self.job.record or self.job.serving is not None:
             self._watch_imports()
+
+    def _see_calls(self, candidates: Sequence[Candidate]) -> None:
+        """See calls where they are written, of whatever stands in the place of an operation."""
+        callables = self.interception.of()
+        assert isinstance(callables, Callables)
+        standing = Standing(candidates, callables, self.locator, self._sees_itself, self._known_sites())
+        names = {last_name(one.operation) for one in candidates}
+        self.call_sites = CallSites(names, self.locator.role, standing, self._sees_itself)
+        self.call_sites.install()
+
+    def remove(self) -> None:
+        """Intercept nothing any more."""
+        self.call_sites.remove()
+        self.interception.remove()
+
+    def _known_sites(self) -> dict[Span, str]:
+        """What the baseline saw at the sites of this session's mutants."""
+        mutants = self.job.branching.mutants if self.job.branching is not None else ()
+        own = (self.job.mutant,) if self.job.mutant is not None else ()
+        return {one.site.span: one.operation for mutant in (*mutants, *own) for one in mutant.singles}
 
     def _listen(self) -> None:
         """Hear the messages that pass by, if they tell of refusals, or of where the robot is."""
@@ -167,7 +197,9 @@ class Session:
         door.lately = self._lately
         door.time = self._time
         self._doors.append(door)
-        return self.passing.handler(door)
+        handler = self.passing.handler(door)
+        self._sees_itself.add(handler)
+        return handler
 
     def _handler_of_override(self, operation: Operation, kind: type) -> Handler:
         """An overriding method may have a signature of its own, so it has a door of its own."""

@@ -71,11 +71,16 @@ def extent_of(node: ast.expr | ast.stmt) -> Extent:
 
 def _position(code: CodeType, instruction: int) -> Position:
     line, end_line, column, end_column = list(code.co_positions())[instruction // 2]
+    first = line or code.co_firstlineno
+    return Position((first, column or 0, end_line or first, end_column or 0), function_of(code))
+
+
+def function_of(code: CodeType) -> str:
+    """The function that code stands in: comprehensions are part of the one around them."""
     function = code.co_qualname
     for suffix in _COMPREHENSIONS:
         function = function.removesuffix(suffix)
-    first = line or code.co_firstlineno
-    return Position((first, column or 0, end_line or first, end_column or 0), function)
+    return function
 
 
 def _definition(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Extent:

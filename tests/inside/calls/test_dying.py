@@ -28,7 +28,7 @@ NODE = """
     program = stage.program("def run(client):\\n    return client.call('/gripper/close', 'now')\\n")
     session, client = stage.session(program)
     program.run(client)
-    session.interception.remove()
+    session.remove()
     member._member = object()
     stage.pipe.send = told
     print("begins", flush=True)

@@ -117,7 +117,7 @@ def test_what_was_wrapped_is_put_back(make_stage: Make) -> None:
     session = stage.session()
     assert robot.move is not before[0]
     assert program.move is not before[1]
-    session.interception.remove()
+    session.remove()
     assert (robot.move, program.move, vars(robot.Arm).get("inherited")) == before
 
 

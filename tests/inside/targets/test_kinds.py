@@ -117,6 +117,6 @@ def test_it_is_looked_for_and_taken_away_as_it_says(stage: Stage) -> None:
     problems = [line for line in stage.pipe.lines if isinstance(line, Problem)]
     assert [problem.text for problem in problems] == [f"nobody listens to {session_target(stage)}"]
     topics = session.interception.of("topics")
-    session.interception.remove()
+    session.remove()
     assert isinstance(topics, Topics)
     assert topics.is_removed

@@ -183,7 +183,7 @@ def test_wrappers_of_subclasses_are_taken_away_again(make_stage: Make) -> None:
     before = [dict(vars(kind)) for kind in kinds]
     session = stage.session()
     assert robot.Real.move is not before[0]["move"]
-    session.interception.remove()
+    session.remove()
     assert [dict(vars(kind)) for kind in kinds] == before
 
 

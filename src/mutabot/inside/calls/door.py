@@ -86,6 +86,11 @@ class Door:
         self.handles: Collection[str] = ()
         self.time: ProgramTime | None = None
 
+    def use_signature(self, signature: inspect.Signature) -> None:
+        """Read calls by this signature, unless the vocabulary or an earlier call has told another."""
+        if self._signature is None and self.operation.signature is None:
+            self._signature = signature
+
     def reset(self) -> None:
         """Forget earlier answers and commands: a new test begins."""
         self._last_replies.clear()

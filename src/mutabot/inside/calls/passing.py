@@ -154,7 +154,7 @@ class Passing:
                 return wrapped(*args, **kwargs)
             is_direct = self._recorder.answers is not None and self._is_direct(sys._getframe(1), where)
             wrapped = _bound(wrapped, instance)
-            is_async = inspect.iscoroutinefunction(wrapped)
+            is_async = is_coroutine_function(wrapped) or (where is not None and where.is_awaited)
             means = where.means if where is not None else None
             on_its_way = self._pass(door, site, is_direct, is_async, wrapped, instance, args, kwargs, means)
             if is_async:
@@ -164,6 +164,8 @@ class Passing:
         return handle
 
     def _site(self, frame: FrameType, where: Where | None) -> tuple[Span, Role] | None:
+        if where is not None and where.site is not None:
+            return where.site
         code = where.code if where is not None else None
         site = self._locate(frame) if code is None else self._locate_definition(code)
         node = where.node if where is not None else None
@@ -173,8 +175,8 @@ class Passing:
 
     def _is_direct(self, frame: FrameType | None, where: Where | None) -> bool:
         """Whether the program itself makes the call, rather than a library that it calls."""
-        if where is not None and where.code is not None:
-            return False
+        if where is not None and (where.code is not None or where.site is not None):
+            return where.code is None
         ours = packages()
         while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] in ours:
             frame = frame.f_back
@@ -319,6 +321,14 @@ def _bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:
     function = getattr(wrapped, "__wrapped__")  # noqa: B009  # its stubs do not name it
     bind = getattr(type(function), "__get__", None)
     return wrapped if bind is None else cast("Callable[..., Any]", bind(function, instance, type(instance)))
+
+
+def is_coroutine_function(wrapped: Callable[..., Any]) -> bool:
+    """Whether what a call gives is to be awaited: also of mocks, and of objects that are called."""
+    if inspect.iscoroutinefunction(wrapped) or inspect.iscoroutinefunction(type(wrapped).__call__):
+        return True
+    coroutines = sys.modules.get("asyncio.coroutines")
+    return coroutines is not None and bool(coroutines.iscoroutinefunction(wrapped))
 
 
 def _can_be_lost(call: Call) -> bool:

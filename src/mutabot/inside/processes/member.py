@@ -103,8 +103,7 @@ class Member:
         self.session = session or Session(
             replace(job, inspect=False, moments={}, evidence=False),
             self,
-            locator.locate,
-            locator.locate_definition,
+            locator,
         )
         self._told = Evidence()
         self._parts: frozenset[str] = frozenset()
@@ -117,8 +116,7 @@ class Member:
         """Put the session in place."""
         carry(self._folder)
         self.session.install()
-        if self.session.text is not None:
-            hook_script()
+        hook_script()
         self._attend()
         self.session.start_test(self._now.name_of(self._test))
         self._watch_text()

@@ -63,8 +63,7 @@ class Conductor:
     def __init__(self, job: Job, pipe: EventFile, server: CopyServer | None = None) -> None:
         self.locator = Locator(job.root, job.program, job.oracle)
         self._held = Held()
-        where = (self.locator.locate, self.locator.locate_definition)
-        self.session = Session(job, pipe if server is None else self._held, *where)
+        self.session = Session(job, pipe if server is None else self._held, self.locator)
         self.footprints = Footprints(job, self.locator)
         self.running = Running(self.session, self.locator, self.footprints)
         self._server = server

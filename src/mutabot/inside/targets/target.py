@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from types import CodeType
 from typing import Any
 
-from mutabot.model import Operation
+from mutabot.model import Operation, Role, Span
 
 from .means import Means
 
@@ -33,12 +33,18 @@ class Where:
         node: resolved name of the node.
         means: what can befall the call beside other values; None if nothing can.
         is_again: whether the same call of the program's goes on: it still waits for a message.
+        site: the site itself, where the call was seen in the text.
+        receiver: what was called was read from this object; None if it was not, or that is the instance.
+        is_awaited: whether what the call gives is awaited there.
     """
 
     code: CodeType | None = None
     node: str | None = None
     means: Means | None = None
     is_again: bool = False
+    site: tuple[Span, Role] | None = None
+    receiver: Any = None
+    is_awaited: bool = False
 
 
 #: ``handler(wrapped, instance, args, kwargs, where=None)``, as wrapt calls it, with a ``Where`` behind it if

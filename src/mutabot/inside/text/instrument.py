@@ -45,7 +45,7 @@ def instrumented(
     instrumenter = _Instrumenter(places, record, originals)
     instrumenter.visit(tree)
     instrumenter.check()
-    _declare_global(tree)
+    declare_global(tree, RUNTIME)
     return tree
 
 
@@ -233,13 +233,20 @@ def _at(made: _Node, node: ast.AST) -> _Node:
     return made
 
 
-def _declare_global(tree: ast.Module) -> None:
+def is_ours(function: ast.expr) -> bool:
+    """Whether what is called was put in here."""
+    while isinstance(function, ast.Attribute | ast.Subscript):
+        function = function.value
+    return isinstance(function, ast.Name) and function.id == RUNTIME
+
+
+def declare_global(tree: ast.Module, name: str) -> None:
     """Class bodies and modules look names up in their own namespace first; spare them that."""
     for node in list(ast.walk(tree)):
         if isinstance(node, ast.Module | ast.ClassDef) and node.body:
             position = _after_head(node.body)
             near = node.body[min(position, len(node.body) - 1)]
-            node.body.insert(position, _at(ast.Global([RUNTIME]), near))
+            node.body.insert(position, _at(ast.Global([name]), near))
 
 
 def _after_head(body: list[ast.stmt]) -> int:

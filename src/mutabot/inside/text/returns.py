@@ -33,7 +33,7 @@ LIMIT = 1000
 _TRANSLATED = ("jit", "vectorize", "kernel", "cfunc", "stencil")
 _LIBRARIES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
 
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
+Function = ast.FunctionDef | ast.AsyncFunctionDef
 _Node = TypeVar("_Node", bound=ast.AST)
 
 
@@ -79,7 +79,7 @@ class Returns:
     def change(self, tree: ast.Module, source: bytes, path: str) -> None:
         """Put notes into the functions of a program file."""
         for function in _functions(tree):
-            if not _is_generator(function) and not _is_translated(function):
+            if not _is_generator(function) and not is_translated(function):
                 _add_notes(function)
         self._own.add(path)
 
@@ -152,38 +152,38 @@ class Returns:
         return not self._locator.relative(name).startswith("..") and not self.is_program(name)
 
 
-def _functions(tree: ast.Module) -> Iterator[_Function]:
+def _functions(tree: ast.Module) -> Iterator[Function]:
     """Functions of a module and methods of its classes, not what is defined within functions."""
     stack: list[ast.AST] = [tree]
     while stack:
         for node in ast.iter_child_nodes(stack.pop()):
-            if isinstance(node, _Function):
+            if isinstance(node, Function):
                 yield node
             elif isinstance(node, ast.stmt | ast.ExceptHandler | ast.match_case):
                 stack.append(node)
 
 
-def _own_nodes(function: _Function) -> Iterator[ast.AST]:
+def _own_nodes(function: Function) -> Iterator[ast.AST]:
     """What belongs to a function and to none within it."""
     stack: list[ast.AST] = [*function.body]
     while stack:
         node = stack.pop()
         yield node
-        if not isinstance(node, _Function | ast.Lambda | ast.ClassDef):
+        if not isinstance(node, Function | ast.Lambda | ast.ClassDef):
             stack.extend(ast.iter_child_nodes(node))
 
 
-def _is_generator(function: _Function) -> bool:
+def _is_generator(function: Function) -> bool:
     return any(isinstance(node, ast.Yield | ast.YieldFrom) for node in _own_nodes(function))
 
 
-def _is_translated(function: _Function) -> bool:
+def is_translated(function: Function) -> bool:
     """Whether a decorator may translate its bytecode, in which notes would have no meaning."""
     names = [ast.unparse(decorator).lower() for decorator in function.decorator_list]
     return any(word in name for name in names for word in _TRANSLATED)
 
 
-def _add_notes(function: _Function) -> None:
+def _add_notes(function: Function) -> None:
     for node in _own_nodes(function):
         if isinstance(node, ast.Return) and node.value is not None:
             note = ast.Call(ast.Name(RETURNED, ast.Load()), [node.value], [])

@@ -1,0 +1,249 @@
+"""Calls that may be those of operations are seen where they are written.
+
+Files of the program and of the oracle are compiled with a question at each call whose last name is that of an
+operation: ``x.f(args)`` becomes ``S[17](x)(args)``, and ``f(args)`` becomes ``S[17](f)(args)``. The answer is
+what is called: the very object that stands there, or what makes the call a site. So no frame is added to a
+call that is left alone, and lines and columns stay the user's. ``S`` is a plain list under a built-in name.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import copy
+import sys
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from types import FrameType
+from typing import Any, Protocol
+
+import wrapt
+
+from mutabot.languages.python import extent_of
+from mutabot.model import Role
+from mutabot.model.alternative import Extent
+
+from . import loading
+from .instrument import declare_global, is_ours
+from .returns import Function, is_translated
+
+#: the built-in name of the list
+CALLS = "__mutabot_calls__"
+_WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
+#: of all sites of this process: text that was loaded before is asked as before
+_entries: list[Any] = []
+#: the most arguments that Python gives a method without binding it first
+_MOST_OF_METHOD = 30
+
+
+@dataclass(slots=True)
+class CallSite:
+    """A call in the text.
+
+    Attributes:
+        path: its file, as code objects name it.
+        role: whose file it is.
+        name: the last name of what is called.
+        extent: where it stands, as the interpreter tells of the running call.
+        is_awaited: whether it is awaited where it stands.
+    """
+
+    path: str
+    role: Role
+    name: str
+    extent: Extent
+    is_awaited: bool
+
+
+class Stands(Protocol):
+    """Decides what is called at a site."""
+
+    def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """What is called in place of ``found``, which may be itself.
+
+        ``receiver`` is the object that it was read from; ``NOTHING`` where it was read from a name.
+        """
+
+
+#: the receiver of what was read from a name
+NOTHING = object()
+
+
+class CallSites:
+    """Puts the questions into files, and answers them. See ``loading.Step``.
+
+    Args:
+        names: last names of the operations.
+        role: whose file a path is.
+        stands: decides what is called.
+        sees_itself: handlers of what sees its calls itself: of that nothing is asked.
+    """
+
+    def __init__(
+        self,
+        names: Collection[str],
+        role: Callable[[str], Role | None],
+        stands: Stands,
+        sees_itself: Collection[Any] = (),
+    ) -> None:
+        self._names = frozenset(names)
+        self._role = role
+        self._stands = stands
+        self._sees_itself = sees_itself
+        self._numbers: dict[tuple[str, Extent, str], int] = {}
+
+    def install(self) -> None:
+        """Put questions into all files that are loaded from now on."""
+        if self._names:
+            setattr(builtins, CALLS, _entries)
+            loading.add(self)
+
+    def remove(self) -> None:
+        """Ask no more: what is called is what stands there."""
+        if self._names:
+            loading.remove(self)
+        self._stands = lambda site, found, receiver, frame: found
+
+    def wants(self, path: str) -> bool:
+        """Whether a file may have sites."""
+        return self._role(path) is not None
+
+    def change(self, tree: ast.Module, source: bytes, path: str) -> None:
+        """Put questions into a file."""
+        self.instrument(tree, path)
+
+    def give_up(self, path: str, error: Exception) -> None:
+        """It is compiled without: its calls are seen by what they call."""
+
+    def instrument(self, tree: ast.Module, path: str) -> None:
+        """Put questions into the tree of a file, which pytest may have rewritten."""
+        role = self._role(path)
+        if role is None:
+            return
+        writer = _Writer(self._names, lambda node, name, form: self._number(path, role, node, name, form))
+        writer.visit(tree)
+        if writer.written:
+            declare_global(tree, CALLS)
+
+    def _number(self, path: str, role: Role, node: ast.Call, name: str, form: str) -> int:
+        key = (path, extent_of(node), form)
+        number = self._numbers.get(key)
+        if number is None:
+            number = self._numbers[key] = len(_entries)
+            site = CallSite(path, role, name, extent_of(node), bool(getattr(node, "is_awaited", False)))
+            _entries.append(getattr(self, f"_{form}")(site))
+        return number
+
+    def _attribute(self, site: CallSite) -> Callable[[Any], Any]:
+        name, seen, frame_of = site.name, self._sees_itself, sys._getframe
+
+        def read(receiver: Any) -> Any:
+            __tracebackhide__ = True
+            found = getattr(receiver, name)
+            if type(found) in _WRAPPERS and found._self_wrapper in seen:
+                return found
+            return self._stands(site, found, receiver, frame_of(1))
+
+        return read
+
+    def _name(self, site: CallSite) -> Callable[[Any], Any]:
+        seen, frame_of = self._sees_itself, sys._getframe
+
+        def read(found: Any) -> Any:
+            if type(found) in _WRAPPERS and found._self_wrapper in seen:
+                return found
+            return self._stands(site, found, NOTHING, frame_of(1))
+
+        return read
+
+    def _pair(self, site: CallSite) -> Callable[[Any, Any], Any]:
+        seen, frame_of = self._sees_itself, sys._getframe
+
+        def read(found: Any, receiver: Any) -> Any:
+            if type(found) in _WRAPPERS and found._self_wrapper in seen:
+                return found
+            return self._stands(site, found, receiver, frame_of(1))
+
+        return read
+
+
+class _Writer(ast.NodeTransformer):
+    """Writes the questions.
+
+    What pytest has rewritten reads an attribute into a variable and calls that: ``S[17](variable, x)``, since
+    its messages show the variable.
+    """
+
+    def __init__(self, names: Collection[str], number: Callable[[ast.Call, str, str], int]) -> None:
+        self._names = names
+        self._number = number
+        self._read: dict[str, ast.Attribute] = {}
+        self.written = False
+
+    def visit(self, node: ast.AST) -> Any:
+        if isinstance(node, Function) and is_translated(node):
+            return node
+        return super().visit(node)
+
+    def visit_Await(self, node: ast.Await) -> ast.AST:  # the name that ast looks for
+        if isinstance(node.value, ast.Call):
+            node.value.is_awaited = True  # type: ignore[attr-defined]
+        return self.generic_visit(node)
+
+    def visit_Assign(self, node: ast.Assign) -> ast.AST:  # as above
+        self.generic_visit(node)
+        target = node.targets[0]
+        if (
+            isinstance(target, ast.Name)
+            and target.id.startswith("@py_")
+            and isinstance(node.value, ast.Attribute)
+        ):
+            self._read[target.id] = node.value
+        return node
+
+    def visit_Call(self, node: ast.Call) -> ast.AST:  # as above
+        function = node.func
+        self.generic_visit(node)
+        if is_ours(function):
+            return node
+        if isinstance(function, ast.Attribute) and function.attr in self._names:
+            _as_compiled(node, function)
+            number = self._number(node, function.attr, "attribute")
+            node.func = self._question(number, function, [function.value])
+        elif isinstance(function, ast.Name) and function.id in self._names:
+            number = self._number(node, function.id, "name")
+            node.func = self._question(number, function, [function])
+        elif isinstance(function, ast.Name) and function.id in self._read:
+            read = self._read[function.id]
+            if read.attr in self._names:
+                number = self._number(node, read.attr, "pair")
+                node.func = self._question(number, function, [function, copy.deepcopy(read.value)])
+        return node
+
+    def _question(self, number: int, function: ast.expr, given: list[ast.expr]) -> ast.expr:
+        self.written = True
+        entry = ast.Subscript(ast.Name(CALLS, ast.Load()), ast.Constant(number), ast.Load())
+        for part in ast.walk(entry):
+            if isinstance(part, ast.expr):
+                ast.copy_location(part, given[0])
+        return ast.copy_location(ast.Call(entry, given, []), function)
+
+
+def _as_compiled(node: ast.Call, function: ast.Attribute) -> None:
+    """Move a call, and the attribute it calls, to where the compiler says that they stand.
+
+    In a chain over several lines that is from the attribute's name on; for the call only where its method is
+    not bound first.
+    """
+    if (
+        function.end_lineno is None
+        or function.end_col_offset is None
+        or function.lineno == function.end_lineno
+    ):
+        return
+    start = max(function.end_col_offset - len(function.attr), 0)
+    is_method = len(node.args) + len(node.keywords) + bool(node.keywords) < _MOST_OF_METHOD
+    is_plain = not any(isinstance(one, ast.Starred) for one in node.args)
+    if is_method and is_plain and all(one.arg is not None for one in node.keywords):
+        node.lineno, node.col_offset = function.end_lineno, start
+    function.lineno, function.col_offset = function.end_lineno, start

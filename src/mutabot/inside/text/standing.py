@@ -1,0 +1,287 @@
+"""What stands at a call in the text: an operation, something in its place, or something of the same name.
+
+People who test hardware code put mocks, fakes and patched classes in the place of the robot. A person who
+edits the text changes what these are told; so does a mutant. Hence a call is seen at its site wherever what
+is called is not the operation itself, which sees its calls (``targets``). In the place of an operation stands
+
+1. an attribute of its name, of an object of the operation's class, or of what stands in for that class;
+2. what the operation's name means now, or a name of a module that meant it when the module was loaded;
+3. a mock of it: by what it is made of, or by its name alone if only one operation has that name;
+4. at the site of a mutant of this session, whatever has the name.
+
+What the program defines itself is program: the calls in it are seen.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from types import FrameType, FunctionType, MethodType, ModuleType
+from typing import Any
+
+import wrapt
+
+from mutabot.inside.calls.locate import Locator
+from mutabot.inside.targets.callables import Callables
+from mutabot.inside.targets.names import named_class
+from mutabot.inside.targets.target import Handler, Where
+from mutabot.languages.python import function_of
+from mutabot.model import Operation, Role, Span
+from mutabot.model.values.signature import signature_of
+
+from .call_sites import NOTHING, CallSite
+
+_WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
+
+
+@dataclass(slots=True)
+class Candidate:
+    """An operation that a name may mean.
+
+    Attributes:
+        operation: the operation.
+        handler: what its calls go through.
+        use_signature: told how its calls are to be read, before the first that goes to something else.
+    """
+
+    operation: Operation
+    handler: Handler
+    use_signature: Callable[[inspect.Signature], None]
+    is_told: bool = False
+
+
+@dataclass(slots=True)
+class Standing:
+    """Decides what is called at the sites of one process.
+
+    Args:
+        candidates: the operations that can be called.
+        callables: where they were found.
+        locator: whose file is whose.
+        sees_itself: handlers of what sees its calls itself.
+        known: operations by the sites of this session's mutants.
+    """
+
+    candidates: Iterable[Candidate]
+    callables: Callables
+    locator: Locator
+    sees_itself: Collection[Handler]
+    known: Mapping[Span, str] = field(default_factory=dict)
+    _by_name: dict[str, list[Candidate]] = field(default_factory=dict)
+    _places: dict[int, tuple[Span, Role]] = field(default_factory=dict)
+    _meant: dict[int, tuple[dict[str, Any], dict[str, Any]]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for one in self.candidates:
+            self._by_name.setdefault(last_name(one.operation), []).append(one)
+
+    def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
+        """What is called at a site: ``found``, or what makes the same call as one of an operation."""
+        one = self._operation(site, found, receiver, frame)
+        if one is None:
+            return found
+        if not one.is_told:
+            one.is_told = True
+            self._tell_signature(one)
+        return partial(self._call, self._place(site, frame), site.is_awaited, one, found, receiver)
+
+    def note_modules(self, paths: Collection[str]) -> None:
+        """Note which names of the modules of these files mean operations: they were loaded just now."""
+        for module in list(sys.modules.values()):
+            if isinstance(module, ModuleType) and getattr(module, "__file__", None) in paths:
+                self._names_of(vars(module))
+
+    def _call(
+        self,
+        place: tuple[Span, Role],
+        is_awaited: bool,
+        one: Candidate,
+        found: Any,
+        receiver: Any,
+        /,
+        *args: Any,
+        **kwargs: Any,
+    ) -> Any:
+        """Make a call as one of an operation."""
+        __tracebackhide__ = True
+        owner = self._owner(one)
+        instance = receiver if owner is not None and receiver is not NOTHING else None
+        if args and isinstance(receiver, type) and _is_of_objects(owner, one):  # called through its class
+            instance, found, args = args[0], partial(found, args[0]), args[1:]
+        where = Where(site=place, receiver=receiver, is_awaited=is_awaited)
+        return one.handler(found, instance, args, kwargs, where)
+
+    def _place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
+        place = self._places.get(id(site))
+        if place is None:
+            span = Span(self.locator.relative(site.path), *site.extent, function_of(frame.f_code))
+            place = self._places[id(site)] = (span, site.role)
+        return place
+
+    def _operation(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+        """The operation that is called, if it does not see its calls itself."""
+        if self._sees_itself(found):
+            return None
+        ones = [one for one in self._by_name[site.name] if not self._is_read(one)]
+        for find in (self._of_class, self._of_name, self._of_mock):
+            one = find(ones, found, receiver, frame)
+            if one is not None:
+                return one
+        if self.known:
+            target = self.known.get(self._place(site, frame)[0])
+            return next((one for one in ones if one.operation.target == target), None)
+        return None
+
+    def _is_read(self, one: Candidate) -> bool:
+        """Whether an operation is an attribute, which nobody calls."""
+        return isinstance(self.callables.found.get(one.operation.target), property | cached_property)
+
+    def _sees_itself(self, found: Any) -> bool:
+        for one in _layers(found):
+            if type(one) in _WRAPPERS and one._self_wrapper in self.sees_itself:
+                return True
+        return False
+
+    def _of_class(
+        self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
+    ) -> Candidate | None:
+        if receiver is NOTHING and isinstance(found, MethodType):
+            receiver = found.__self__
+        if receiver is NOTHING or self._is_of_program(found):
+            return None
+        fitting = []
+        for one in ones:
+            owner = self._owner(one)
+            if owner is not None and any(_is_a(receiver, kind) for kind in self._kinds(one, owner, frame)):
+                fitting.append((len(owner.__mro__), one))
+        return max(fitting, key=lambda pair: pair[0])[1] if fitting else None
+
+    def _kinds(self, one: Candidate, owner: type, frame: FrameType) -> Iterator[Any]:
+        """The operation's class, and what was put in its place."""
+        yield owner
+        yield named_class(one.operation.target.rpartition(".")[0])
+        for name, meant in self._names_of(frame.f_globals).items():
+            if meant is owner:
+                yield frame.f_globals.get(name)
+
+    def _of_name(
+        self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
+    ) -> Candidate | None:
+        for one in ones:
+            if self._owner(one) is None and named_class(one.operation.target) is found:
+                return one
+        if receiver is not NOTHING:
+            return None
+        for name, meant in self._names_of(frame.f_globals).items():
+            for one in ones:
+                if meant is one.handler and frame.f_globals.get(name) is found:
+                    return one
+        return None
+
+    def _of_mock(
+        self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
+    ) -> Candidate | None:
+        mock = sys.modules.get("unittest.mock")
+        if mock is None:
+            return None
+        made = found if _is_mock(mock, found) else getattr(found, "mock", None)
+        if not _is_mock(mock, made):
+            return None
+        if len(ones) == 1:
+            return ones[0]
+        wrapped = vars(made).get("_mock_wraps")
+        parent = vars(made).get("_mock_parent") or vars(made).get("_mock_new_parent")
+        spec = vars(parent).get("_spec_class") if parent is not None else None
+        for one in ones:
+            owner = self._owner(one)
+            if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
+                return one
+            if wrapped is not None and any(
+                type(layer) in _WRAPPERS and layer._self_wrapper is one.handler
+                for layer in _layers(wrapped)
+            ):
+                return one
+        return None
+
+    def _is_of_program(self, found: Any) -> bool:
+        function = found.__func__ if isinstance(found, MethodType) else found
+        return (
+            isinstance(function, FunctionType)
+            and self.locator.role(function.__code__.co_filename) is Role.PROGRAM
+        )
+
+    def _names_of(self, names: dict[str, Any]) -> dict[str, Any]:
+        """The names of a module that meant an operation when it was seen first, or the class of one.
+
+        With the class, or the handler of the operation.
+        """
+        known = self._meant.get(id(names))
+        if known is None:
+            owners = [owner for owner, _ in self.callables.owners.values()]
+            found: dict[str, Any] = {}
+            for name, value in list(names.items()):
+                if type(value) is wrapt.FunctionWrapper and value._self_wrapper in self.sees_itself:
+                    found[name] = value._self_wrapper
+                elif any(value is owner for owner in owners):
+                    found[name] = value
+            known = self._meant[id(names)] = (names, found)
+        return known[1]
+
+    def _owner(self, one: Candidate) -> type | None:
+        owner = self.callables.owners.get(one.operation.target)
+        return owner[0] if owner is not None else None
+
+    def _tell_signature(self, one: Candidate) -> None:
+        original = self.callables.found.get(one.operation.target)
+        if original is None or one.operation.signature is not None:
+            return
+        function = getattr(original, "__func__", original)
+        signature = signature_of(function)
+        owner = self._owner(one)
+        if signature is not None and owner is not None and not isinstance(original, staticmethod):
+            signature = signature.replace(parameters=list(signature.parameters.values())[1:])
+        if signature is not None:
+            one.use_signature(signature)
+
+
+def last_name(operation: Operation) -> str:
+    """What a call of an operation ends with."""
+    return operation.qualname.rpartition(".")[2]
+
+
+def _is_of_objects(owner: type | None, one: Candidate) -> bool:
+    """Whether an operation is a method of objects, rather than one of their class."""
+    if owner is None:
+        return False
+    raw = inspect.getattr_static(owner, last_name(one.operation), None)
+    return not isinstance(getattr(raw, "__wrapped__", raw), classmethod | staticmethod)
+
+
+def _layers(found: Any) -> Iterator[Any]:
+    """A callable, and what it is bound to or stands around."""
+    for _ in range(9):
+        yield found
+        kind = type(found)
+        if kind is MethodType:
+            found = found.__func__
+        elif kind in _WRAPPERS or (kind is FunctionType and "__wrapped__" in vars(found)):
+            found = found.__wrapped__
+        else:
+            return
+
+
+def _is_mock(mock: Any, value: Any) -> bool:
+    return issubclass(type(value), mock.NonCallableMock)
+
+
+def _is_a(value: Any, kind: Any) -> bool:
+    """Whether a value is one of a class, or the class itself, or says so."""
+    if not isinstance(kind, type):
+        return False
+    try:
+        return isinstance(value, kind) or (isinstance(value, type) and issubclass(value, kind))
+    except Exception:  # a class of the user's may answer in any way
+        return False
