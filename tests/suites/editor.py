@@ -81,7 +81,7 @@ class Facts:
     def operation(self, target: str) -> dict[str, Any]:
         """The operation of this name."""
         for one in self.operations:
-            if one.get("call") == target:
+            if one.get("call") == target or f"*:*.{one.get('method')}" == target:
                 return one
         raise CannotWriteError(f"no operation {target}")
 
@@ -334,6 +334,9 @@ class CallEditor:
         return self._replace(self.call.func, planted)
 
     def _parameters(self) -> list[str]:
+        if self.definition is None and "method" in self.operation:
+            told = self.operation["signature"].strip("()").split(",")
+            return [one.partition("=")[0].strip() for one in told]
         if self.definition is None:
             raise CannotWriteError("where the operation is defined cannot be found")
         names = [one.arg for one in [*self.definition.args.posonlyargs, *self.definition.args.args]]

@@ -62,6 +62,7 @@ class Session:
         branch: id of the mutant that this process was forked to be; None in all others.
         text: the program text, if it is instrumented.
         call_sites: calls that are seen where they are written.
+        standing: what stands there.
         returns: what the program returns to its tests; None if that is not noted.
         recording: what the world does while the test runs.
         test: node id of the running test.
@@ -89,6 +90,7 @@ class Session:
     text: SessionText | None = None
     returns: Returns | None = None
     call_sites: CallSites = field(init=False)
+    standing: Standing = field(init=False)
     test: str = ""
     refused_calls: list[tuple[int, int]] = field(default_factory=list)
     live: set[int] = field(default_factory=set)
@@ -134,7 +136,7 @@ class Session:
             overrides = partial(self._handler_of_override, operation) if operation.overrides else None
             handler = self._handler(operation)
             self.interception.wrap(operation, handler, overrides)
-            if operation.kind is None:
+            if operation.kind in (None, "methods"):
                 candidates.append(Candidate(operation, handler, self._doors[-1].use_signature))
         self._see_calls(candidates)
         self.instances.watch(probe.owner for probe in vocabulary.probes)
@@ -154,9 +156,10 @@ class Session:
         """See calls where they are written, of whatever stands in the place of an operation."""
         callables = self.interception.of()
         assert isinstance(callables, Callables)
-        standing = Standing(candidates, callables, self.locator, self._sees_itself, self._known_sites())
+        known = self._known_sites()
+        self.standing = Standing(candidates, callables, self.locator, self._sees_itself, known)
         names = {last_name(one.operation) for one in candidates}
-        self.call_sites = CallSites(names, self.locator.role, standing, self._sees_itself)
+        self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself)
         self.call_sites.install()
 
     def remove(self) -> None:
@@ -331,6 +334,9 @@ class Session:
     def _look_again(self) -> None:
         """What the program has made since the last test."""
         self.interception.look_again()
+        if self.call_sites.loaded:
+            self.standing.note_modules(frozenset(self.call_sites.loaded))
+            self.call_sites.loaded.clear()
         if self.job.inspect:
             operations = [one for one in self.job.vocabulary.operations if not one.overrides]
             for targets in self.interception.kinds:

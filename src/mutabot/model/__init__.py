@@ -21,6 +21,7 @@ from .call import Proceed as Proceed
 from .call import Reply as Reply
 from .moment import Moment as Moment
 from .mutant import Mutant as Mutant
+from .operation import ANY as ANY
 from .operation import Case as Case
 from .operation import Clock as Clock
 from .operation import Operation as Operation

@@ -10,6 +10,9 @@ from mutabot.model.values.notation import Notation
 from mutabot.model.values.path import Path
 from mutabot.model.values.quantity import Quantity
 
+#: what the target of a method begins with that counts for whatever object has it
+ANY = "*:*"
+
 
 @dataclass(frozen=True, slots=True)
 class Case:

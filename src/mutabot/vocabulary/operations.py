@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from mutabot.errors import nearest_name
-from mutabot.model import Case, Clock, Operation, Path, Pattern, Probe, Quantity, Wait
+from mutabot.model import ANY, Case, Clock, Operation, Path, Pattern, Probe, Quantity, Wait
 from mutabot.model.values.signature import parse_signature
 from mutabot.model.values.units import UNITS, Dimension, dimension_of
-from mutabot.settings.mistakes import Check
+from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
 
 from .cases.modes import Undecided, in_cases
@@ -21,7 +21,7 @@ from .named.refused import read_refused
 from .patterns import read_patterns
 from .quantities import read_arguments, read_result
 from .schema import ClockTable, OperationTable, ProbeTable, WaitTable
-from .targets import target_fault
+from .targets import is_name, target_fault
 
 
 def read_operations(check: Check, raw: Any, place: KeyPath) -> list[Operation]:
@@ -29,7 +29,7 @@ def read_operations(check: Check, raw: Any, place: KeyPath) -> list[Operation]:
     if is_named(raw):
         return read_named(check, raw, place)
     _check_one_name(check, raw, place)
-    operation = read_operation(check, raw, place)
+    operation = read_operation(check, with_target(check, raw, place), place)
     return [operation] if operation is not None else []
 
 
@@ -38,7 +38,8 @@ def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
     table = check.table(OperationTable, raw, place, salvage=True)
     if table is None:
         return None
-    check_target(check, table.call, (*place, "call"))
+    if table.method is None:
+        check_target(check, table.call, (*place, "call"))
     check_targets(check, table.refusals, (*place, "refusals"))
     source = source_of(check, place, table.call)
     arguments = read_arguments(check, table.arguments, (*place, "arguments"))
@@ -64,6 +65,7 @@ def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
         overrides=table.overrides,
         idle=read_idle(check, table.idle, (*place, "idle")),
         refused=read_refused(check, table.refused, (*place, "refused")),
+        kind="methods" if table.method is not None else None,
     )
     _check_from_self(check, operation, place)
     if not (table.arguments or table.result or table.message or operation.command):
@@ -74,6 +76,25 @@ def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
         operation = in_case(operation, cases)
     _check_signature(check, operation, place)
     return operation
+
+
+def with_target(check: Check, raw: Any, place: KeyPath) -> Any:
+    """An entry that names a method, whatever object has it, with the target that stands for that."""
+    if not isinstance(raw, dict) or "method" not in raw:
+        return raw
+    if "call" in raw:
+        check.error((*place, "method"), "an operation is known by one thing: either call or method")
+        return raw
+    if raw.get("overrides"):
+        check.error((*place, "overrides"), "is of no use here: a method counts for every class")
+    made = dict(raw)
+    for key in ("method", "current", "opposite"):
+        name = raw.get(key)
+        if key == "method" and not (isinstance(name, str) and is_name(name)):
+            check.error((*place, key), f"{shown(name)} is not the name of a method, such as move_by")
+        elif isinstance(name, str) and is_name(name):
+            made["call" if key == "method" else key] = f"{ANY}.{name}"
+    return made
 
 
 #: words that people use for names on a middleware
@@ -90,7 +111,7 @@ def _check_one_name(check: Check, raw: Any, place: KeyPath) -> None:
     for key in NAMING:
         if key in raw:
             check.error((*place, key), f"an operation is known by one thing: either call or {key}")
-    if "call" not in raw:
+    if "call" not in raw and "method" not in raw:
         for key in raw:
             near = None if key in OperationTable.model_fields else nearest_name(key, ("call", *NAMING))
             if near in NAMING:
@@ -208,6 +229,12 @@ def _check_self(check: Check, table: OperationTable, cases: tuple[Case, ...], pl
 
 def _check_signature(check: Check, operation: Operation, place: KeyPath) -> None:
     if operation.signature is None:
+        if operation.kind == "methods" and operation.described:
+            names = ", ".join(operation.described)
+            text = "is needed where only the method is named: what it is called with tells no names"
+            check.error(
+                (*place, "signature"), f'{text}; write signature = "({names}, …)", all in their order'
+            )
         return
     try:
         signature = parse_signature(operation.signature)

@@ -88,6 +88,7 @@ class OperationTable(DescribedTable):
     """One ``[[operation]]`` that is a callable."""
 
     call: str
+    method: str | None = None
     arguments: dict[str, Any] = Field(default_factory=dict)
     result: dict[str, Any] | None = None
     signature: str | None = None

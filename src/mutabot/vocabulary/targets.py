@@ -11,6 +11,11 @@ import builtins
 import keyword
 
 
+def is_name(text: str) -> bool:
+    """Whether Python takes a text for a name."""
+    return text.isidentifier() and not keyword.iskeyword(text)
+
+
 def target_fault(text: str) -> str | None:
     """What is wrong with a target, or None."""
     form = "module:qualified.name"
@@ -26,7 +31,7 @@ def target_fault(text: str) -> str | None:
     for part in (*module.split("."), *name.split(".")):
         if not part:
             return f"{text!r} has a dot too many; expected {form}"
-        if not part.isidentifier() or keyword.iskeyword(part):
+        if not is_name(part):
             return f"{text!r}: {part!r} is not a Python name; expected {form}"
     return None
 

@@ -25,8 +25,13 @@ from mutabot.model.values.sameness import changes, is_same
 
 from .answers import snapshot
 from .arguments import Arguments, signature_for
+from .callers import Caller
 from .mishaps import why_not
 from .writer import Message, Writer
+
+
+def _apply(wrapped: Callable[..., Any], args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+    return wrapped(*args, **kwargs)
 
 
 @dataclass(slots=True)
@@ -40,6 +45,8 @@ class Invocation:
         arguments: the same by name; None if they do not fit the signature.
         message: what says which command it is, or None.
         means: what can befall it; None if nothing can.
+        receiver: what it was read from where it is called, if that is known.
+        caller: makes calls of callables as the program does.
     """
 
     wrapped: Callable[..., Any] = field(compare=False)
@@ -49,6 +56,8 @@ class Invocation:
     arguments: Arguments | None = field(compare=False)
     message: Message | None = field(default=None, compare=False)
     means: Means | None = field(default=None, compare=False)
+    receiver: Any = field(default=None, compare=False)
+    caller: Caller = field(default=_apply, compare=False)
 
 
 class Door:
@@ -105,11 +114,13 @@ class Door:
         args: tuple[Any, ...],
         kwargs: dict[str, Any],
         means: Means | None = None,
+        receiver: Any = None,
+        caller: Caller = _apply,
     ) -> Call:
         """The call as operators see it."""
         self.calls += 1
         bound = self._bind(wrapped, args, kwargs)
-        invocation = Invocation(wrapped, instance, args, kwargs, bound, means=means)
+        invocation = Invocation(wrapped, instance, args, kwargs, bound, None, means, receiver, caller)
         pattern, values = None, dict[str, Value]()
         if invocation.arguments is not None:
             invocation.message = self._writer.message(invocation.arguments, instance)
@@ -135,15 +146,15 @@ class Door:
         fits = invocation.arguments is not None or self.operation.signature is not None
         self.commands += call.is_command and fits  # what does not fit never reaches the robot
         if call is original:
-            return invocation.wrapped(*invocation.args, **invocation.kwargs)
+            return invocation.caller(invocation.wrapped, invocation.args, invocation.kwargs)
         is_text = call.pattern is not None and call.pattern.notation is not None
         wrapped = self._opposite(call) if call.reversed and not is_text else invocation.wrapped
         meant = call.pattern if call.pattern is not None else self.operation
         changed = changes(meant.arguments, original.values, call.values)
         if invocation.arguments is None or (not changed and not call.reversed):
-            return wrapped(*invocation.args, **invocation.kwargs)
+            return invocation.caller(wrapped, invocation.args, invocation.kwargs)
         args, kwargs = self._writer.changed(call, changed, invocation.arguments, invocation.message)
-        return wrapped(*args, **kwargs)
+        return invocation.caller(wrapped, args, kwargs)
 
     def reply(self, call: Call, result: Any) -> Reply:
         """The reply as operators see it."""
@@ -213,15 +224,19 @@ class Door:
     def _opposite(self, call: Call) -> Callable[..., Any]:
         target = call.pattern.opposite if call.pattern is not None else self.operation.opposite
         assert target is not None
-        opposite: Callable[..., Any] = self._other(target, call.payload.instance)
+        opposite: Callable[..., Any] = self._other(target, call.payload)
         return opposite
 
-    def _other(self, target: str, instance: Any) -> Any:
+    def _other(self, target: str, invocation: Invocation) -> Any:
         """Another attribute of the same object, or of its module where that is not possible."""
         module, _, qualname = target.partition(":")
         name = qualname.rpartition(".")[2]
+        instance, receiver = invocation.instance, invocation.receiver
         if instance is not None and "." in qualname and hasattr(type(instance), name):
             return getattr(instance, name)
+        found = getattr(receiver, name, None)  # of a mock, or of what stands in for a module
+        if receiver is not None and found is not None:
+            return found
         owner, name, _ = resolve(sys.modules[module], qualname)
         return getattr(owner, name)
 
@@ -232,7 +247,7 @@ class Door:
             raise LookupError(f"{self.operation.target} names no reading that tells where {quantity.name} is")
         if reading.named is not None:
             return self._lately_at(reading, quantity)
-        value = self._other(reading.target, invocation.instance)
+        value = self._other(reading.target, invocation)
         if callable(value):
             value = value()
         if inspect.isawaitable(value):

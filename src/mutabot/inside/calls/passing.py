@@ -32,6 +32,7 @@ from mutabot.operators.passage import Carried, run
 
 from .activation import Activation
 from .answers import Returned
+from .callers import Callers
 from .door import Door, here
 from .live import is_live
 from .refusing import Made, RefusedCalls
@@ -121,6 +122,7 @@ class Passing:
         self._operator = ""
         self.on_live: Callable[[Made], None] | None = None
         self.refused = RefusedCalls()
+        self._callers = Callers()
         self.calls: Counter[tuple[Span, str, str | None]] = Counter()
 
     def activate(self, activation: Activation) -> None:
@@ -156,7 +158,10 @@ class Passing:
             wrapped = _bound(wrapped, instance)
             is_async = is_coroutine_function(wrapped) or (where is not None and where.is_awaited)
             means = where.means if where is not None else None
-            on_its_way = self._pass(door, site, is_direct, is_async, wrapped, instance, args, kwargs, means)
+            receiver, frame = (where.receiver, where.frame) if where is not None else (None, None)
+            caller = self._callers.of(frame or sys._getframe(1), is_async)
+            made = (wrapped, instance, args, kwargs, means, receiver, caller)
+            on_its_way = self._pass(door, site, is_direct, is_async, *made)
             if is_async:
                 return on_its_way
             return run(on_its_way, operator=self._operator)

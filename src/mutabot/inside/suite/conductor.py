@@ -141,6 +141,7 @@ class Conductor:
         looks, root = self.running.looks, self.job.root
         Assertions(root, self._is_of_tests, looks).install()
         Comparisons(root, looks).install()
+        self.session.call_sites.hook_pytest()
 
     def _is_of_tests(self, path: str) -> bool:
         """Whether a file is the project's own, and not the program's."""

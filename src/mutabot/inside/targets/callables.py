@@ -181,7 +181,12 @@ class Callables(Targets):
         try:
             setattr(owner, name, wrapper)
         except (AttributeError, TypeError) as error:
-            raise NotCallableError(f"{target} cannot be intercepted: {error}") from error
+            if not isinstance(owner, type):
+                raise NotCallableError(f"{target} cannot be intercepted: {error}") from error
+            self.found[target], self.owners[target] = original, (owner, name)
+            text = f"{target} cannot be wrapped ({error}): only calls that are written as such are seen"
+            self._tell(target, Finding("call", text, is_remark=True))
+            return
         self._undo.append(
             functools.partial(setattr, owner, name, original)
             if own

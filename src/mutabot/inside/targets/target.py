@@ -15,7 +15,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from types import CodeType
+from types import CodeType, FrameType
 from typing import Any
 
 from mutabot.model import Operation, Role, Span
@@ -36,6 +36,7 @@ class Where:
         site: the site itself, where the call was seen in the text.
         receiver: what was called was read from this object; None if it was not, or that is the instance.
         is_awaited: whether what the call gives is awaited there.
+        frame: that makes the call; None if it is the next one.
     """
 
     code: CodeType | None = None
@@ -45,6 +46,7 @@ class Where:
     site: tuple[Span, Role] | None = None
     receiver: Any = None
     is_awaited: bool = False
+    frame: FrameType | None = None
 
 
 #: ``handler(wrapped, instance, args, kwargs, where=None)``, as wrapt calls it, with a ``Where`` behind it if

@@ -77,6 +77,9 @@ class CallSites:
         role: whose file a path is.
         stands: decides what is called.
         sees_itself: handlers of what sees its calls itself: of that nothing is asked.
+
+    Attributes:
+        loaded: files that were given questions.
     """
 
     def __init__(
@@ -90,6 +93,7 @@ class CallSites:
         self._role = role
         self._stands = stands
         self._sees_itself = sees_itself
+        self.loaded: list[str] = []
         self._numbers: dict[tuple[str, Extent, str], int] = {}
 
     def install(self) -> None:
@@ -102,7 +106,25 @@ class CallSites:
         """Ask no more: what is called is what stands there."""
         if self._names:
             loading.remove(self)
+        self._names = frozenset()
         self._stands = lambda site, found, receiver, frame: found
+
+    def hook_pytest(self) -> None:
+        """Put questions into files that pytest rewrites, too: after it, so that its messages stay."""
+        rewriting: Any = sys.modules.get("_pytest.assertion.rewrite")
+        if rewriting is None or not self._names:
+            return
+        rewrite, read = rewriting.rewrite_asserts, rewriting._read_pyc
+
+        def rewrite_asserts(tree: ast.Module, source: bytes, path: str | None = None, *rest: Any) -> None:
+            rewrite(tree, source, path, *rest)
+            if path is not None:
+                self.instrument(tree, path)
+
+        def read_pyc(source: Any, *rest: Any, **named: Any) -> Any:
+            return None if self.wants(str(source)) else read(source, *rest, **named)
+
+        rewriting.rewrite_asserts, rewriting._read_pyc = rewrite_asserts, read_pyc
 
     def wants(self, path: str) -> bool:
         """Whether a file may have sites."""
@@ -124,6 +146,7 @@ class CallSites:
         writer.visit(tree)
         if writer.written:
             declare_global(tree, CALLS)
+            self.loaded.append(path)
 
     def _number(self, path: str, role: Role, node: ast.Call, name: str, form: str) -> int:
         key = (path, extent_of(node), form)
@@ -177,7 +200,7 @@ class _Writer(ast.NodeTransformer):
     def __init__(self, names: Collection[str], number: Callable[[ast.Call, str, str], int]) -> None:
         self._names = names
         self._number = number
-        self._read: dict[str, ast.Attribute] = {}
+        self._read: dict[str, ast.expr] = {}
         self.written = False
 
     def visit(self, node: ast.AST) -> Any:
@@ -193,31 +216,25 @@ class _Writer(ast.NodeTransformer):
     def visit_Assign(self, node: ast.Assign) -> ast.AST:  # as above
         self.generic_visit(node)
         target = node.targets[0]
-        if (
-            isinstance(target, ast.Name)
-            and target.id.startswith("@py_")
-            and isinstance(node.value, ast.Attribute)
-        ):
+        if isinstance(target, ast.Name) and target.id.startswith("@py_"):
             self._read[target.id] = node.value
         return node
 
     def visit_Call(self, node: ast.Call) -> ast.AST:  # as above
         function = node.func
         self.generic_visit(node)
-        if is_ours(function):
+        read = self._read.get(function.id, function) if isinstance(function, ast.Name) else function
+        if is_ours(read):
             return node
-        if isinstance(function, ast.Attribute) and function.attr in self._names:
-            _as_compiled(node, function)
-            number = self._number(node, function.attr, "attribute")
-            node.func = self._question(number, function, [function.value])
-        elif isinstance(function, ast.Name) and function.id in self._names:
-            number = self._number(node, function.id, "name")
-            node.func = self._question(number, function, [function])
-        elif isinstance(function, ast.Name) and function.id in self._read:
-            read = self._read[function.id]
-            if read.attr in self._names:
-                number = self._number(node, read.attr, "pair")
-                node.func = self._question(number, function, [function, copy.deepcopy(read.value)])
+        if isinstance(read, ast.Attribute) and read.attr in self._names:
+            if read is function:
+                _as_compiled(node, read)
+                node.func = self._question(self._number(node, read.attr, "attribute"), function, [read.value])
+            else:
+                given = [function, copy.deepcopy(read.value)]
+                node.func = self._question(self._number(node, read.attr, "pair"), function, given)
+        elif isinstance(read, ast.Name) and read.id in self._names:
+            node.func = self._question(self._number(node, read.id, "name"), function, [function])
         return node
 
     def _question(self, number: int, function: ast.expr, given: list[ast.expr]) -> ast.expr:

@@ -29,7 +29,7 @@ from mutabot.inside.targets.callables import Callables
 from mutabot.inside.targets.names import named_class
 from mutabot.inside.targets.target import Handler, Where
 from mutabot.languages.python import function_of
-from mutabot.model import Operation, Role, Span
+from mutabot.model import ANY, Operation, Role, Span
 from mutabot.model.values.signature import signature_of
 
 from .call_sites import NOTHING, CallSite
@@ -86,7 +86,11 @@ class Standing:
         if not one.is_told:
             one.is_told = True
             self._tell_signature(one)
-        return partial(self._call, self._place(site, frame), site.is_awaited, one, found, receiver)
+        where = Where(
+            site=self._place(site, frame), receiver=None if receiver is NOTHING else receiver,
+            is_awaited=site.is_awaited, frame=frame,
+        )  # fmt: skip
+        return partial(self._call, one, where, found, receiver)
 
     def note_modules(self, paths: Collection[str]) -> None:
         """Note which names of the modules of these files mean operations: they were loaded just now."""
@@ -95,23 +99,15 @@ class Standing:
                 self._names_of(vars(module))
 
     def _call(
-        self,
-        place: tuple[Span, Role],
-        is_awaited: bool,
-        one: Candidate,
-        found: Any,
-        receiver: Any,
-        /,
-        *args: Any,
-        **kwargs: Any,
+        self, one: Candidate, where: Where, found: Any, receiver: Any, /, *args: Any, **kwargs: Any
     ) -> Any:
         """Make a call as one of an operation."""
         __tracebackhide__ = True
         owner = self._owner(one)
-        instance = receiver if owner is not None and receiver is not NOTHING else None
+        is_method = owner is not None or one.operation.target.startswith(ANY)
+        instance = receiver if is_method and receiver is not NOTHING else None
         if args and isinstance(receiver, type) and _is_of_objects(owner, one):  # called through its class
             instance, found, args = args[0], partial(found, args[0]), args[1:]
-        where = Where(site=place, receiver=receiver, is_awaited=is_awaited)
         return one.handler(found, instance, args, kwargs, where)
 
     def _place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
@@ -126,7 +122,7 @@ class Standing:
         if self._sees_itself(found):
             return None
         ones = [one for one in self._by_name[site.name] if not self._is_read(one)]
-        for find in (self._of_class, self._of_name, self._of_mock):
+        for find in (self._of_class, self._of_name, self._of_mock, self._of_any):
             one = find(ones, found, receiver, frame)
             if one is not None:
                 return one
@@ -140,10 +136,8 @@ class Standing:
         return isinstance(self.callables.found.get(one.operation.target), property | cached_property)
 
     def _sees_itself(self, found: Any) -> bool:
-        for one in _layers(found):
-            if type(one) in _WRAPPERS and one._self_wrapper in self.sees_itself:
-                return True
-        return False
+        seen = self.sees_itself
+        return any(type(one) in _WRAPPERS and one._self_wrapper in seen for one in _layers(found))
 
     def _of_class(
         self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
@@ -200,11 +194,13 @@ class Standing:
             if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
                 return one
             if wrapped is not None and any(
-                type(layer) in _WRAPPERS and layer._self_wrapper is one.handler
-                for layer in _layers(wrapped)
+                type(layer) in _WRAPPERS and layer._self_wrapper is one.handler for layer in _layers(wrapped)
             ):
                 return one
         return None
+
+    def _of_any(self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+        return next((one for one in ones if one.operation.target.startswith(ANY)), None)
 
     def _is_of_program(self, found: Any) -> bool:
         function = found.__func__ if isinstance(found, MethodType) else found

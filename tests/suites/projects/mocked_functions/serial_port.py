@@ -1,0 +1,5 @@
+def write(*words):
+    raise OSError("no port")
+
+
+ask = write
