@@ -8,8 +8,10 @@ from __future__ import annotations
 import subprocess
 import sys
 import tempfile
+import time
 import timeit
 from pathlib import Path
+from unittest.mock import Mock
 
 from mutabot.border.events import Event
 from mutabot.border.job import Job
@@ -46,6 +48,7 @@ def main() -> None:
         folder = Path(name)
         (folder / "bench_robot.py").write_text(ROBOT, encoding="utf-8")
         (folder / "bench_program.py").write_text(PROGRAM, encoding="utf-8")
+        (folder / "bench_elsewhere.py").write_text(ROBOT + PROGRAM, encoding="utf-8")
         (folder / "robot.toml").write_text(VOCABULARY, encoding="utf-8")
         sys.path.insert(0, name)
         _calls(folder)
@@ -53,24 +56,33 @@ def main() -> None:
 
 
 def _calls(folder: Path) -> None:
-    import bench_program  # noqa: PLC0415  # made above
-    import bench_robot  # noqa: PLC0415
-
-    arm = bench_robot.Arm()
-    plain = _per_call(lambda: bench_program.run(arm))
     job = Job(str(folder), ("bench_program.py",), (), load(["robot.toml"], folder), 1, 0)
     locator = Locator(job.root, job.program, job.oracle)
     session = Session(job, Nowhere(), locator)  # type: ignore[arg-type]  # it has the one method that is used
     session.install()
+    import bench_elsewhere  # noqa: PLC0415  # made above
+    import bench_program  # noqa: PLC0415
+    import bench_robot  # noqa: PLC0415
+
+    arm, other, mock = bench_robot.Arm(), bench_elsewhere.Arm(), Mock(spec=bench_robot.Arm)
+    plain = _per_call(lambda: bench_elsewhere.run(other))
+    of_mock = _per_call(lambda: bench_elsewhere.run(mock))
     print(f"a plain call                        {plain:7.2f} µs")
+    print(
+        f"of something else of the same name +{_per_call(lambda: bench_program.run(other)) - plain:7.2f} µs"
+    )
     print(f"intercepted, nothing active        +{_per_call(lambda: bench_program.run(arm)) - plain:7.2f} µs")
     session.start_test("test")
     print(f"intercepted and recorded           +{_per_call(lambda: bench_program.run(arm)) - plain:7.2f} µs")
+    print(
+        f"the same where a mock stands       +{_per_call(lambda: bench_program.run(mock)) - of_mock:7.2f} µs"
+    )
 
 
 def _per_call(function: object) -> float:
     """µs per call, the best of seven tries."""
-    return min(timeit.repeat(function, number=CALLS // 10, repeat=7)) / (CALLS // 10) * 1e6  # type: ignore[arg-type]
+    used = timeit.repeat(function, timer=time.process_time, number=CALLS // 20, repeat=7)  # type: ignore[arg-type]
+    return min(used) / (CALLS // 20) * 1e6
 
 
 def _import() -> None:

@@ -186,7 +186,9 @@ def test_messages_of_pytest_stay_as_they_are(tmp_path: Path) -> None:
 
     def run() -> tuple[list[str], str]:
         command = [sys.executable, "-B", "-m", "pytest", "-q", "-vv", "-p", "no:cacheprovider"]
-        done = subprocess.run([*command, "--color=no"], cwd=tmp_path, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [*command, "--color=no"], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
         text = done.stdout
         return [line for line in text.splitlines() if line.startswith(("E ", ">", "test_it.py"))], text
 

@@ -14,7 +14,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from fnmatch import fnmatchcase
-from types import CodeType, FrameType, TracebackType
+from types import CodeType, FrameType, FunctionType, MethodType, TracebackType
 from typing import Any, Protocol, cast
 
 import wrapt
@@ -330,6 +330,9 @@ def _bound(wrapped: Callable[..., Any], instance: Any) -> Callable[..., Any]:
 
 def is_coroutine_function(wrapped: Callable[..., Any]) -> bool:
     """Whether what a call gives is to be awaited: also of mocks, and of objects that are called."""
+    function = wrapped.__func__ if type(wrapped) is MethodType else wrapped
+    if type(function) is FunctionType and not function.__dict__:  # the most of them
+        return bool(function.__code__.co_flags & inspect.CO_COROUTINE)
     if inspect.iscoroutinefunction(wrapped) or inspect.iscoroutinefunction(type(wrapped).__call__):
         return True
     coroutines = sys.modules.get("asyncio.coroutines")

@@ -36,7 +36,7 @@ _entries: list[Any] = []
 _MOST_OF_METHOD = 30
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class CallSite:
     """A call in the text.
 

@@ -19,7 +19,7 @@ import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from types import FrameType, FunctionType, MethodType, ModuleType
+from types import BuiltinMethodType, FrameType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 import wrapt
@@ -34,6 +34,8 @@ from mutabot.model.values.signature import signature_of
 
 from .call_sites import NOTHING, CallSite
 
+#: names in modules, and what they meant
+_Guards = tuple[tuple[dict[str, Any], str, Any], ...]
 _WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
 
 
@@ -71,6 +73,7 @@ class Standing:
     sees_itself: Collection[Handler]
     known: Mapping[Span, str] = field(default_factory=dict)
     _by_name: dict[str, list[Candidate]] = field(default_factory=dict)
+    _left_alone: dict[tuple[CallSite, type, Any], _Guards] = field(default_factory=dict)
     _places: dict[int, tuple[Span, Role]] = field(default_factory=dict)
     _meant: dict[int, tuple[dict[str, Any], dict[str, Any]]] = field(default_factory=dict)
 
@@ -80,8 +83,14 @@ class Standing:
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """What is called at a site: ``found``, or what makes the same call as one of an operation."""
+        key = (site, type(receiver), found.__func__ if type(found) is MethodType else type(found))
+        guards = self._left_alone.get(key)
+        if guards is not None and all(names.get(name) is value for names, name, value in guards):
+            return found
         one = self._operation(site, found, receiver, frame)
         if one is None:
+            if _is_told_by_type(found, receiver):
+                self._left_alone[key] = self._guards(site, frame)
             return found
         if not one.is_told:
             one.is_told = True
@@ -91,6 +100,18 @@ class Standing:
             is_awaited=site.is_awaited, frame=frame,
         )  # fmt: skip
         return partial(self._call, one, where, found, receiver)
+
+    def _guards(self, site: CallSite, frame: FrameType) -> _Guards:
+        """What must be as it is for the same to be left alone: all that names an operation, or its class."""
+        guards = [(frame.f_globals, name, value) for name, value in self._named_in(frame.f_globals)]
+        for one in self._by_name[site.name]:
+            module, _, qualname = one.operation.target.partition(":")
+            names = vars(sys.modules.get(module, sys))
+            guards.append((names, first := qualname.partition(".")[0], names.get(first)))
+        return tuple(guards)
+
+    def _named_in(self, names: dict[str, Any]) -> list[tuple[str, Any]]:
+        return [(name, names.get(name)) for name in self._names_of(names)]
 
     def note_modules(self, paths: Collection[str]) -> None:
         """Note which names of the modules of these files mean operations: they were loaded just now."""
@@ -181,7 +202,7 @@ class Standing:
         mock = sys.modules.get("unittest.mock")
         if mock is None:
             return None
-        made = found if _is_mock(mock, found) else getattr(found, "mock", None)
+        made = vars(found).get("mock") if type(found) is FunctionType else found
         if not _is_mock(mock, made):
             return None
         if len(ones) == 1:
@@ -267,6 +288,19 @@ def _layers(found: Any) -> Iterator[Any]:
             found = found.__wrapped__
         else:
             return
+
+
+def _is_told_by_type(found: Any, receiver: Any) -> bool:
+    """Whether all that is called like this on objects of this type is left alone if this is."""
+    kind = type(found)
+    if (
+        receiver is NOTHING
+        or isinstance(receiver, type | ModuleType)
+        or receiver.__class__ is not type(receiver)
+    ):
+        return False
+    of_python = kind is MethodType and type(found.__func__) is FunctionType
+    return (of_python or kind is BuiltinMethodType) and getattr(found, "__self__", None) is receiver
 
 
 def _is_mock(mock: Any, value: Any) -> bool:
