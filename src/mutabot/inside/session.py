@@ -35,8 +35,9 @@ from mutabot.inside.targets.target import Finding, Handler
 from mutabot.inside.text.call_sites import CallSites
 from mutabot.inside.text.returns import Returns
 from mutabot.inside.text.session_text import SessionText
-from mutabot.inside.text.standing import Candidate, Standing, last_name
-from mutabot.model import Moment, Mutant, Operation, Probe, Role, Span
+from mutabot.inside.text.stand_ins import StandIns, last_name
+from mutabot.inside.text.standing import Candidate, Standing
+from mutabot.model import Moment, Mutant, Operation, Probe, Role
 from mutabot.model.values.quantity import Value
 
 from .event_file import Sink
@@ -156,8 +157,8 @@ class Session:
         """See calls where they are written, of whatever stands in the place of an operation."""
         callables = self.interception.of()
         assert isinstance(callables, Callables)
-        known = self._known_sites()
-        self.standing = Standing(candidates, callables, self.locator, self._sees_itself, known)
+        self.standing = Standing(candidates, callables, self.locator, self._sees_itself)
+        self._tell_standing()
         names = {last_name(one.operation) for one in candidates}
         self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself)
         self.call_sites.install()
@@ -167,11 +168,14 @@ class Session:
         self.call_sites.remove()
         self.interception.remove()
 
-    def _known_sites(self) -> dict[Span, str]:
-        """What the baseline saw at the sites of this session's mutants."""
+    def _tell_standing(self) -> None:
+        """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
         mutants = self.job.branching.mutants if self.job.branching is not None else ()
         own = (self.job.mutant,) if self.job.mutant is not None else ()
-        return {one.site.span: one.operation for mutant in (*mutants, *own) for one in mutant.singles}
+        singles = [one for mutant in (*mutants, *own) for one in mutant.singles]
+        self.standing.known = {one.site.span: one.operation for one in singles}
+        if self.job.inspect:
+            self.standing.noted = StandIns(lambda: self.test, self.locator.relative)
 
     def _listen(self) -> None:
         """Hear the messages that pass by, if they tell of refusals, or of where the robot is."""
@@ -287,6 +291,7 @@ class Session:
         """Go on with a job of the same program and vocabulary. What was installed stays."""
         self.job, self.pipe = job, pipe
         self.inspection.is_asked, self.passing.on_end = job.inspect, self._on_end
+        self._tell_standing()
         if self.text is not None:
             self.text.pipe = pipe
 
@@ -422,6 +427,9 @@ class Session:
         if self.job.inspect:
             self.inspect_targets()
             self.inspection.tell_overrides(self.interception, self._bypasses)
+            if self.standing.noted is not None:
+                for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
+                    self.inspection.tell(operation.source, finding)
 
     def inspect_targets(self) -> None:
         """Look at every target of the vocabulary, also of what no test has led to."""

@@ -33,6 +33,7 @@ from mutabot.model import ANY, Operation, Role, Span
 from mutabot.model.values.signature import signature_of
 
 from .call_sites import NOTHING, CallSite
+from .stand_ins import StandIns, is_mock, last_name
 
 #: names in modules, and what they meant
 _Guards = tuple[tuple[dict[str, Any], str, Any], ...]
@@ -64,7 +65,10 @@ class Standing:
         callables: where they were found.
         locator: whose file is whose.
         sees_itself: handlers of what sees its calls itself.
+
+    Attributes:
         known: operations by the sites of this session's mutants.
+        noted: what is to be told of it; None if nobody asks.
     """
 
     candidates: Iterable[Candidate]
@@ -72,6 +76,7 @@ class Standing:
     locator: Locator
     sees_itself: Collection[Handler]
     known: Mapping[Span, str] = field(default_factory=dict)
+    noted: StandIns | None = None
     _by_name: dict[str, list[Candidate]] = field(default_factory=dict)
     _left_alone: dict[tuple[CallSite, type, Any], _Guards] = field(default_factory=dict)
     _places: dict[int, tuple[Span, Role]] = field(default_factory=dict)
@@ -88,6 +93,9 @@ class Standing:
         if guards is not None and all(names.get(name) is value for names, name, value in guards):
             return found
         one = self._operation(site, found, receiver, frame)
+        if self.noted is not None:
+            operation = one.operation if one is not None else None
+            self.noted.note(site, operation, found, receiver)
         if one is None:
             if _is_told_by_type(found, receiver):
                 self._left_alone[key] = self._guards(site, frame)
@@ -203,7 +211,7 @@ class Standing:
         if mock is None:
             return None
         made = vars(found).get("mock") if type(found) is FunctionType else found
-        if not _is_mock(mock, made):
+        if not is_mock(mock, made):
             return None
         if len(ones) == 1:
             return ones[0]
@@ -264,11 +272,6 @@ class Standing:
             one.use_signature(signature)
 
 
-def last_name(operation: Operation) -> str:
-    """What a call of an operation ends with."""
-    return operation.qualname.rpartition(".")[2]
-
-
 def _is_of_objects(owner: type | None, one: Candidate) -> bool:
     """Whether an operation is a method of objects, rather than one of their class."""
     if owner is None:
@@ -301,10 +304,6 @@ def _is_told_by_type(found: Any, receiver: Any) -> bool:
         return False
     of_python = kind is MethodType and type(found.__func__) is FunctionType
     return (of_python or kind is BuiltinMethodType) and getattr(found, "__self__", None) is receiver
-
-
-def _is_mock(mock: Any, value: Any) -> bool:
-    return issubclass(type(value), mock.NonCallableMock)
 
 
 def _is_a(value: Any, kind: Any) -> bool:
