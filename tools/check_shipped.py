@@ -24,6 +24,7 @@ from typing import Any
 
 from mutabot.border.events import Problem
 from mutabot.border.job import Job
+from mutabot.inside.calls.locate import Locator
 from mutabot.inside.event_file import Held
 from mutabot.inside.session import Session
 from mutabot.inside.targets.callables import Callables
@@ -66,7 +67,7 @@ def compare(vocabulary: Vocabulary) -> Iterator[str]:
     """What does not fit the installed packages."""
     pipe = Held()
     job = Job(root=".", program=(), oracle=(), vocabulary=vocabulary, seed=1, round=0, inspect=True)
-    session = Session(job, pipe, lambda frame: None)
+    session = Session(job, pipe, Locator(job.root, job.program, job.oracle))
     with contextlib.redirect_stdout(io.StringIO()):
         session.install()
         session.inspect_targets()
