@@ -9,7 +9,6 @@ from typing import Any
 
 from mutabot.border.events import Event, Problem, Remark
 from mutabot.errors import PathError
-from mutabot.inside.calls.bypasses import Bypasses
 from mutabot.inside.readings.probes import is_bound, needed_arguments
 from mutabot.inside.targets.callables import not_imported
 from mutabot.inside.targets.interception import Interception
@@ -102,11 +101,9 @@ class Inspection:
         self._check_exceptions()
         self._check_probes()
 
-    def tell_overrides(self, interception: Interception, bypasses: Bypasses) -> None:
-        """Say which calls went past an operation because another method overrides it."""
+    def tell_uncovered(self, interception: Interception) -> None:
+        """Say which overriding methods cannot be wrapped."""
         for operation in self._vocabulary.operations:
-            if sentences := bypasses.sentences(operation.target):
-                self.tell(operation.source, Finding("call", sentences, is_remark=True))
             uncovered = interception.of(operation.kind).uncovered(operation.target)
             if operation.overrides and uncovered:
                 self.tell(operation.source, Finding("overrides", "; ".join(uncovered), is_remark=True))

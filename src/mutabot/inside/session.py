@@ -15,10 +15,9 @@ from mutabot.border.events import Acted, CalledAtImport, Event, MutatedCall, Sit
 from mutabot.border.job import Budget, Job
 from mutabot.inside.calls.activation import Activation, is_refusal
 from mutabot.inside.calls.answers import Answers, handles_of
-from mutabot.inside.calls.bypasses import Bypasses
 from mutabot.inside.calls.door import Door
 from mutabot.inside.calls.locate import Locator
-from mutabot.inside.calls.passing import Aside, Passing, is_under_way
+from mutabot.inside.calls.passing import Aside, Passing
 from mutabot.inside.calls.refusing import Made
 from mutabot.inside.calls.trace import Recorder
 from mutabot.inside.fork.bunch import Bunch
@@ -101,7 +100,6 @@ class Session:
     _doors: list[Door] = field(default_factory=list)
     _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
     _telling: list[Door] = field(default_factory=list)
-    _bypasses: Bypasses = field(init=False)
     _time: ProgramTime = field(init=False)
     _sees_itself: set[Handler] = field(default_factory=set)
 
@@ -124,7 +122,6 @@ class Session:
         )
         self.passing.oracle_nodes = self.job.oracle_nodes
         self._time = ProgramTime(self.job.vocabulary, lambda: self.meter, self.instances)
-        self._bypasses = Bypasses(self.locator.locate, self._calls_of, is_under_way)
 
     def install(self) -> None:
         """Put the interception of the whole vocabulary in place, and the mutant with it."""
@@ -342,10 +339,6 @@ class Session:
         if self.call_sites.loaded:
             self.standing.note_modules(frozenset(self.call_sites.loaded))
             self.call_sites.loaded.clear()
-        if self.job.inspect:
-            operations = [one for one in self.job.vocabulary.operations if not one.overrides]
-            for targets in self.interception.kinds:
-                targets.wrap_bypasses((one.target for one in operations), self._bypasses.handler)
 
     def _seed_of(self, mutant: Mutant) -> int:
         """All magnitudes of one fault draw alike, so that a bigger one is the same fault, only bigger."""
@@ -426,7 +419,7 @@ class Session:
             self.text.finish(texts)
         if self.job.inspect:
             self.inspect_targets()
-            self.inspection.tell_overrides(self.interception, self._bypasses)
+            self.inspection.tell_uncovered(self.interception)
             if self.standing.noted is not None:
                 for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
                     self.inspection.tell(operation.source, finding)
@@ -468,9 +461,6 @@ class Session:
 
     def _refusals(self, operation: Operation) -> frozenset[str]:
         return frozenset((*operation.refusals, *self.job.vocabulary.refusals))
-
-    def _calls_of(self, target: str) -> int:
-        return sum(door.calls for door in self._doors if door.operation.target == target)
 
     def _send(self, line: Event) -> None:
         self.pipe.send(line)  # which is another one once a copy knows its job

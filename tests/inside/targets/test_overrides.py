@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 
-from mutabot.border.events import Problem, Remark
-from tests.inside.stage import Make, Stage
+from tests.inside.stage import Make
 
 ROBOT = """
     import abc
@@ -191,66 +188,3 @@ def test_the_making_of_subclasses_goes_on_as_it_did(make_stage: Make) -> None:
     lines = ["class Mine(robot.Plain, tag='mine'):", "    pass", "return Mine.tag, robot.Polite.tag"]
     stage = make_stage(ROBOT, program(*lines), vocabulary("Plain.move", "overrides = true"))
     assert stage.run(stage.session()) == ("mine", "polite")
-
-
-def watched(stage: Stage, *functions: str) -> list[Remark]:
-    """The remarks of a session that looks at the vocabulary; each function is a test."""
-    stage.load_program()
-    session = stage.session(inspect=True)
-    for function in functions or ("run",):
-        session.start_test(function)
-        stage.run(session, function)
-        session.end_test()
-    session.finish()
-    assert not [line for line in stage.pipe.lines if isinstance(line, Problem)]
-    return [line for line in stage.pipe.lines if isinstance(line, Remark)]
-
-
-def test_an_overriding_method_that_the_program_calls_is_named(make_stage: Make) -> None:
-    lines = ["arm = robot.Outer(robot.Wrapper(robot.Real()))", "for _ in range(3): arm.move(1.0)"]
-    stage = make_stage(ROBOT, program(*lines), vocabulary("Arm.move"))
-    (remark,) = watched(stage)
-    name = stage.robot_name
-    assert (remark.source, remark.key) == (f"robot.toml:1 · {name}:Arm.move", "call")
-    assert f"{name}:Arm.move is overridden by {name}:Outer.move (3 calls)" in remark.text
-    assert "name that instead, or write overrides = true" in remark.text
-    assert "Wrapper" not in remark.text
-    assert not stage.sites()
-
-
-def test_several_overriding_methods_are_named_and_none_that_has_no_name(make_stage: Make) -> None:
-    lines = ["robot.Real().move(1.0); robot.Rude().move(1.0); robot.Leaf().move(1.0)"]
-    stage = make_stage(ROBOT, program(*lines), vocabulary("Plain.move"))
-    (remark,) = watched(stage)
-    assert f"{stage.robot_name}:Rude.move (1 call) and {stage.robot_name}:Leaf.move (1 call)" in remark.text
-
-
-def test_an_overriding_method_that_calls_the_operation_is_named_too(make_stage: Make) -> None:
-    """What it does besides is no part of the mutated call."""
-    stage = make_stage(ROBOT, program("robot.Polite().move(1.0)"), vocabulary("Plain.move"))
-    (remark,) = watched(stage)
-    assert f"overridden by {stage.robot_name}:Polite.move (1 call), so only what these call" in remark.text
-    assert len(stage.sites()) == 1
-
-
-def test_a_class_inside_a_function_cannot_be_named(make_stage: Make) -> None:
-    stage = make_stage(ROBOT, HIDDEN, vocabulary("Plain.move"))
-    (remark,) = watched(stage, "first", "run")
-    assert f"{stage.program_name}:make.<locals>.Hidden.move (1 call)" in remark.text
-    assert remark.text.endswith("unseen; write overrides = true")
-
-
-@pytest.mark.parametrize(
-    ("lines", "text"),
-    [
-        (["robot.Real().move(1.0)"], vocabulary("Real.move")),
-        (["robot.Rude().move(1.0)"], vocabulary("Plain.move") + vocabulary("Rude.move")),
-        (["robot.Rude().move(1.0)"], vocabulary("Plain.move", "overrides = true")),
-        ([], vocabulary("Plain.move")),
-    ],
-    ids=["not overridden", "named itself", "covered", "not called"],
-)
-def test_nothing_is_said_where_no_call_went_past(make_stage: Make, lines: Any, text: str) -> None:
-    stage = make_stage(ROBOT, program(*lines), text)
-    remarks = [remark for remark in watched(stage) if remark.key == "call"]
-    assert not remarks

@@ -97,13 +97,6 @@ class Callables(Targets):
         """Their modules may not even be importable here."""
         self.pending.difference_update(targets)
 
-    def wrap_bypasses(self, targets: Iterable[str], handler: Callable[[str, type], Handler]) -> None:
-        """Wrap every method there is that overrides one of these targets, but those wrapped."""
-        wanted = frozenset(targets)
-        found = [target for target in self.owners if target in wanted]
-        for target in sorted(found, key=lambda one: len(self.owners[one][0].__mro__), reverse=True):
-            self._wrap_overriding(target, functools.partial(handler, target))
-
     def uncovered(self, target: str) -> list[str]:
         """Overriding methods that cannot be wrapped, with the reason."""
         return self._uncovered.get(target, [])

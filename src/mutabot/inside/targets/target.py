@@ -125,11 +125,6 @@ class Targets(ABC):
     def look_again(self) -> None:  # noqa: B027  # most kinds have nothing to do
         """A test begins: find what was made since the last one."""
 
-    def wrap_bypasses(  # noqa: B027  # as above
-        self, targets: Iterable[str], handler: Callable[[str, type], Handler]
-    ) -> None:
-        """Let handlers stand around what the program uses in place of these targets, which leave it out."""
-
     def uncovered(self, target: str) -> list[str]:
         """What the program uses in place of a target and no handler can stand around, with the reason."""
         return []
