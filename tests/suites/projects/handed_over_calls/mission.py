@@ -5,7 +5,9 @@ def shift(cell, pool, places):
     cell.light(True)
     first = partial(cell.move, speed=0.5)
     first(0.25)
-    list(map(cell.move, places))
+    for place in places:
+        go = cell.move
+        go(place)
     handlers = {"off": cell.light}
     handlers["off"](False)
     if getattr(cell, "ready")():
