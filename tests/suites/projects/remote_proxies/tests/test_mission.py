@@ -33,9 +33,9 @@ def test_sees_two_directions(server):
     assert mission.look_around(server) == [90, 60]
 
 
-def test_asks_twice(server):
+def test_turns_twice(server):
     mission.look_around(server)
-    assert server.heard.count("angle") == 2
+    assert server.heard.count("turn") == 2
 
 
 def test_stands_still_at_last(server):
