@@ -88,10 +88,16 @@ class Standing:
 
     def __call__(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Any:
         """What is called at a site: ``found``, or what makes the same call as one of an operation."""
-        key = (site, type(receiver), found.__func__ if type(found) is MethodType else type(found))
+        kind = type(found)
+        own = found.__func__ if kind is MethodType else found if kind is FunctionType else kind
+        key = (site, type(receiver), own)
         guards = self._left_alone.get(key)
-        if guards is not None and all(names.get(name) is value for names, name, value in guards):
-            return found
+        if guards is not None:
+            for names, name, value in guards:
+                if names.get(name) is not value:
+                    break
+            else:
+                return found
         one = self._operation(site, found, receiver, frame)
         if self.noted is not None:
             operation = one.operation if one is not None else None
@@ -111,15 +117,13 @@ class Standing:
 
     def _guards(self, site: CallSite, frame: FrameType) -> _Guards:
         """What must be as it is for the same to be left alone: all that names an operation, or its class."""
-        guards = [(frame.f_globals, name, value) for name, value in self._named_in(frame.f_globals)]
+        here = frame.f_globals
+        named = {(id(here), name): (here, name, here.get(name)) for name in self._names_of(here)}
         for one in self._by_name[site.name]:
             module, _, qualname = one.operation.target.partition(":")
-            names = vars(sys.modules.get(module, sys))
-            guards.append((names, first := qualname.partition(".")[0], names.get(first)))
-        return tuple(guards)
-
-    def _named_in(self, names: dict[str, Any]) -> list[tuple[str, Any]]:
-        return [(name, names.get(name)) for name in self._names_of(names)]
+            names, first = vars(sys.modules.get(module, sys)), qualname.partition(".")[0]
+            named[id(names), first] = (names, first, names.get(first))
+        return tuple(named.values())
 
     def note_modules(self, paths: Collection[str]) -> None:
         """Note which names of the modules of these files mean operations: they were loaded just now."""
@@ -296,14 +300,14 @@ def _layers(found: Any) -> Iterator[Any]:
 def _is_told_by_type(found: Any, receiver: Any) -> bool:
     """Whether all that is called like this on objects of this type is left alone if this is."""
     kind = type(found)
-    if (
-        receiver is NOTHING
-        or isinstance(receiver, type | ModuleType)
-        or receiver.__class__ is not type(receiver)
-    ):
+    if kind is FunctionType:  # one that is always the same
+        return receiver is NOTHING and "<locals>" not in found.__qualname__
+    if receiver is NOTHING or isinstance(receiver, type | ModuleType):
+        return False
+    if receiver.__class__ is not type(receiver):  # it stands for something else
         return False
     of_python = kind is MethodType and type(found.__func__) is FunctionType
-    return (of_python or kind is BuiltinMethodType) and getattr(found, "__self__", None) is receiver
+    return (of_python or kind is BuiltinMethodType) and found.__self__ is receiver
 
 
 def _is_a(value: Any, kind: Any) -> bool:
