@@ -53,6 +53,40 @@ def _use_buttons(page: Any, feed: Feed) -> None:
         page.wait_for_selector("dialog", state="detached")
 
 
+def _wait_for_version(page: Any, version: int) -> None:
+    """Until the page has these data; its policy allows no script that polls."""
+    for _ in range(600):
+        if page.evaluate("typeof mutabot === 'object' && mutabot.campaign && mutabot.campaign.version") == version:
+            return
+        page.wait_for_timeout(50)
+    pytest.fail(f"the page never had version {version} of the data")
+
+
+def test_a_click_during_which_newer_data_come_is_not_lost(page: Any, tmp_path: Path) -> None:
+    path = tmp_path / "journal.sqlite"
+    version = [1]
+    feed, pages = Feed(), Pages(path, "cell", lambda: version[0])
+    server = Server(pages, feed, {})
+    try:
+        with Journal.create(path, meta=samples.meta()) as journal:
+            journal.set_plan(samples.MUTANTS, samples.LEFT_OUT, sources={"mission.py": samples.PROGRAM})
+            feed.put(state(1))
+            page.goto(server.address)
+            _wait_for_version(page, 1)
+
+            page.get_by_role("link", name="Mutants", exact=True).hover()
+            page.mouse.down()
+            version[0] = 2
+            feed.put(state(2))
+            _wait_for_version(page, 2)
+            page.mouse.up()
+            page.get_by_label("Search").wait_for()
+    finally:
+        page.close()
+        feed.close()
+        server.close()
+
+
 def test_it_fills_is_paused_and_says_how_it_ended(page: Any, tmp_path: Path) -> None:
     known = [0]
     given: list[str] = []
