@@ -55,8 +55,9 @@ def _use_buttons(page: Any, feed: Feed) -> None:
 
 def _wait_for_version(page: Any, version: int) -> None:
     """Until the page has these data; its policy allows no script that polls."""
+    drawn = "typeof mutabot === 'object' && mutabot.campaign && mutabot.campaign.version"
     for _ in range(600):
-        if page.evaluate("typeof mutabot === 'object' && mutabot.campaign && mutabot.campaign.version") == version:
+        if page.evaluate(drawn) == version:
             return
         page.wait_for_timeout(50)
     pytest.fail(f"the page never had version {version} of the data")
