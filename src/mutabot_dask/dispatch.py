@@ -21,10 +21,9 @@ from mutabot.campaign.workers.pause import Pause
 from mutabot.campaign.workers.task import Result, Task
 
 from . import far
-from .checked import Misfit
 from .link import Link, News, shown
 from .roster import Roster
-from .unit import Answer, Ground, Unit
+from .unit import Answer, Ground, Misfit, Unit
 
 #: how often a unit is tried: at first, and three times elsewhere
 TRIES = 4

@@ -87,7 +87,7 @@ def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:
     found = results.meta.get(REACHING)
     if found is None:  # an older journal does not say it
         return tuple(dict.fromkeys(one.test.test for one in results.tests))
-    return from_data(Reaching, found).at(one.site.id for one in result.mutant.singles)
+    return from_data(Reaching, found).at(result.mutant.site.id)
 
 
 def _telling(outcome: Outcome | None) -> list[str]:

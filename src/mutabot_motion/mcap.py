@@ -15,9 +15,8 @@ from foxglove import channels, messages
 from mutabot.evidence.recording import Block
 from mutabot.evidence.tracks import Path as Way
 
-from .events import Weight, events
-from .shown import BLOCK, COLOURS, Shown, things_in, values_in
-from .target import check, written_whole
+from .shown import BLOCK, COLOURS, Shown, Weight, events, things_in, values_in
+from .sights import check, written_whole
 
 _MAGIC = b"\x89MCAP0\r\n"
 _WORLD = "world"

@@ -20,9 +20,8 @@ from mutabot.errors import UsageError
 from mutabot.evidence.recording import Block, Kind, Recording
 from mutabot.evidence.tracks import Path as Way
 
-from .events import Weight, events
-from .shown import BLOCK, COLOURS, Shown, things_in, values_in
-from .target import check, has_screen, written_whole
+from .shown import BLOCK, COLOURS, Shown, Weight, events, things_in, values_in
+from .sights import check, has_screen, written_whole
 
 _MAGIC = b"RRF2"
 #: seconds after which a viewer that cannot begin has ended

@@ -23,7 +23,7 @@ from mutabot.evidence.tracks import Path as Way
 
 from .pictures.lettering import letters_of_english
 from .shown import BLOCK, COLOURS, Shown, end_of, things_in
-from .target import has_screen
+from .sights import has_screen
 
 #: how much of each side is seen
 _OPACITY = {"original": 0.4, "mutant": 1.0}

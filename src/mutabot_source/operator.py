@@ -17,7 +17,7 @@ import libcst as cst
 from mutabot.model.alternative import Alternative
 from mutabot.operators.rule import Rule
 
-from .families import CLASSICAL
+from .extension import CLASSICAL
 
 #: what the helper object is called in templates; an operator may call, and names what it raises by itself:
 #: ``absolute(value)``, whatever the program calls ``abs``; ``fail(name, text)``, which raises; and

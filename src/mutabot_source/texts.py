@@ -21,12 +21,10 @@ from mutabot.model.alternative import Alternative, Extent, ProgramText, TextPlac
 from mutabot.model.site import Span
 
 from . import registry
-from .extents import Extents
-from .families import CLASSICAL
+from .extension import CLASSICAL
 from .index import Found, Index
+from .nodes import Extents, is_variable, shortened, shown, surroundings, template
 from .operator import ClassicalOperator, Draft
-from .rendering import shortened, shown, template
-from .surroundings import is_variable, surroundings
 
 #: characters of the longest expression that is worth an alternative; tables are longer
 LONGEST = 1000

@@ -307,7 +307,6 @@ class Did:
         hits, acted, away, example, invalid, failure: as in ``TestEnd``.
         refused: how the robot refused a mutated call; None if it did not.
         is_final: whether this refusal decides about a test that fails, since it was told as data.
-        parts: the mutants of which it is made that changed something.
     """
 
     test: str
@@ -319,7 +318,6 @@ class Did:
     failure: str | None = None
     refused: str | None = None
     is_final: bool = False
-    parts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

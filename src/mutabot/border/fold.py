@@ -218,8 +218,6 @@ class Known:
     Attributes:
         job: its job.
         index_of: its own index of a site.
-        parts: the mutants of which its own is made that changed something in it.
-        part_names: all of them.
         has_acted: whether the mutant changed anything in an earlier test.
         codes: exit codes of processes.
         signalled: processes, and groups (negative), that somebody sent a signal to, or ``ANYBODY``.
@@ -227,8 +225,6 @@ class Known:
 
     job: Job
     index_of: Callable[[SiteSeen], int]
-    parts: Collection[str] = ()
-    part_names: Collection[str] = ()
     has_acted: bool = False
     codes: Mapping[int, int] = field(default_factory=dict)
     signalled: Collection[int] = ()
@@ -239,7 +235,7 @@ def fold(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:
     if not records:
         return end
     end = _with_calls(end, records, known)
-    end = _with_deeds(end, [did for one in records for did in one.did], known)
+    end = _with_deeds(end, [did for one in records for did in one.did])
     return _with_ends(end, records, known)
 
 
@@ -267,7 +263,7 @@ def _with_calls(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> T
     )
 
 
-def _with_deeds(end: TestEnd, did: list[Did], known: Known) -> TestEnd:
+def _with_deeds(end: TestEnd, did: list[Did]) -> TestEnd:
     """What the mutant did in all processes together."""
     if not did:
         return end
@@ -287,17 +283,7 @@ def _with_deeds(end: TestEnd, did: list[Did], known: Known) -> TestEnd:
         is_final = any(one.is_final for one in refused)
         caught = end.outcome == "failed" and not is_final
         end = replace(end, refused=refused[-1].refused, caught=caught)
-    return _of_all_parts(end, did, known)
-
-
-def _of_all_parts(end: TestEnd, did: list[Did], known: Known) -> TestEnd:
-    """A mutant of several acts if all of them do, be it in different processes."""
-    mutant = known.job.mutant
-    if mutant is None or len(mutant.singles) < 2:
-        return end
-    parts = {part for one in did for part in one.parts}.union(known.parts)
-    is_whole = parts.issuperset(known.part_names)
-    return replace(end, acted=max(end.acted, 1) if is_whole else 0, partly=bool(parts) and not is_whole)
+    return end
 
 
 def _with_ends(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:

@@ -51,8 +51,6 @@ _FACTS: Mapping[str, Any] = {
     "engine": str,
     "jobs": int,
     "families": tuple[str, ...],
-    "order": int,
-    "pairs": int,
     "every_test": bool,
     "fresh": bool,
     "started": float,
@@ -107,7 +105,7 @@ def fact(key: str, value: Any) -> Any:
     if value is None or key not in _FACTS:
         return value
     found = from_data(_FACTS[key], value)
-    if key in ("rounds", "order") and not 0 < value <= MOST_ROUNDS:
+    if key == "rounds" and not 0 < value <= MOST_ROUNDS:
         raise ValueError
     if isinstance(found, ShardOf) and not 1 <= found.number <= found.of <= MOST_SHARDS:
         raise ValueError
@@ -154,13 +152,10 @@ def agreed(value: T, *pairs: tuple[Any, Any]) -> T:
 def mutant_in(text: Any) -> Mutant:
     """A mutant."""
     found = from_data(Mutant, load(text))
-    for one in found.singles:
-        span = one.site.span
-        for number in (span.line, span.end_line, span.column, span.end_column):
-            _check_number(number)
-        _check_number(one.magnitude, least=-math.inf)
-    if found.number < 0 or any(one.parts for one in found.parts):
-        raise ValueError
+    span = found.site.span
+    for number in (found.number, span.line, span.end_line, span.column, span.end_column):
+        _check_number(number)
+    _check_number(found.magnitude, least=-math.inf)
     return found
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from mutabot.border.test_end import TestEnd
@@ -37,10 +37,9 @@ class Reaching:
     tests: tuple[str, ...] = ()
     sites: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
-    def at(self, sites: Iterable[str]) -> tuple[str, ...]:
-        """The tests that reach all of these sites."""
-        reached = [set(self.sites.get(site, ())) for site in sites]
-        return tuple(self.tests[index] for index in sorted(set.intersection(*reached))) if reached else ()
+    def at(self, site: str) -> tuple[str, ...]:
+        """The tests that reach a site."""
+        return tuple(self.tests[index] for index in sorted(set(self.sites.get(site, ()))))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Videos that browsers play: H.264 in MP4. Needs PyAV and Pillow: ``mutabot[video]``.
+"""Videos that browsers play: H.264 in MP4, filmed or drawn. Needs PyAV and Pillow: ``mutabot[video]``.
 
 PyAV rather than a program beside Python: it encodes in this process, so nothing is left running, and it is
 a quarter of the size.
@@ -15,11 +15,10 @@ import av
 from mutabot.errors import UsageError
 from mutabot.evidence.film import Film
 from mutabot_motion.shown import Shown
-from mutabot_motion.target import check, written_whole
+from mutabot_motion.sights import check, written_whole
 
 from .drawn import Drawn
-from .frame import Frames
-from .shots import Filmed, Shots
+from .frame import Filmed, Frames, Shots
 
 #: frames per second, at which simulated seconds become those of the video
 RATE = 25

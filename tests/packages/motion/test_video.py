@@ -18,8 +18,12 @@ pytest.importorskip("PIL")
 from mutabot_motion.pictures import video  # noqa: E402
 from mutabot_motion.pictures.drawn import Drawn  # noqa: E402
 from mutabot_motion.pictures.frame import Frames  # noqa: E402
-from mutabot_motion.pictures.shots import Filmed  # noqa: E402
-from mutabot_motion.pictures.video import check_video, show, write_video  # noqa: E402
+from mutabot_motion.pictures.video import (  # noqa: E402
+    Filmed,
+    check_video,
+    show,
+    write_video,
+)
 
 RATE = 5
 

@@ -103,7 +103,7 @@ class StoredCampaign:
 
     def reached_by(self, mutant: Mutant) -> tuple[str, ...]:
         """Node ids of the tests that reach a mutant in any round, as far as the journal says."""
-        return self.reaching.at(single.site.id for single in mutant.singles)
+        return self.reaching.at(mutant.site.id)
 
     def frame(self) -> pandas.DataFrame:
         """One row per outcome; docs/reports.md has the columns. Needs pandas: ``mutabot[notebook]``.
@@ -127,7 +127,7 @@ def open(path: str | Path = ".") -> StoredCampaign:
     """
     with JournalReader.open(journal_at(Path(path))) as journal:
         results = read_results(journal)
-        files = {single.site.span.file for one in results.everything for single in one.mutant.singles}
+        files = {one.mutant.site.span.file for one in results.everything}
         found = {file: journal.source(file) for file in sorted(files)}
     meta = results.meta
     return StoredCampaign(

@@ -191,7 +191,7 @@ def _identities_by_selection(baseline: Baseline, mutants: list[Mutant]) -> list[
     chosen: dict[tuple[str, tuple[str, ...], int], Control] = {}
     for round in range(len(baseline.tests)):
         for mutant in mutants:
-            place = Place.of(mutant.singles[0])
+            place = Place.of(mutant)
             tests = baseline.judges(round, mutant)
             if tests:
                 way = baseline.faults.provider_at(place)
@@ -202,7 +202,7 @@ def _identities_by_selection(baseline: Baseline, mutants: list[Mutant]) -> list[
 
 def _places(mutants: Iterable[Mutant]) -> set[Place]:
     """All places at which these mutants act."""
-    return {Place.of(single) for mutant in mutants for single in mutant.singles}
+    return set(map(Place.of, mutants))
 
 
 def _subject(tests: tuple[str, ...]) -> str:

@@ -46,8 +46,6 @@ class Trees:
 
 def as_called(mutant: Mutant, renaming: Renaming) -> Mutant:
     """A mutant as it was called before."""
-    if mutant.parts:
-        return replace(mutant, parts=tuple(as_called(part, renaming) for part in mutant.parts))
     span = mutant.site.span
     function, local, inner = span.function.partition(".<locals>")
     file, _, name = renaming.target(f"{span.file}:{function}").partition(":")

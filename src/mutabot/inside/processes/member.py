@@ -107,7 +107,6 @@ class Member:
             locator.locate_definition,
         )
         self._told = Evidence()
-        self._parts: frozenset[str] = frozenset()
         self._places: set[int] = set()
         self._found: set[str] = set()
         self._exceeded = False
@@ -155,7 +154,7 @@ class Member:
             self.poll()
             self._use()
             self._test = self._now.number
-            self._told, self._parts, self._exceeded = Evidence(), frozenset(), False
+            self._told, self._exceeded = Evidence(), False
             self._places.clear()
             self.session.start_test(self._now.name_of(self._test))
 
@@ -175,18 +174,16 @@ class Member:
         """Tell what the mutant did since the last time, and what was found."""
         session = self.session
         now, before = session.evidence, self._told
-        parts = frozenset(session.parts)
-        if now.hits != before.hits or now != before or parts != self._parts:
+        if now.hits != before.hits or now != before:
             self._told = _copy_of(now)
-            self.file.send(self._did(before, now, parts - self._parts))
-            self._parts = parts
+            self.file.send(self._did(before, now))
         self._tell_found()
         meter = session.meter
         if meter is not None and meter.exceeded is not None and not self._exceeded:
             self._exceeded = True
             self._use()
 
-    def _did(self, before: Evidence, now: Evidence, parts: frozenset[str]) -> Did:
+    def _did(self, before: Evidence, now: Evidence) -> Did:
         away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
         is_refused = now.refusals != before.refusals or now.said != before.said
         return Did(
@@ -199,7 +196,6 @@ class Member:
             failure=now.failure if before.failure is None else None,
             refused=now.refusal if is_refused and not now.is_of_text else None,
             is_final=now.said is not None,
-            parts=tuple(sorted(parts)),
         )
 
     def _hit(self, site: int, written: Any, read: Any, answer: Any) -> None:

@@ -86,8 +86,6 @@ class Members:
         return Known(
             session.job,
             session.recorder.index_of,
-            session.parts,
-            session.part_names,
             self._acted,
             exits.codes,
             self._signalled | exits.signalled,

@@ -191,7 +191,6 @@ class Running:
             hits=evidence.hits,
             acted=evidence.acted,
             away=evidence.away,
-            partly=evidence.is_partial and not evidence.acted,
             example=evidence.example,
             operations=meter.operations,
             commands=session.commands,

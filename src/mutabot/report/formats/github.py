@@ -41,7 +41,7 @@ def _lines(material: Material) -> Iterator[str]:
 
 def _annotation(level: str, result: MutantResult, material: Material) -> str:
     mutant = result.mutant
-    span = mutant.singles[0].site.span
+    span = mutant.site.span
     place = material.place(span)
     where = {"file": material.path(span.file), "line": str(place.line), "endLine": str(place.end_line)}
     if place.end_column is not None and place.line == place.end_line:  # columns are of one line only

@@ -77,7 +77,7 @@ def _config(material: Material) -> dict[str, Any]:
 def _files(material: Material) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for result in material.campaign.mutants:
-        file = result.mutant.singles[0].site.span.file
+        file = result.mutant.site.span.file
         entry = found.setdefault(
             material.path(file),
             {"language": "python", "source": material.campaign.source(file) or "", "mutants": []},
@@ -95,7 +95,7 @@ def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
         "mutatorName": mutant.operator,
         "description": mutant.description,
         "replacement": _replacement(mutant, material),
-        "location": _location(mutant.singles[0].site.span, material),
+        "location": _location(mutant.site.span, material),
         "status": _STATUS[status_of(result)],
         "statusReason": reason_of(result),
         "coveredBy": covered_by,
@@ -109,7 +109,7 @@ def _replacement(mutant: Mutant, material: Material) -> str:
     """What would stand there: the new text if that is what the mutant is, else what it does, in words."""
     text = material.place(mutant.site.span).text
     before, arrow, after = mutant.description.partition(" → ")
-    is_text = not mutant.parts and arrow and before == text
+    is_text = arrow and before == text
     return after if is_text else mutant.description
 
 

@@ -58,8 +58,7 @@ def _driver(material: Material, rules: Mapping[str, int]) -> dict[str, Any]:
 
 
 def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
-    told = dict.fromkeys(material.campaign.operators.get(one) or "" for one in name.split("+"))
-    summary = " ".join(filter(None, told)) or f"Operator {name} of family {mutant.family}."
+    summary = material.campaign.operators.get(name) or f"Operator {name} of family {mutant.family}."
     return {
         "id": name,
         "shortDescription": {"text": f"The tests let a mutant of {name} through"},
@@ -80,13 +79,12 @@ def _invocation(material: Material) -> dict[str, Any]:
 
 def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) -> dict[str, Any]:
     mutant = result.mutant
-    first, *others = mutant.singles
-    found = {
+    return {
         "ruleId": mutant.operator,
         "ruleIndex": rules[mutant.operator],
         "level": _level(result),
         "message": {"text": _message(survivor_text(result))},
-        "locations": [_location(first.site.span, material)],
+        "locations": [_location(mutant.site.span, material)],
         "partialFingerprints": {_FINGERPRINT: mutant.id},
         "properties": {
             "mutant": mutant.id,
@@ -100,8 +98,6 @@ def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) 
             "indistinguishable": result.indistinguishable,
         },
     }
-    related = [{"id": number, **_location(one.site.span, material)} for number, one in enumerate(others, 1)]
-    return {**found, "relatedLocations": related} if related else found
 
 
 def _level(result: MutantResult) -> str:

@@ -27,7 +27,7 @@ def mutant_page(result: MutantResult) -> dict[str, Any]:
     return {
         "number": mutant.number,
         "id": mutant.id,
-        "places": [{"place": one.site.place, "function": one.site.span.function} for one in mutant.singles],
+        "places": [{"place": mutant.site.place, "function": mutant.site.span.function}],
         "pattern": mutant.pattern_name,
         "meaning": _meaning(result),
         "interval": [interval.low, interval.high] if interval is not None else None,

@@ -52,7 +52,7 @@ class Rows:
         self.tests = list(dict.fromkeys([*baseline, *campaign.reaching.tests, *named]))
         self._tests = {name: number for number, name in enumerate(self.tests)}
         self._files: dict[str, int] = {}
-        self._sites: dict[tuple[str, ...], int] = {}
+        self._sites: dict[str, int] = {}
         self.sites: list[list[int]] = []
         made = [self._row(one) for one in campaign.mutants]
         self.columns = [*made[0]] if made else []
@@ -60,8 +60,7 @@ class Rows:
 
     def _row(self, result: MutantResult) -> dict[str, Any]:
         mutant, rate, status = result.mutant, result.kill_rate, status_of(result)
-        first, *others = mutant.singles
-        span = first.site.span
+        span = mutant.site.span
         place = place_of(span, self._campaign.source(span.file), utf16)
         return {
             "number": mutant.number,
@@ -90,7 +89,6 @@ class Rows:
             "site": self._site(result),
             "kills": self._kills(result),
             "earlier": result.earlier or result.outdated,
-            "also": [[self._file(one.site.span.file), one.site.span.line] for one in others],
             "drawn": _drawn(result) if result.mutant.operator in self._campaign.draws else None,
         }
 
@@ -101,8 +99,8 @@ class Rows:
         return self._files[file]
 
     def _site(self, result: MutantResult) -> int:
-        """The number of the site, or of the sites, and the tests that reach it."""
-        key = tuple(one.site.id for one in result.mutant.singles)
+        """The number of the site, and the tests that reach it."""
+        key = result.mutant.site.id
         if key not in self._sites:
             self._sites[key] = len(self.sites)
             self.sites.append([self._tests[test] for test in self._campaign.reached_by(result.mutant)])

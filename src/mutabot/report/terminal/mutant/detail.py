@@ -97,7 +97,7 @@ def _facts(result: MutantResult) -> Table:
     table.add_column(overflow="fold")
     facts = {
         "id": mutant.id,
-        "place": "; ".join(map(_place_text, mutant.singles)),
+        "place": _place_text(mutant),
         "role": mutant.site.role.value,
         "operator": f"{mutant.operator} ({mutant.family})",
         "operation": mutant.operation + (f", command {mutant.pattern_name}" if mutant.pattern else ""),
@@ -112,9 +112,9 @@ def _facts(result: MutantResult) -> Table:
     return table
 
 
-def _place_text(single: Mutant) -> str:
-    function = single.site.span.function
-    return f"{single.site.place} in {function}" if function else single.site.place
+def _place_text(mutant: Mutant) -> str:
+    function = mutant.site.span.function
+    return f"{mutant.site.place} in {function}" if function else mutant.site.place
 
 
 def _interval_text(rate: KillRate) -> str:
