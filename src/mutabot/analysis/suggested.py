@@ -81,7 +81,6 @@ class Suggestions:
     Attributes:
         suggestions: the smallest set that kills most, those first that kill most.
         diff: all of them as one unified diff of the project.
-        files: for ``--write``: the text of each new file, by its path in the project.
         unsolved: survivors that none of them kills.
         dropped: checks that failed their proof.
         numbers: number of each survivor by its id.
@@ -92,7 +91,6 @@ class Suggestions:
 
     suggestions: tuple[Suggestion, ...] = ()
     diff: str = ""
-    files: Mapping[str, str] = field(default_factory=dict)
     unsolved: tuple[Unsolved, ...] = ()
     dropped: tuple[Dropped, ...] = ()
     numbers: Mapping[str, int] = field(default_factory=dict)

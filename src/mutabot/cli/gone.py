@@ -23,6 +23,7 @@ _OPTIONS = {
     "--confirm": "use --verify N",
     "--repeats": "kills that may be a coincidence are re-run anyway",
     "--no-repeats": "use -o repeats=false",
+    "--write": "apply the diff that it prints",
     "--mixed": "workers run with the same versions as this machine",
     **{
         option: f"use `mutabot motion MUTANT {option}`"

@@ -19,8 +19,7 @@ from mutabot.suggestion.measuring.readings import WAY
 from mutabot.suggestion.sources.project import Project
 from mutabot.suggestion.sources.texts import diff_of
 
-from .forms import Form, InFile, InPlace
-from .prove import Proof
+from .prove import Proof, texts_with
 from .styles.choice import place_of
 from .styles.style import Place
 from .survivors import survivors_of
@@ -55,7 +54,6 @@ def suggest(
     progress: Progress,
     *,
     seeds: int,
-    write: str | None = None,
 ) -> Suggestions:
     """Checks that kill these survivors of a finished campaign.
 
@@ -65,7 +63,6 @@ def suggest(
         chosen: the survivors that are to be killed.
         progress: is told.
         seeds: how many fresh seeds are run for the bands, and as many others for the proof.
-        write: the new test file, relative to the project; None for changes of the tests there are.
 
     Raises NothingToDoError if there is nothing to kill or nothing to look at, and what a campaign raises.
     """
@@ -94,19 +91,16 @@ def suggest(
         [(one.mutant, rounds) for one, rounds in survivors.to_kill], quiet,
     )  # fmt: skip
     found = candidates(project, measured)
-    form: Form = InFile(project, write) if write is not None else InPlace(project)
-    proof = Proof(request, form, quiet)
+    proof = Proof(request, project, quiet)
     fresh = range(calibrated, calibrated + seeds)
     chosen_checks = _proven(proof, found, measured, [*range(request.rounds), *fresh])
-    texts = form.texts(chosen_checks) if chosen_checks else {}
+    texts = texts_with(project, chosen_checks)
     suggestions = tuple(_suggestion(one, proof.kills[one], seeds) for one in chosen_checks)
     killed = {mutant for one in suggestions for mutant in one.kills}
     left = [one.mutant for one, _ in survivors.to_kill if one.mutant.id not in killed]
     unsolved = [*(why_unsolved(one, measured, found, proof) for one in left), *survivors.never]
     dropped = tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items())
-    whole = Suggestions(
-        suggestions, diff_of(request.root, texts), texts if write else {}, tuple(unsolved), dropped
-    )
+    whole = Suggestions(suggestions, diff_of(request.root, texts), tuple(unsolved), dropped)
     return _told(whole, chosen, request, seeds)
 
 

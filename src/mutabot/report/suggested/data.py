@@ -14,7 +14,6 @@ def suggested_data(found: Suggestions) -> dict[str, Any]:
         "seeds": found.seeds,
         "suggestions": [_suggestion(one, found) for one in found.suggestions],
         "diff": found.diff,
-        "files": dict(found.files),
         "unsolved": [
             {"mutant": _mutant(one.mutant, found), "reason": one.reason, "never": one.never}
             for one in found.unsolved

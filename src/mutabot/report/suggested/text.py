@@ -19,7 +19,7 @@ def print_suggestions(console: Console, found: Suggestions) -> None:
     """Print what was found: each check with what it is worth, the diff, and what is left."""
     for part in _parts(found):
         console.print(part)
-    if found.diff and not found.files:
+    if found.diff:
         console.print()
         console.print(Text(found.diff.rstrip("\n")), soft_wrap=True)
 

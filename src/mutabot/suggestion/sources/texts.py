@@ -58,13 +58,11 @@ def _changed(text: str, insertions: list[Insertion]) -> str:
 
 
 def diff_of(root: Path, texts: Mapping[str, str]) -> str:
-    """One unified diff of all changed and new files, for ``git apply`` and ``patch -p1``."""
+    """One unified diff of all changed files, for ``git apply`` and ``patch -p1``."""
     parts: list[str] = []
     for file, text in sorted(texts.items()):
-        is_new = not (root / file).exists()
-        before = [] if is_new else read_text(root, file).splitlines(keepends=True)
-        name = "/dev/null" if is_new else f"a/{file}"
-        parts += difflib.unified_diff(before, text.splitlines(keepends=True), name, f"b/{file}")
+        before, after = read_text(root, file).splitlines(keepends=True), text.splitlines(keepends=True)
+        parts += difflib.unified_diff(before, after, f"a/{file}", f"b/{file}")
     return "".join(one if one.endswith("\n") else f"{one}\n{_NO_END}" for one in parts)
 
 
@@ -141,28 +139,6 @@ def imports_of(file: str, module: ast.Module, imports: Iterable[str]) -> list[In
 def import_order(line: str) -> tuple[bool, str]:
     """Plain imports first, then by module."""
     return line.startswith("from"), line.split()[1]
-
-
-def import_blocks(imports: Iterable[str]) -> list[list[str]]:
-    """Imports for a new file: of the future, of the standard library, all others; each module once."""
-    plain: set[str] = set()
-    names: dict[str, set[str]] = {}
-    for line in imports:
-        node = ast.parse(line).body[0]
-        if isinstance(node, ast.ImportFrom):
-            module = "." * node.level + (node.module or "")
-            texts = (f"{one.name} as {one.asname}" if one.asname else one.name for one in node.names)
-            names.setdefault(module, set()).update(texts)
-        else:
-            plain.add(line)
-    joined = [
-        f"from {module} import {', '.join(sorted(found, key=_by_case))}" for module, found in names.items()
-    ]
-    blocks: list[list[str]] = [[], [], []]
-    for line in sorted([*plain, *joined], key=import_order):
-        package = line.split()[1].partition(".")[0]
-        blocks[0 if package == "__future__" else 1 if package in sys.stdlib_module_names else 2].append(line)
-    return [block for block in blocks if block]
 
 
 def _host(own: list[ast.Import | ast.ImportFrom], new: ast.stmt) -> ast.ImportFrom | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 _SCENARIO = re.compile(r"\s*(?:Scenario Outline|Scenario Template|Scenario|Example)\s*:\s*(.*?)\s*$")
@@ -18,13 +17,12 @@ class Scenario:
 
     Attributes:
         title: as the file has it; empty for a background.
-        begin, end: 1-based first line, and the line after which a further step comes.
+        end: the 1-based line after which a further step comes.
         indent: of its steps.
         steps: keyword and text.
     """
 
     title: str
-    begin: int
     end: int
     indent: str
     steps: list[tuple[str, str]]
@@ -49,7 +47,7 @@ def scenarios_in(text: str) -> list[Scenario]:
             continue
         scenario, step = _SCENARIO.match(line), _STEP.match(line)
         if scenario is not None or _BACKGROUND.match(line):
-            current = Scenario(scenario[1] if scenario else "", number, number, "    ", [])
+            current = Scenario(scenario[1] if scenario else "", number, "    ", [])
             found.append(current)
         elif _OTHER.match(line):
             current = None
@@ -59,26 +57,3 @@ def scenarios_in(text: str) -> list[Scenario]:
         elif current is not None and line.strip().startswith("|"):
             current.end = number
     return found
-
-
-def scenario_with(text: str, title: str, steps: Sequence[str]) -> Iterator[str]:
-    """The lines of a feature file with this scenario alone, and the background, and further checks."""
-    lines = text.splitlines()
-    all_found = scenarios_in(text)
-    wanted = next(one for one in all_found if one.title == title)
-    dropped: set[int] = set()
-    ends = [one.begin for one in all_found[1:]] + [len(lines) + 1]
-    for one, following in zip(all_found, ends, strict=True):
-        if one.title and one is not wanted:
-            first = one.begin
-            while first > 1 and lines[first - 2].strip().startswith("@"):
-                first -= 1
-            last = following - 1
-            while last > one.end and lines[last - 1].strip().startswith("@"):
-                last -= 1
-            dropped |= set(range(first, last + 1))
-    for number, line in enumerate(lines, start=1):
-        if number not in dropped:
-            yield line
-        if number == wanted.end:
-            yield from steps

@@ -5,19 +5,17 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator, Sequence
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 from mutabot.suggestion.sources.project import Project
 from mutabot.suggestion.sources.texts import Insertion, imports_of, top_names
 
-from .copying import imports_for
-from .feature_files import Scenario, scenario_with, scenarios_in
+from .feature_files import Scenario, scenarios_in
 from .style import (
     Addition,
     Function,
     Place,
     PlainAsserts,
-    Written,
     arguments_of,
 )
 from .watching import fixture
@@ -66,36 +64,6 @@ class _Scenarios(PlainAsserts):
         imports += ["import pytest"] if any(one.watch is not None for one in additions) else []
         return found + imports_of(file, module, [*imports, "from pytest_bdd import then"])
 
-    def written(self, project: Project, file: str, additions: Sequence[Addition]) -> Written:
-        name = project.import_name(file)
-        imports = [line for one in additions for line in one.imports]
-        imports += [f"import {name}", "from pathlib import Path", "from pytest_bdd import scenarios, then"]
-        lines = [
-            "",
-            f"# steps and fixtures of {PurePosixPath(file).name}: they are looked for where the scenario is",
-            f"for _name, _one in vars({name}).items():",
-            '    if _name.startswith("__pytest_bdd") or not _name.startswith(("_", "test")):',
-            "        globals().setdefault(_name, _one)",
-            "",
-        ]
-        files: list[tuple[str, str]] = []
-        for place in dict.fromkeys(one.place for one in additions):
-            steps = [one for one in additions if one.place == place]
-            scenario = _scenario(project, place)
-            words = [scenario.keyword(), *["And"] * (len(steps) - 1)]
-            said = [f"{scenario.indent}{word} {one.says}" for word, one in zip(words, steps, strict=True)]
-            text = "\n".join(scenario_with(project.text(place.feature), place.title, said)) + "\n"
-            feature = f"{_slug(place.title)}.feature"
-            files.append((feature, text))
-            lines.append(f'scenarios(str(Path(__file__).with_name("{feature}")))')
-        module = project.module(file)
-        assert module is not None
-        for step in _steps(additions, module):
-            lines += step
-        imports += imports_for(project, file, module, _annotations(additions, module))
-        imports += ["import pytest"] if any(one.watch is not None for one in additions) else []
-        return Written(tuple(dict.fromkeys(imports)), tuple(lines), tuple(files))
-
 
 def _steps(additions: Sequence[Addition], module: ast.Module) -> Iterator[list[str]]:
     """The functions of these steps and what they need, annotated as the file's other steps are."""
@@ -127,12 +95,6 @@ def _annotated(module: ast.Module) -> dict[str, str]:
         for one in node.args.args
         if one.annotation is not None
     }
-
-
-def _annotations(additions: Sequence[Addition], module: ast.Module) -> list[ast.AST]:
-    """The annotations that the steps have."""
-    uses = {use for one in additions for use in one.uses}
-    return [ast.parse(text) for name, text in _annotated(module).items() if name in uses]
 
 
 def _scenario(project: Project, place: Place) -> Scenario:

@@ -73,21 +73,6 @@ class Addition:
     watch: Watch | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Written:
-    """What a style puts into a new test file.
-
-    Attributes:
-        imports: lines at its beginning.
-        lines: all others.
-        files: further files by name, beside it.
-    """
-
-    imports: tuple[str, ...]
-    lines: tuple[str, ...]
-    files: tuple[tuple[str, str], ...] = ()
-
-
 class Style(Protocol):
     """Knows one way in which tests are written.
 
@@ -113,9 +98,6 @@ class Style(Protocol):
 
     def needs(self, line: str) -> tuple[str, ...]:
         """The imports that such a statement needs."""
-
-    def written(self, project: Project, file: str, additions: Sequence[Addition]) -> Written:
-        """The same tests with the additions, for a new file; the additions are all of one file."""
 
 
 def functions_of(module: ast.Module, path: Sequence[str]) -> Function | None:

@@ -9,8 +9,8 @@ from mutabot.suggestion.sources.project import Project
 from mutabot.suggestion.sources.texts import Insertion
 
 from .functions import STYLE as PYTEST
-from .functions import at_ends, written
-from .style import Addition, Place, Written, class_of
+from .functions import at_ends
+from .style import Addition, Place, class_of
 
 
 class _TestCases:
@@ -41,9 +41,6 @@ class _TestCases:
 
     def needs(self, line: str) -> tuple[str, ...]:
         return ()
-
-    def written(self, project: Project, file: str, additions: Sequence[Addition]) -> Written:
-        return written(project, file, additions, fixtures=False)
 
 
 def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
