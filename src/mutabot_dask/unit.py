@@ -24,10 +24,8 @@ from mutabot.border.events import (
     Acted,
     BranchDied,
     BranchEnd,
-    Copied,
     Event,
     ForkEnded,
-    MutatedCall,
     PlacesReached,
     Serving,
     SiteSeen,
@@ -269,7 +267,7 @@ def _in_json(path: str) -> bytes:
 
 _OUTCOMES = {"passed", "failed", "skipped", "xfailed", "xpassed"}
 #: what only fork servers say
-_NEVER = (Serving, Copied, ForkEnded)
+_NEVER = (Serving, ForkEnded)
 _BRANCHES = (BranchEnd, BranchDied, Unbranched, Undiverged)
 #: bytes of a recording, which comes packed
 _UNPACKED = 256 << 20
@@ -315,7 +313,7 @@ def _tests(line: Event) -> Iterator[str]:
             yield line.test
         case BranchEnd():
             yield line.end.test
-        case Acted() | MutatedCall() | PlacesReached() if line.test:  # empty before any test
+        case Acted() | PlacesReached() if line.test:  # empty before any test
             yield line.test
 
 

@@ -10,7 +10,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import closing, suppress
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -18,7 +18,7 @@ import pytest
 from analysis import samples
 from mutabot.border.test_end import TestEnd
 from mutabot.errors import JournalError
-from mutabot.journal.database import Batch, connect, guarded
+from mutabot.journal.database import Batch, Execute, connect, guarded
 from mutabot.journal.files import previous_of
 from mutabot.journal.journal import Journal
 from mutabot.journal.lock import is_written
@@ -225,15 +225,30 @@ def test_what_is_no_journal_of_this_version_is_moved_aside(path: Path, content: 
 
 
 def test_readers_see_each_outcome_soon_while_the_writer_is_active(path: Path) -> None:
-    with Journal.create(path, meta={}) as writer, Journal.open(path) as reader:
+    def found() -> int:
+        with Journal.open(path) as reader:
+            return len(reader.outcomes())
+
+    with Journal.create(path, meta={}) as writer:
         assert is_written(path)
         for round in range(3):
             writer.add_outcome(Outcome("m", round, Verdict.SURVIVED))
             until = time.monotonic() + 60  # the promise is a second; the machine may be busy
-            while len(reader.outcomes()) <= round and time.monotonic() < until:
+            while found() <= round and time.monotonic() < until:
                 time.sleep(0.01)
-            assert len(reader.outcomes()) == round + 1
+            assert found() == round + 1
     assert not is_written(path)
+
+
+@contextmanager
+def transaction(file: sqlite3.Connection) -> Iterator[Execute]:
+    file.execute("BEGIN")
+    try:
+        yield lambda statement, *values: file.execute(statement, values)
+    except BaseException:
+        file.rollback()
+        raise
+    file.execute("COMMIT")
 
 
 def test_outcomes_that_come_at_once_are_committed_together_and_the_first_at_once(tmp_path: Path) -> None:
@@ -242,7 +257,7 @@ def test_outcomes_that_come_at_once_are_committed_together_and_the_first_at_once
     with closing(sqlite3.connect(tmp_path / "file", isolation_level=None, check_same_thread=False)) as file:
         file.execute("CREATE TABLE found (number INTEGER)")
         file.set_trace_callback(lambda text: commits.append(text) if text == "COMMIT" else None)
-        batch = Batch(file, clock=lambda: now)
+        batch = Batch(lambda: transaction(file), clock=lambda: now)
         for number in range(100):
             batch.add("INSERT INTO found VALUES (?)", number)
         assert len(commits) == 1
@@ -257,7 +272,7 @@ def test_outcomes_that_come_at_once_are_committed_together_and_the_first_at_once
 def test_a_row_that_cannot_be_written_takes_no_other_with_it(tmp_path: Path) -> None:
     with closing(sqlite3.connect(tmp_path / "file", isolation_level=None, check_same_thread=False)) as file:
         file.execute("CREATE TABLE found (number INTEGER UNIQUE)")
-        batch = Batch(file)
+        batch = Batch(lambda: transaction(file))
         for number in (0, 1, 2, 1, 3):
             batch.add("INSERT INTO found VALUES (?)", number)
         batch.commit()
@@ -276,7 +291,7 @@ def test_a_value_that_cannot_be_stored_takes_no_other_row_with_it(
 ) -> None:
     with closing(sqlite3.connect(tmp_path / "file", isolation_level=None, check_same_thread=False)) as file:
         file.execute("CREATE TABLE found (number)")
-        batch = Batch(file)
+        batch = Batch(lambda: transaction(file))
         for number in (0, 1, value, 2):
             batch.add("INSERT INTO found VALUES (?)", number)
         if is_late:  # by the thread that commits what nobody else does
@@ -370,7 +385,7 @@ def test_a_writer_ended_by_sigkill_loses_the_last_second_at_most(path: Path) -> 
 def test_a_full_disk_is_a_clear_error_and_keeps_what_was_there(path: Path) -> None:
     with Journal.create(path, meta={}) as journal:
         journal.add_outcome(KILLED)
-        journal._store.connection._file.execute("PRAGMA max_page_count = 1")
+        journal._store._file._file.execute("PRAGMA max_page_count = 1")
         big = Outcome("n", 0, Verdict.ERROR, message="x" * 1_000_000)
         journal.add_outcome(big)
         with pytest.raises(JournalError, match="disk is full") as error:

@@ -22,7 +22,6 @@ from .events import (
     Did,
     Event,
     Found,
-    MutatedCall,
     Noted,
     PlacesReached,
     Raised,
@@ -90,9 +89,9 @@ class ChildRecord:
                 self.did.append(event)
                 if event.acted:
                     self.acted[event.test] = None
-            case MutatedCall():
-                self.is_in_call = event.began
-                if event.began:
+            case Acted(in_call=bool(is_in_call)):
+                self.is_in_call = is_in_call
+                if is_in_call:
                     self.acted[event.test] = None
             case PlacesReached():
                 self.places.update(event.places)
@@ -203,12 +202,12 @@ def acted_in(records: Collection[ChildRecord]) -> list[str]:
 
 def fold_fork(events: Sequence[Event], died: BranchDied | None) -> list[Event]:
     """What is to be known of a fork that has ended, by its events and, if it ``died``, its parent's word."""
-    found: list[Event] = [event for event in events if not isinstance(event, Acted | MutatedCall)]
+    found: list[Event] = [event for event in events if not isinstance(event, Acted)]
     if died is None:
         return found
-    calls = [event.began for event in events if isinstance(event, MutatedCall)]
-    acted = any(isinstance(event, Acted) for event in events)
-    return [*found, replace(died, acted=acted, in_mutated_call=calls[-1:] == [True])]
+    told = [event.in_call for event in events if isinstance(event, Acted)]
+    calls = [one for one in told if one is not None]
+    return [*found, replace(died, acted=None in told, in_mutated_call=calls[-1:] == [True])]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from random import Random
 from types import CodeType, FrameType
 from typing import Any
 
-from mutabot.border.events import Acted, CalledAtImport, Event, MutatedCall, SiteSeen, TextsSeen
+from mutabot.border.events import Acted, Called, Event, SiteSeen, TextsSeen
 from mutabot.border.job import Budget, Job
 from mutabot.inside.calls.activation import Activation, is_refusal
 from mutabot.inside.calls.answers import Answers, handles_of
@@ -180,8 +180,8 @@ class Session:
         """The first test begins."""
         if self.meter is None or self.test:
             return
-        if self.recorder.trace:
-            self.pipe.send(CalledAtImport(tuple(self.recorder.trace)))
+        for call in self.recorder.trace:
+            self.pipe.send(Called(*call))
         for activation in self.activations:
             activation.keep_early()
 
@@ -439,7 +439,7 @@ class Session:
         return self.meter.simulated if self.meter is not None else None
 
     def _in_mutated_call(self, began: bool) -> None:
-        self.pipe.send(MutatedCall(self.test, began))
+        self.pipe.send(Acted(self.test, began))
 
     def _clock_is_wrong(self, key: str, text: str) -> None:
         clock = self.job.vocabulary.clock

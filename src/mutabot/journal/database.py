@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import RLock, Timer
 from time import monotonic
-from typing import Any, Protocol
+from typing import Any
 
+from mutabot.border.storable import printable
 from mutabot.errors import JournalError
 
 #: seconds after which a row that was added is in the file, and how long it waits: timers may be late
@@ -23,23 +24,19 @@ _OF_ONE_ROW = (sqlite3.DataError, sqlite3.InterfaceError, sqlite3.ProgrammingErr
 #: characters of a value that are shown
 _SHOWN = 100
 
-
-class Connection(Protocol):
-    """What the journal needs of a connection."""
-
-    @property
-    def in_transaction(self) -> bool: ...
-
-    def execute(self, statement: str, values: tuple[Any, ...] = ..., /) -> sqlite3.Cursor: ...
-
-    def backup(self, target: sqlite3.Connection, /) -> None: ...
-
-    def close(self) -> None: ...
+#: carries out one statement with its values
+Execute = Callable[..., sqlite3.Cursor]
+Transaction = AbstractContextManager[Execute]
 
 
 def decode(text: bytes) -> str:
     """Text of a database, also such as is no UTF-8: that is for whoever knows what it should be."""
     return text.decode("utf-8", "surrogateescape")
+
+
+def stored(values: Iterable[Any]) -> tuple[Any, ...]:
+    """Values of a row, with texts that can be stored."""
+    return tuple(printable(value) if isinstance(value, str) else value for value in values)
 
 
 def connect(path: Path) -> sqlite3.Connection:
@@ -59,21 +56,33 @@ def connect(path: Path) -> sqlite3.Connection:
     return connection
 
 
-def connect_to_read(path: Path) -> tuple[sqlite3.Connection, TemporaryDirectory[str] | None]:
-    """A connection that only reads, and the folder of the copy that it reads, if it needed one."""
+def loaded(source: sqlite3.Connection) -> sqlite3.Connection:
+    """All that is in a database, in one without a name, which is gone with its connection."""
+    copy = sqlite3.connect("", isolation_level=None, check_same_thread=False)
+    copy.text_factory = decode
     try:
-        return _connect_read_only(path), None
+        source.backup(copy)
+        copy.execute("PRAGMA trusted_schema = OFF")
+        copy.execute("PRAGMA journal_mode = MEMORY")
+        copy.execute("PRAGMA synchronous = OFF")
+    except BaseException:
+        copy.close()
+        raise
+    return copy
+
+
+def connect_to_read(path: Path) -> sqlite3.Connection:
+    """A connection that only reads."""
+    try:
+        return _connect_read_only(path)
     except sqlite3.OperationalError:
-        # In a folder we cannot write to, SQLite cannot make the index of a WAL journal: read a copy.
-        copy = TemporaryDirectory(prefix="mutabot-journal-")
-        try:
+        # In a folder we cannot write to, SQLite cannot make the index of a WAL journal: read a copy. What is
+        # open can be read when it has no name any more.
+        with TemporaryDirectory(prefix="mutabot-journal-") as folder:
             for part in (path, path.with_name(f"{path.name}-wal")):
                 if part.is_file():
-                    (Path(copy.name) / part.name).write_bytes(part.read_bytes())
-            return _connect_read_only(Path(copy.name) / path.name), copy
-        except BaseException:
-            copy.cleanup()
-            raise
+                    (Path(folder) / part.name).write_bytes(part.read_bytes())
+            return _connect_read_only(Path(folder) / path.name)
 
 
 def _connect_read_only(path: Path) -> sqlite3.Connection:
@@ -89,27 +98,25 @@ def _connect_read_only(path: Path) -> sqlite3.Connection:
     return connection
 
 
-@contextmanager
-def read_now(path: Path) -> Iterator[sqlite3.Connection]:
-    """A connection that sees what is in the file now."""
-    with closing(_connect_read_only(path)) as connection:
-        yield connection
-
-
 class Batch:
     """Rows that are committed together, none later than ``PATIENCE`` seconds after it was added.
 
     The first after a pause is committed at once: a campaign whose outcomes come one by one waits for nothing.
     Of one whose outcomes come by the hundred, a commit for each would take most of the writing's time.
 
+    Args:
+        transaction: makes what is carried out in it take effect together or not at all.
+
     Attributes:
         lock: to be held by whoever uses the connection.
         unstored: why rows could not be stored, one line each, though the file can be written.
     """
 
-    def __init__(self, connection: Connection, *, clock: Callable[[], float] = monotonic) -> None:
+    def __init__(
+        self, transaction: Callable[[], Transaction], *, clock: Callable[[], float] = monotonic
+    ) -> None:
         self.lock = RLock()
-        self._connection, self._clock = connection, clock
+        self._transaction, self._clock = transaction, clock
         self._waiting: list[tuple[str, tuple[Any, ...]]] = []
         self._committed = float("-inf")
         self._timer: Timer | None = None
@@ -142,25 +149,23 @@ class Batch:
 
     def _carry_out(self, waiting: list[tuple[str, tuple[Any, ...]]]) -> None:
         try:
-            self._connection.execute("BEGIN IMMEDIATE")
-            for statement, values in waiting:
-                self._connection.execute(statement, values)
-            self._connection.execute("COMMIT")
+            with self._transaction() as execute:
+                for statement, values in waiting:
+                    execute(statement, *values)
         except (sqlite3.Error, *_ABOUT_VALUES):
-            if self._connection.in_transaction:  # SQLite itself rolls back when the disk is full
-                self._connection.execute("ROLLBACK")
-            self._one_by_one(waiting)
+            for statement, values in waiting:
+                self._carry_out_alone(statement, values)
 
-    def _one_by_one(self, waiting: list[tuple[str, tuple[Any, ...]]]) -> None:
+    def _carry_out_alone(self, statement: str, values: tuple[Any, ...]) -> None:
         """One that fails takes no other with it."""
-        for statement, values in waiting:
-            try:
-                self._connection.execute(statement, values)
-            except (*_OF_ONE_ROW, *_ABOUT_VALUES) as error:
-                what = ", ".join(str(value)[:_SHOWN] for value in values[:2])
-                self.unstored.append(f"{what}: {type(error).__name__}: {error}")
-            except sqlite3.Error as error:
-                self._problem = self._problem or error
+        try:
+            with self._transaction() as execute:
+                execute(statement, *values)
+        except (*_OF_ONE_ROW, *_ABOUT_VALUES) as error:
+            what = ", ".join(str(value)[:_SHOWN] for value in values[:2])
+            self.unstored.append(f"{what}: {type(error).__name__}: {error}")
+        except sqlite3.Error as error:
+            self._problem = self._problem or error
 
     def _commit_late(self) -> None:
         """In a thread of its own: what goes wrong is told to whoever writes next."""

@@ -24,7 +24,6 @@ from mutabot.model import LeftOut, Mutant, Outcome
 from . import merging
 from .database import guarded
 from .lock import WriterLock
-from .marks import Unmarked, remove
 from .reader import JournalReader
 from .records import ALTERED, Row
 from .schema import (
@@ -33,7 +32,6 @@ from .schema import (
     FINISHED_KEY,
     KNOWN_BEFORE,
     SCHEMA_VERSION,
-    TABLES,
     VERSION_KEY,
 )
 from .store import Store, dump
@@ -87,10 +85,9 @@ class Journal(JournalReader):
                 raise
             with journal._store.closed_on_error():
                 if found.is_journal:
-                    journal._store.mark_rows()
                     journal._wait()
                 else:
-                    journal._begin(meta, TABLES)
+                    journal._begin(meta)
         return journal
 
     def begin(self, meta: Mapping[str, Any], *, fresh: bool = False) -> None:
@@ -103,7 +100,7 @@ class Journal(JournalReader):
             return  # nothing was there before
         if self.finished == "complete":
             keep_copy(self._store)
-        self._begin(meta, ADOPT)
+        self._begin(meta)
         self._waits = False
         if fresh:
             self._store.write("UPDATE kept SET key = ''")
@@ -114,23 +111,15 @@ class Journal(JournalReader):
             self._store.put(FINISHED_KEY, "killed")
         self._store.put(ATTEMPT_KEY, None)
 
-    def _begin(self, meta: Mapping[str, Any], statements: str) -> None:
+    def _begin(self, meta: Mapping[str, Any]) -> None:
         with self._store.transaction() as execute:
             if self._waits:
-                self._set_aside()
-            for statement in filter(str.strip, statements.split(";")):
-                execute(statement)
-            if not self._waits:
-                self._store.mark_rows()
+                self._store.remove_unmarked()  # before any of it is believed
+                for statement in ADOPT.split(";"):
+                    execute(statement)
             self._store.put(VERSION_KEY, SCHEMA_VERSION)
             for key, value in meta.items():
                 self._store.put(key, value)
-
-    def _set_aside(self) -> None:
-        """Drop what something else than Mutabot has written, before any of it is believed."""
-        found = Unmarked(self._store.connection)
-        remove(self._store.connection, found)
-        self._store.unmarked = list(found.lines())
 
     @property
     def lost(self) -> list[str]:

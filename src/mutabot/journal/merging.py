@@ -42,7 +42,7 @@ def take_plan(store: Store, other: Store) -> None:
     with store.transaction() as execute:
         for table, question in _OF_PLAN.items():
             execute(f"DELETE FROM {table}")
-            for row in other.each(question):
+            for row in other.rows(question):
                 execute(f"INSERT INTO {table} VALUES ({', '.join('?' * len(row))})", *row)
 
 
@@ -50,7 +50,7 @@ def take_outcomes(store: Store, other: Store) -> None:
     """What another journal has found, and knows of earlier campaigns, as far as that is not there already."""
     with store.transaction() as execute:
         for question, statement in _OF_EACH:
-            for row in other.each(question):
+            for row in other.rows(question):
                 execute(statement, *row)
 
 

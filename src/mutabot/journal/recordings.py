@@ -47,7 +47,6 @@ class Recordings:
 
     def __init__(self, path: Path, connection: sqlite3.Connection, limit: int = 0) -> None:
         self.path, self._connection, self._limit = path, connection, limit
-        self._copy: object = None
         self._used = 0
         self.dropped = 0
 
@@ -73,10 +72,7 @@ class Recordings:
         if not path.is_file():
             return None
         with guarded(path):
-            connection, copy = connect_to_read(path)
-            found = cls(path, connection)
-            found._copy = copy
-        return found
+            return cls(path, connect_to_read(path))
 
     def __enter__(self) -> Self:
         return self

@@ -18,7 +18,7 @@ from mutabot.border.codec import to_data
 from mutabot.border.events import (
     Acted,
     BranchEnd,
-    CalledAtImport,
+    Called,
     ForkEnded,
     SessionEnd,
     SiteSeen,
@@ -76,7 +76,7 @@ def good(ticket: str = "ticket") -> dict[str, Any]:
     """The data of an answer that fits."""
     lines = (
         SiteSeen(0, SPAN, "robot:Arm.move_by", None, False),
-        CalledAtImport(([0, [0.25], None, None],)),
+        Called(0, [0.25], None),
         Acted(""),
         TestStart(TEST),
         END,

@@ -24,7 +24,6 @@ from mutabot.border.events import (
     Did,
     Event,
     Found,
-    MutatedCall,
     Noted,
     NotInstrumented,
     PlacesReached,
@@ -161,10 +160,12 @@ class Member:
     def send(self, line: Event) -> None:
         """What the session tells: written down, as far as it is news."""
         match line:
-            case SiteSeen() | MutatedCall() | NotInstrumented() | Problem() | Remark() | TextsSeen():
+            case SiteSeen() | NotInstrumented() | Problem() | Remark() | TextsSeen():
                 self.file.send(line)
-            case Acted():
+            case Acted(in_call=None):
                 self.poll()
+            case Acted():
+                self.file.send(line)
             case PlacesReached():
                 self._reached(line.places)
             case _:  # the test process tells of its tests itself
@@ -199,7 +200,7 @@ class Member:
         )
 
     def _hit(self, site: int, written: Any, read: Any, answer: Any) -> None:
-        self.file.send(Called(time.monotonic(), site, written, read, answer))
+        self.file.send(Called(site, written, read, answer, time.monotonic()))
 
     def _refused(self, site: int, number: int) -> None:
         self.file.send(Noted(site, number))
