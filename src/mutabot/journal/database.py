@@ -4,29 +4,21 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import RLock, Timer
-from time import monotonic
 from typing import Any
 
 from mutabot.border.storable import printable
 from mutabot.errors import JournalError
 
-#: seconds after which a row that was added is in the file, and how long it waits: timers may be late
-WITHIN = 1.0
-PATIENCE = WITHIN / 2
-#: what Python raises for values that SQLite cannot take: beyond 64 bits, no UTF-8, of no type that it knows
-_ABOUT_VALUES = (OverflowError, ValueError, TypeError)
-#: what SQLite raises because of one row, and not because of the file
-_OF_ONE_ROW = (sqlite3.DataError, sqlite3.InterfaceError, sqlite3.ProgrammingError, sqlite3.IntegrityError)
-#: characters of a value that are shown
-_SHOWN = 100
-
+#: what Python and SQLite raise because of one row, and not because of the file
+OF_ONE_ROW = (
+    sqlite3.DataError, sqlite3.InterfaceError, sqlite3.ProgrammingError, sqlite3.IntegrityError,
+    OverflowError, ValueError, TypeError,
+)  # fmt: skip
 #: carries out one statement with its values
 Execute = Callable[..., sqlite3.Cursor]
-Transaction = AbstractContextManager[Execute]
 
 
 def decode(text: bytes) -> str:
@@ -96,90 +88,6 @@ def _connect_read_only(path: Path) -> sqlite3.Connection:
         connection.close()
         raise
     return connection
-
-
-class Batch:
-    """Rows that are committed together, none later than ``PATIENCE`` seconds after it was added.
-
-    The first after a pause is committed at once: a campaign whose outcomes come one by one waits for nothing.
-    Of one whose outcomes come by the hundred, a commit for each would take most of the writing's time.
-
-    Args:
-        transaction: makes what is carried out in it take effect together or not at all.
-
-    Attributes:
-        lock: to be held by whoever uses the connection.
-        unstored: why rows could not be stored, one line each, though the file can be written.
-    """
-
-    def __init__(
-        self, transaction: Callable[[], Transaction], *, clock: Callable[[], float] = monotonic
-    ) -> None:
-        self.lock = RLock()
-        self._transaction, self._clock = transaction, clock
-        self._waiting: list[tuple[str, tuple[Any, ...]]] = []
-        self._committed = float("-inf")
-        self._timer: Timer | None = None
-        self._problem: sqlite3.Error | None = None
-        self.unstored: list[str] = []
-
-    def add(self, statement: str, *values: Any) -> None:
-        """Have a statement carried out. Raises what SQLite did when statements before were."""
-        with self.lock:
-            self._raise()
-            self._waiting.append((statement, values))
-            if self._clock() - self._committed >= PATIENCE:
-                self.commit()
-            elif self._timer is None:
-                self._timer = Timer(PATIENCE, self._commit_late)
-                self._timer.daemon = True
-                self._timer.start()
-
-    def commit(self) -> None:
-        """Carry out what waits. Raises what SQLite does, also what it did before."""
-        with self.lock:
-            if self._timer is not None:
-                self._timer.cancel()
-                self._timer = None
-            waiting, self._waiting = self._waiting, []
-            if waiting:
-                self._carry_out(waiting)
-                self._committed = self._clock()
-            self._raise()
-
-    def _carry_out(self, waiting: list[tuple[str, tuple[Any, ...]]]) -> None:
-        try:
-            with self._transaction() as execute:
-                for statement, values in waiting:
-                    execute(statement, *values)
-        except (sqlite3.Error, *_ABOUT_VALUES):
-            for statement, values in waiting:
-                self._carry_out_alone(statement, values)
-
-    def _carry_out_alone(self, statement: str, values: tuple[Any, ...]) -> None:
-        """One that fails takes no other with it."""
-        try:
-            with self._transaction() as execute:
-                execute(statement, *values)
-        except (*_OF_ONE_ROW, *_ABOUT_VALUES) as error:
-            what = ", ".join(str(value)[:_SHOWN] for value in values[:2])
-            self.unstored.append(f"{what}: {type(error).__name__}: {error}")
-        except sqlite3.Error as error:
-            self._problem = self._problem or error
-
-    def _commit_late(self) -> None:
-        """In a thread of its own: what goes wrong is told to whoever writes next."""
-        with self.lock:
-            if self._timer is not None:  # else somebody was quicker
-                try:
-                    self.commit()
-                except sqlite3.Error as error:
-                    self._problem = error
-
-    def _raise(self) -> None:
-        problem, self._problem = self._problem, None
-        if problem is not None:
-            raise problem
 
 
 @contextmanager

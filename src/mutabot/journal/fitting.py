@@ -9,7 +9,8 @@ from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from mutabot.border.codec import from_data
-from mutabot.model import By, Mutant, Outcome, Verdict, Vocabulary
+from mutabot.border.test_end import TestEnd
+from mutabot.model import By, LeftOut, Mutant, Outcome, Verdict, Vocabulary
 
 from .records import (
     ALTERED,
@@ -24,7 +25,9 @@ from .records import (
     SHARD,
     SINCE,
     VERIFICATION,
+    BaselineTest,
     Budgeted,
+    ControlEnd,
     Drawing,
     Flaky,
     Reaching,
@@ -159,7 +162,36 @@ def mutant_in(text: Any) -> Mutant:
     return found
 
 
-def outcome_in(text: Any, mutant: Any, round: Any, verdict: Any, by: Any) -> Outcome:
+def planned_in(number: Any, name: Any, text: Any) -> Mutant:
+    """A mutant of the plan, if it is that of the columns beside it."""
+    found = mutant_in(text)
+    return agreed(found, (found.number, number), (found.id, name))
+
+
+def known_in(name: Any, text: Any, outdated: Any) -> tuple[Mutant, bool]:
+    """A mutant of an earlier campaign, and whether something has changed that it depends on."""
+    found = mutant_in(text)
+    return agreed(found, (found.id, name)), outdated != 0
+
+
+def left_out_in(name: Any, reason: Any, text: Any) -> LeftOut:
+    """What the plan leaves out."""
+    found = from_data(LeftOut, load(text))
+    return agreed(found, (found.id, name))
+
+
+def baseline_test_in(round: Any, repetition: Any, name: Any, outcome: Any, text: Any) -> BaselineTest:
+    """A test of the baseline."""
+    found = BaselineTest(round_in(round), round_in(repetition), from_data(TestEnd, load(text)))
+    return agreed(found, (found.test.test, name))
+
+
+def control_in(file: Any, control: Any, ok: Any, detail: Any) -> ControlEnd:
+    """A control."""
+    return ControlEnd(text_in(file), text_in(control), ok == 1, text_in(detail))
+
+
+def outcome_in(mutant: Any, round: Any, verdict: Any, by: Any, text: Any, *_: Any) -> Outcome:
     """An outcome, if it is that of the columns beside it."""
     found = from_data(Outcome, load(text))
     agreed(found, (found.mutant, text_in(mutant)), (found.round, round_in(round)))

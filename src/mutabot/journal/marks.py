@@ -126,8 +126,8 @@ def word_for(table: str) -> str:
 
 
 def name_of(table: str, values: tuple[Any, ...]) -> str:
-    """What people know a row by, not longer than a line."""
-    known = dict(zip(COLUMNS[table], values, strict=True))
+    """What people know a row by, not longer than a line; of the values, the first may do."""
+    known = dict(zip(COLUMNS[table], values, strict=False))
     if "round" in known and "mutant" in known:
         round = known["round"]
         where = f" in round {round + 1}" if is_round(round) else ""

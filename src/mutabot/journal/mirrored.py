@@ -29,6 +29,7 @@ class Mirrored:
 
     Attributes:
         copy: the one that nobody else can write, to be read.
+        is_new: whether there was nothing in the file, and nothing is as yet.
         lost: how often the file was deleted or replaced, in words, and was written again.
         altered: rows of the file that somebody else changed, added or removed, and that were restored.
     """
@@ -42,8 +43,8 @@ class Mirrored:
         try:
             self.copy = loaded(self._file)
             # the first transaction brings the tables into the file, with what is in them
-            self._is_new = not self.copy.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
-            if self._is_new:
+            self.is_new = not self.copy.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+            if self.is_new:
                 self.copy.executescript(TABLES)
             else:
                 self._know_file()
@@ -62,7 +63,7 @@ class Mirrored:
         self._is_written = False
         with self._noted():
             self._file.execute("BEGIN IMMEDIATE")  # from here on nobody else can write
-            self._is_written = not self._is_new and self._is_ours(whole)
+            self._is_written = not self.is_new and self._is_ours(whole)
         self.copy.execute("BEGIN")
         try:
             yield self._execute
@@ -116,10 +117,10 @@ class Mirrored:
         if not is_there:
             self.lost.append("was deleted or replaced")
             return False
-        version, before = self._version(), self._known
-        self._known = version
-        found = self._differences() if whole or version != before else []
+        version = self._version()
+        found = self._differences() if whole or version != self._known else []
         self.altered += found
+        self._known = -1 if found else version
         return not found
 
     def _differences(self) -> list[str]:
@@ -156,5 +157,5 @@ class Mirrored:
             shutil.rmtree(self._path)
         new.replace(self._path)
         self._lock.renew()
-        self._file, self._is_new = connect(self._path), False
+        self._file, self.is_new = connect(self._path), False
         self._know_file()

@@ -7,6 +7,7 @@ room, and reports read one without the others. Of a mutant only what differs fro
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Iterable
 from enum import IntEnum
 from pathlib import Path
 from types import TracebackType
@@ -133,6 +134,18 @@ class Recordings:
             "SELECT test, rank, data FROM recording WHERE mutant = ? AND round = ?", mutant, round
         )
         return [(str(test), Rank(rank), bytes(data)) for test, rank, data in rows]
+
+    def take(self, others: Iterable[Recordings], mutants: set[str]) -> None:
+        """Take over those of several journals, of equal ones the first; all but of these mutants make way."""
+        self.keep_only(mutants)
+        done: set[tuple[str, int]] = set()
+        for other in others:
+            own = [pair for pair in other.pairs() if pair not in done]
+            for mutant, round in own:
+                self.forget(mutant, round)
+                for test, rank, data in other.of(mutant, round):
+                    self.add(mutant, round, test, rank, data)
+            done.update(own)
 
     def keep_only(self, mutants: set[str]) -> None:
         """Drop those of all other mutants."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from mutabot.border.test_end import TestEnd
 from mutabot.model import Outcome, Verdict
@@ -88,14 +88,6 @@ class Row:
     by: str | None
     data: str
     key: str
-
-    def with_data(self, data: str) -> Row:
-        """The same with other data."""
-        return replace(self, data=data)
-
-    def with_key(self, key: str) -> Row:
-        """The same with another key."""
-        return replace(self, key=key)
 
 
 @dataclass(frozen=True, slots=True)

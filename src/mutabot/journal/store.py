@@ -8,20 +8,23 @@ from __future__ import annotations
 import json
 import sqlite3
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import AbstractContextManager, closing, contextmanager
 from pathlib import Path
 from typing import Any, Self
 
 from mutabot.border.codec import to_data
 from mutabot.border.storable import storable
 
-from .database import Batch, Execute, Transaction, connect_to_read, guarded, loaded, stored
+from .database import OF_ONE_ROW, Execute, connect_to_read, guarded, loaded, stored
 from .fitting import load
 from .lock import WriterLock
 from .marks import remove_unmarked
 from .mirrored import Mirrored
 from .sound import check_schema, no_journal
 from .tracked import refuse_tracked
+
+#: characters of a value that are shown
+_SHOWN = 100
 
 
 class Store:
@@ -31,16 +34,19 @@ class Store:
 
     Attributes:
         path: the file.
-        connection: to read with; whoever uses it beside the methods calls ``flush`` before.
+        connection: to read with.
         unmarked: rows that something else than Mutabot has written, in words; they are left out.
+        unstored: why rows could not be stored, one line each: all others are.
+        is_new: whether there was nothing in the file.
         lost, altered: as in ``Mirrored``.
     """
 
     def __init__(self, path: Path, connection: sqlite3.Connection, file: Mirrored | None = None) -> None:
         self.path, self.connection, self._file = path, connection, file
-        self._batch = Batch(self._begin)
         self._execute: Execute | None = None  # within a transaction
         self.unmarked: list[str] = []
+        self.unstored: list[str] = []
+        self.is_new = file is not None and file.is_new
         self.lost, self.altered = (file.lost, file.altered) if file is not None else ([], [])
 
     @classmethod
@@ -67,10 +73,7 @@ class Store:
 
     def close(self) -> None:
         """Close the file; the lock of a writer is given back."""
-        try:
-            self.flush()
-        finally:
-            (self._file or self.connection).close()
+        (self._file or self.connection).close()
 
     @contextmanager
     def closed_on_error(self) -> Iterator[None]:
@@ -81,14 +84,13 @@ class Store:
             self.close()
             raise
 
-    def _begin(self, *, whole: bool = False) -> Transaction:
+    def _begin(self, *, whole: bool = False) -> AbstractContextManager[Execute]:
         assert self._file is not None
         return self._file.transaction(whole=whole)
 
     def check(self) -> None:
         """Compare the file with what was written, and write again what is not so."""
-        self.flush()
-        with guarded(self.path), self._batch.lock, self._begin(whole=True):
+        with guarded(self.path), self._begin(whole=True):
             pass
 
     def remove_unmarked(self) -> None:
@@ -98,9 +100,7 @@ class Store:
 
     def rows(self, statement: str, *values: Any) -> list[Any]:
         """What a question is answered with."""
-        with guarded(self.path), self._batch.lock:
-            if self._execute is None:
-                self._batch.commit()
+        with guarded(self.path):
             return self.connection.execute(statement, stored(values)).fetchall()
 
     def fact(self, key: str) -> Any:
@@ -113,34 +113,28 @@ class Store:
         self.write("INSERT OR REPLACE INTO meta VALUES (?, ?)", key, dump(value))
 
     def write(self, statement: str, *values: Any) -> None:
-        """Carry out one statement, at once with all that waits; within ``transaction``, as a part of it."""
+        """Carry out one statement; within ``transaction``, as a part of it."""
         with guarded(self.path):
             if self._execute is not None:
                 self._execute(statement, *values)
                 return
-            self._batch.add(statement, *values)
-            self._batch.commit()
+            with self._begin() as execute:
+                execute(statement, *values)
 
     def add(self, statement: str, *values: Any) -> None:
-        """Carry out one statement; it is committed within a second, or with the next that is at once."""
+        """Add a row; one that cannot be stored takes no other with it."""
         with guarded(self.path):
-            self._batch.add(statement, *values)
-
-    @property
-    def unstored(self) -> tuple[str, ...]:
-        """Why rows could not be stored, one line each: all others are."""
-        return tuple(self._batch.unstored)
-
-    def flush(self) -> None:
-        """Commit all that waits."""
-        with guarded(self.path):
-            self._batch.commit()
+            try:
+                with self._begin() as execute:
+                    execute(statement, *values)
+            except OF_ONE_ROW as error:
+                what = ", ".join(str(value)[:_SHOWN] for value in values[:2])
+                self.unstored.append(f"{what}: {type(error).__name__}: {error}")
 
     @contextmanager
     def transaction(self) -> Iterator[Execute]:
         """Several statements that take effect together or not at all."""
-        with guarded(self.path), self._batch.lock:
-            self._batch.commit()
+        with guarded(self.path):
             try:
                 with self._begin() as self._execute:
                     yield self._execute

@@ -11,7 +11,6 @@ from mutabot.analysis.results import MutantResult, Results, find_mutant, read_re
 from mutabot.analysis.score import Group
 from mutabot.analysis.thresholds.thresholds import Thresholds, thresholds_of
 from mutabot.border.codec import from_data
-from mutabot.journal.database import WITHIN
 from mutabot.journal.files import find_journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import DRAWS, OPERATORS, REACHING, Reaching
@@ -21,9 +20,6 @@ from .table import frame_of
 
 if TYPE_CHECKING:
     import pandas
-
-#: seconds by which the journal of a running campaign may be behind it
-BEHIND = WITHIN
 
 
 @dataclass(frozen=True, slots=True)

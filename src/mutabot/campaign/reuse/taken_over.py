@@ -43,8 +43,8 @@ class TakenOver:
             data = lines.moved(row.data) if lines is not None else None
             if data is None:
                 return False
-            row = row.with_data(data)
-        self.rows.append(row.with_key(next(one for one in now if says_same(one, key))))
+            row = replace(row, data=data)
+        self.rows.append(replace(row, key=next(one for one in now if says_same(one, key))))
         return True
 
     def take_renamed(

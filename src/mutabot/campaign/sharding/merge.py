@@ -15,7 +15,6 @@ from mutabot.errors import MergeError
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.journal.journal import Journal
 from mutabot.journal.lock import is_written
-from mutabot.journal.merging import take_recordings
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.recordings import Recordings, recordings_path
 from mutabot.journal.records import (
@@ -222,4 +221,4 @@ def _merge_recordings(
     if opened:
         mutants = known | {one.id for one in parts[0].mutants}
         with Recordings.to_write(target, room) as recordings:
-            take_recordings(recordings, opened, mutants)
+            recordings.take(opened, mutants)
