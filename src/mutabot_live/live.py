@@ -14,8 +14,8 @@ from typing import Any, Self
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers.pause import Pause
-from mutabot.report.pace import Pace
-from mutabot.report.shaping.texts import legible
+from mutabot.report.terminal.progress import Pace
+from mutabot.report.texts import legible
 
 from .feed import Feed
 from .pages import Pages

@@ -19,12 +19,10 @@ from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.campaign import open as open_campaign
 from mutabot.analysis.stored.evidence import StoredEvidence
 from mutabot.errors import JournalError
-from mutabot.report.html.mutant import mutant_page
+from mutabot.report.html.folder import script_of
+from mutabot.report.html.mutant import Recorded, mutant_page
 from mutabot.report.html.overview import campaign_data
-from mutabot.report.html.recorded import Recorded
-from mutabot.report.html.scripts import script_of
-from mutabot.report.shaping.portable import portable
-from mutabot.report.shaping.texts import Cleaner
+from mutabot.report.texts import Cleaner, portable
 
 #: seconds between two looks into the journal, at least; and how many times as long as one takes
 _LEAST, _TIMES = 1.0, 20.0

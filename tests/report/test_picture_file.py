@@ -8,8 +8,7 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import UsageError
-from mutabot.report.picture import Picture
-from mutabot.report.picture_file import check_picture, write_drawing
+from mutabot.report.thresholds.picture import Picture, check_picture, write_drawing
 from tests.campaign.project import Quiet, request_for, write_project
 
 

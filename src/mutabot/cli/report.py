@@ -81,7 +81,7 @@ def report(
     """
     from mutabot.analysis.stored.campaign import open as open_campaign
     from mutabot.report.format import Material
-    from mutabot.report.shaping.portable import portable
+    from mutabot.report.texts import portable
 
     wanted = list(_wanted(format or (), output or ()))
     if not wanted and compare is None and html is None:
@@ -113,14 +113,14 @@ def report(
 
 
 def _names() -> list[str]:
-    from mutabot.report.choice import names
+    from mutabot.report.format import names
 
     return names()
 
 
 def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Format, Path]]:
     """Each format with its file. Raises UsageError if they do not go together."""
-    from mutabot.report.choice import format_of
+    from mutabot.report.format import format_of
 
     if len(files) > len(names) or (len(names) > 1 and len(files) < len(names)):
         raise UsageError(
@@ -155,8 +155,8 @@ def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: st
     from mutabot.analysis.stored.evidence import StoredEvidence
     from mutabot.analysis.stored.suggested import kept_suggestions
     from mutabot.report.html.folder import Contents, write_folder
-    from mutabot.report.html.suggestion import suggest_from
-    from mutabot.report.shaping.texts import Cleaner
+    from mutabot.report.suggested import suggest_from
+    from mutabot.report.texts import Cleaner
 
     name = Path(root).name if root else ""
     with StoredEvidence(journal) as evidence:
@@ -183,7 +183,7 @@ def _changes(campaign: StoredCampaign, journal: Path, old: Path) -> Changes:
     from mutabot.analysis.stored.campaign import open as open_campaign
     from mutabot.analysis.stored.changes import changes
     from mutabot.journal.files import previous_of
-    from mutabot.report.shaping.portable import portable
+    from mutabot.report.texts import portable
 
     other = journal_at(old)
     if other.exists() and journal.exists() and other.samefile(journal):
@@ -196,11 +196,11 @@ def _changes(campaign: StoredCampaign, journal: Path, old: Path) -> Changes:
 
 def _show(changes: Changes, *, json: bool) -> None:
     if json:
-        from mutabot.report.changes.data import changes_data
+        from mutabot.report.changes import changes_data
 
         print_json(changes_data(changes))
     else:
-        from mutabot.report.changes.text import print_changes
+        from mutabot.report.changes import print_changes
         from mutabot.report.terminal.console import make_console
 
         print_changes(make_console(), changes)

@@ -46,8 +46,7 @@ def suggest(
     from mutabot.analysis.results import read_results
     from mutabot.analysis.stored.suggested import keep_suggestions
     from mutabot.journal.reader import JournalReader
-    from mutabot.report.suggested.data import suggested_data
-    from mutabot.report.suggested.text import print_suggestions
+    from mutabot.report.suggested import print_suggestions, suggested_data
     from mutabot.report.terminal.console import make_console
     from mutabot.suggestion import suggest as find_checks
 

@@ -17,8 +17,8 @@ from mutabot.errors import UsageError
 from mutabot.journal.files import REPORT_MARK
 from mutabot.report.html import folder as folders
 from mutabot.report.html.folder import check_folder
-from mutabot.report.html.rows import Rows
-from mutabot.report.html.suggestion import SuggestedCheck
+from mutabot.report.html.overview import Rows
+from mutabot.report.suggested import SuggestedCheck
 from report.html import reports
 
 ROOT = Path(__file__).parents[3]

@@ -13,7 +13,7 @@ from mutabot.analysis.stored.suggested import keep_suggestions, kept_suggestions
 from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
-from mutabot.report.html.suggestion import suggest_from
+from mutabot.report.suggested import suggest_from
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant.detail import print_mutant
 

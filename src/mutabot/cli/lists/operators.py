@@ -16,7 +16,7 @@ def operators(family: options.Families = None, json: options.Json = False) -> No
     """List the operators: what each plants, where it applies, and which bugs it stands for."""
     from mutabot.campaign.plan.rules import listed_rules
     from mutabot.report.terminal.console import make_console
-    from mutabot.report.terminal.rules import print_rules
+    from mutabot.report.terminal.listing import print_rules
 
     rules = [asdict(rule) for rule in listed_rules(families_of(family))]
     print_json({"operators": rules}) if json else print_rules(make_console(), rules)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
 import shutil
 from collections.abc import Callable, Iterable, Mapping
@@ -16,12 +18,9 @@ from mutabot.analysis.stored.evidence import StoredEvidence
 from mutabot.border.codec import to_data
 from mutabot.errors import UsageError
 from mutabot.journal.files import REPORT_MARK
-
-from .mutant import mutant_page
-from .overview import campaign_data
-from .recorded import Recorded
-from .scripts import script_of
-from .suggestion import Suggest
+from mutabot.report.html.mutant import Recorded, mutant_page
+from mutabot.report.html.overview import campaign_data
+from mutabot.report.suggested import Suggest
 
 _MARK_TEXT = (
     "A report of mutabot: open index.html. `mutabot report --html` replaces it, and leaves clips/ alone.\n"
@@ -191,3 +190,53 @@ def _write(file: Path, name: str, data: Any) -> int:
 
 def _bytes(name: str, data: Any) -> bytes:
     return script_of(name, data).encode("utf-8", errors="replace")
+
+
+#: what could end the script or its string, whatever reads it first: the page's parser or the language's
+_ESCAPES = str.maketrans(
+    {
+        "\\": "\\\\",
+        "'": "\\'",
+        "<": "\\x3c",
+        ">": "\\x3e",
+        "&": "\\x26",
+        "\u2028": "\\u2028",
+        "\u2029": "\\u2029",
+        "\r": "\\r",
+        "\n": "\\n",
+    }
+)
+#: as much as this is told with all its digits; and up to this, whole numbers are whole to the page as well
+_EXACT, _WHOLE = 1e4, 2**53
+
+
+def script_of(name: str, data: Any) -> str:
+    """A script that hands data to the page under a name.
+
+    The data are a text that is parsed as JSON: no key of theirs means anything to the language.
+    """
+    text = json.dumps(plain(data), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return f"mutabot.take('{name.translate(_ESCAPES)}','{text.translate(_ESCAPES)}');\n"
+
+
+def plain(value: Any) -> Any:
+    """Data that JSON can hold: numbers that are none become null, and what it does not know a text."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, float):
+        return _short(value) if math.isfinite(value) else None
+    if value is None or isinstance(value, bool | int):
+        return value
+    return str(value)
+
+
+def _short(number: float) -> float | int:
+    """As many digits as a page shows, so that thousands of numbers stay small.
+
+    From ``_EXACT`` on these are too few: of seconds since 1970, seven digits are some minutes.
+    """
+    if number.is_integer() and abs(number) < _WHOLE:
+        return int(number)
+    return number if abs(number) >= _EXACT else float(f"{number:.7g}")
