@@ -14,7 +14,7 @@ from mutabot.model.values.rotation import QUATERNION_ORDERS, is_euler_order
 from mutabot.model.values.units import UNITS, Dimension, dimension_of
 from mutabot.settings.mistakes import shown
 
-from .quantities import AXES, split_axes
+from .axes import AXES, split_axes
 from .schema import QuantityTable
 from .targets import target_fault
 

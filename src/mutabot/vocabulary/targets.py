@@ -2,8 +2,7 @@
 
 An operation that is no Python callable has a key of its own in place of ``call``, as those with a name on a
 middleware have (``vocabulary.named``), and the kind that finds it at run time in ``Operation.kind`` (see
-``inside.targets.target``). Also what a vocabulary says a command answers while the robot does nothing, which a
-callable may make.
+``inside.targets.target``). What a command answers while the robot does nothing may be made by a callable.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from typing import Any
 
 from mutabot.journal.files import REPORT_MARK
 
-from .state import WRITTEN
+from .counted import WRITTEN
 
 #: folders without anything that a test imports or reads; hidden ones are left out as well
 _FOLDERS = {"__pycache__", "node_modules", "site-packages"}

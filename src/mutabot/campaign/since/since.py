@@ -17,11 +17,12 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.plan.planned import Plan
 from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.reuse.counted import WRITTEN, is_note, own_files
 from mutabot.campaign.reuse.keys import Dependencies, says_same
 from mutabot.campaign.reuse.reasons import apart
 from mutabot.campaign.reuse.reuse import GONE, Pair, Reused
 from mutabot.campaign.reuse.snapshot import counts_by_name
-from mutabot.campaign.reuse.state import WRITTEN, State, is_note, own_files
+from mutabot.campaign.reuse.state import State
 from mutabot.errors import ConfigurationError, JournalError, UsageError
 from mutabot.journal.files import find_journal
 from mutabot.journal.journal import Journal
