@@ -82,6 +82,11 @@ class Example:
     note: str = ""
 
 
+def each(program: str, texts: str) -> tuple[str, ...]:
+    """The same program with each of several texts, set apart by commas, in the place of ``{}``."""
+    return tuple(program.format(text) for text in texts.split(", "))
+
+
 class ClassicalOperator(Rule):
     """A rule that makes alternatives of program text.
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings
+from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings, each
 
 _TEXTS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
 _DISPLAYS = cst.List | cst.Tuple | cst.Dict | cst.Set | cst.ListComp | cst.SetComp | cst.DictComp
@@ -56,38 +56,13 @@ class ArithmeticReplacement(_BinaryOperator):
     }
     needs = "number"
     examples: ClassVar[tuple[Example, ...]] = (
-        Example(
-            "z = x + y\n",
-            (
-                "z = x - y\n",
-                "z = x * y\n",
-                "z = x / y\n",
-                "z = x // y\n",
-                "z = x % y\n",
-                "z = x ** y\n",
-                "z = x\n",
-                "z = y\n",
-            ),
-        ),
+        Example("z = x + y\n", each("z = {}\n", "x - y, x * y, x / y, x // y, x % y, x ** y, x, y")),
         Example(
             "z = a * b % c\n",
-            (
-                "z = a * b + c\n",
-                "z = a * b - c\n",
-                "z = a * b * c\n",
-                "z = a * b / c\n",
-                "z = a * b // c\n",
-                "z = (a * b) ** c\n",
-                "z = a * b\n",
-                "z = c\n",
-                "z = (a + b) % c\n",
-                "z = (a - b) % c\n",
-                "z = a / b % c\n",
-                "z = a // b % c\n",
-                "z = a % b % c\n",
-                "z = a ** b % c\n",
-                "z = a % c\n",
-                "z = b % c\n",
+            each(
+                "z = {}\n",
+                "a * b + c, a * b - c, a * b * c, a * b / c, a * b // c, (a * b) ** c, a * b, c, "
+                "(a + b) % c, (a - b) % c, a / b % c, a // b % c, a % b % c, a ** b % c, a % c, b % c",
             ),
             note="operands stay what they are",
         ),
@@ -108,12 +83,12 @@ class LogicalReplacement(_BinaryOperator):
     examples: ClassVar[tuple[Example, ...]] = (
         Example(
             "z = x & y\n",
-            ("z = x | y\n", "z = x ^ y\n", "z = x\n", "z = y\n"),
+            each("z = {}\n", "x | y, x ^ y, x, y"),
             kinds={"x & y": "integer"},
         ),
         Example(
             "z = x ^ y\n",
-            ("z = x & y\n", "z = x | y\n", "z = x\n", "z = y\n"),
+            each("z = {}\n", "x & y, x | y, x, y"),
             kinds={"x ^ y": "set"},
             note="sets and flags as well",
         ),
@@ -163,18 +138,7 @@ class AssignmentReplacement(ClassicalOperator):
     rank = 70
     summary = "An augmented assignment becomes another one of its kind, or a plain assignment."
     examples: ClassVar[tuple[Example, ...]] = (
-        Example(
-            "x += y\n",
-            (
-                "x -= y\n",
-                "x *= y\n",
-                "x /= y\n",
-                "x //= y\n",
-                "x %= y\n",
-                "x **= y\n",
-                "x = y\n",
-            ),
-        ),
+        Example("x += y\n", each("x {}\n", "-= y, *= y, /= y, //= y, %= y, **= y, = y")),
         Example("x <<= 1\n", ("x >>= 1\n", "x = 1\n"), kinds={"x <<= 1": "integer"}),
         Example("x &= y\n", ("x |= y\n", "x ^= y\n", "x = y\n"), kinds={"x &= y": "truth"}),
         Example("x += y\n", kinds={"x += y": "text"}, note="the baseline saw a text there"),

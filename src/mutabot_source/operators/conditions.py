@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings
+from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings, each
 
 
 class ConditionalReplacement(ClassicalOperator):
@@ -17,28 +17,10 @@ class ConditionalReplacement(ClassicalOperator):
     rank = 40
     summary = "A condition's and becomes or, xor, one of its operands, always true, or always false."
     examples: ClassVar[tuple[Example, ...]] = (
-        Example(
-            "z = x and y\n",
-            (
-                "z = x or y\n",
-                "z = (not x) != (not y)\n",
-                "z = x\n",
-                "z = y\n",
-                "z = False\n",
-                "z = True\n",
-            ),
-        ),
+        Example("z = x and y\n", each("z = {}\n", "x or y, (not x) != (not y), x, y, False, True")),
         Example(
             "z = a or b or c\n",
-            (
-                "z = a and b or c\n",
-                "z = a or b and c\n",
-                "z = b or c\n",
-                "z = a or c\n",
-                "z = a or b\n",
-                "z = False\n",
-                "z = True\n",
-            ),
+            each("z = {}\n", "a and b or c, a or b and c, b or c, a or c, a or b, False, True"),
             note="a longer condition: one operator after the other, one operand less",
         ),
         Example("z = x & y\n", note="bitwise operators are LOR's"),
@@ -113,29 +95,12 @@ class RelationalReplacement(ClassicalOperator):
     rank = 30
     summary = "A comparison becomes each of the others, or always true, or always false."
     examples: ClassVar[tuple[Example, ...]] = (
-        Example(
-            "z = x < y\n",
-            (
-                "z = x <= y\n",
-                "z = x > y\n",
-                "z = x >= y\n",
-                "z = x == y\n",
-                "z = x != y\n",
-                "z = False\n",
-                "z = True\n",
-            ),
-        ),
+        Example("z = x < y\n", each("z = {}\n", "x <= y, x > y, x >= y, x == y, x != y, False, True")),
         Example(
             "z = a < b in c\n",
-            (
-                "z = a <= b in c\n",
-                "z = a > b in c\n",
-                "z = a >= b in c\n",
-                "z = a == b in c\n",
-                "z = a != b in c\n",
-                "z = a < b not in c\n",
-                "z = False\n",
-                "z = True\n",
+            each(
+                "z = {}\n",
+                "a <= b in c, a > b in c, a >= b in c, a == b in c, a != b in c, a < b not in c, False, True",
             ),
             note="a chain stays a chain: each value is computed once, and only if it is needed",
         ),

@@ -6,7 +6,7 @@ from mutabot.journal.reader import JournalReader
 from mutabot.model import Mutant
 
 from .keys import ASIDE, JUDGES, REACHED, Dependencies, Parts, changes
-from .trees import Trees
+from .taken_over import Trees
 
 #: names that are given before it is said how many more there are
 _SHOWN = 3

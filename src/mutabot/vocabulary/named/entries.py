@@ -14,17 +14,13 @@ from mutabot.model import Case, Kind, Operation, Path, Pattern, Quantity
 from mutabot.model.named import WRITTEN, Form, Named, Refused, settings_of
 from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
-from mutabot.vocabulary.cases.modes import Undecided, in_cases
-from mutabot.vocabulary.cases.when import in_case, read_when
-from mutabot.vocabulary.idle import read_idle
+from mutabot.vocabulary.cases.when import Undecided, in_case, in_cases, read_when
 from mutabot.vocabulary.patterns import read_patterns
 from mutabot.vocabulary.quantities import in_message, is_quantity, read_fields, read_quantity, read_result
 from mutabot.vocabulary.schema import NamedTable
-from mutabot.vocabulary.targets import target_fault
+from mutabot.vocabulary.targets import read_idle, target_fault
 
-from .current import read_current
-from .names import DIRECTIONS, NAMING, forms_of, name_of, node_of, type_of
-from .refused import read_refused
+from .names import DIRECTIONS, NAMING, forms_of, name_of, node_of, read_current, read_refused, type_of
 
 #: the kind of target that all of them have
 _KIND = "messages"
