@@ -43,7 +43,6 @@ class Task:
         startup: wall-clock seconds until the first test begins.
         is_trunk: whether it branches: it then runs on a token of the pool.
         may_share: whether it may begin as a copy of a fork server instead of in a fresh process.
-        begins_warm: whether it may begin as a fork of a process that has imported what workers import.
         alone: whether nothing may run beside it.
     """
 
@@ -54,7 +53,6 @@ class Task:
     startup: float = STARTUP_SECONDS
     is_trunk: bool = False
     may_share: bool = False
-    begins_warm: bool = False
     alone: bool = False
 
 

@@ -101,7 +101,7 @@ def _run_survivors(
     trials = [(mutant, round) for mutant, rounds in now for round in rounds]
     progress.stage("survivors", len(trials))
     tasks = (
-        replace(task(campaign, mutant, round, tests), begins_warm=True)
+        task(campaign, mutant, round, tests)
         for mutant, round in trials
         if (tests := baseline.judges(round, mutant))
     )
