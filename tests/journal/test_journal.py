@@ -23,6 +23,7 @@ from mutabot.journal.files import previous_of
 from mutabot.journal.journal import Journal
 from mutabot.journal.lock import is_written
 from mutabot.journal.records import Kept
+from mutabot.journal.schema import SCHEMA_VERSION
 from mutabot.journal.store import Store
 from mutabot.model import By, Outcome, Verdict
 
@@ -382,7 +383,7 @@ def test_a_journal_of_another_schema_version_is_refused(path: Path) -> None:
     with connection:
         connection.execute("UPDATE meta SET value = '99' WHERE key = 'journal:version'")
     connection.close()
-    with pytest.raises(JournalError, match="version 99, this one reads 4"):
+    with pytest.raises(JournalError, match=f"version 99, this one reads {SCHEMA_VERSION}"):
         Journal.open(path)
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -17,6 +18,8 @@ OF_ONE_ROW = (
     sqlite3.DataError, sqlite3.InterfaceError, sqlite3.ProgrammingError, sqlite3.IntegrityError,
     OverflowError, ValueError, TypeError,
 )  # fmt: skip
+#: what a database consists of while somebody has it open
+SUFFIXES = ("", "-wal", "-shm")
 #: carries out one statement with its values
 Execute = Callable[..., sqlite3.Cursor]
 
@@ -88,6 +91,22 @@ def _connect_read_only(path: Path) -> sqlite3.Connection:
         connection.close()
         raise
     return connection
+
+
+def write_anew(copy: sqlite3.Connection, path: Path) -> None:
+    """Make a file of all that is in a database, and put it in the place of whatever is there."""
+    new = path.with_name(f"{path.name}.new")
+    new.unlink(missing_ok=True)
+    try:
+        with closing(sqlite3.connect(new)) as target:
+            copy.backup(target)
+        for suffix in SUFFIXES[1:]:  # they are of the other file: SQLite would read them into this one
+            path.with_name(path.name + suffix).unlink(missing_ok=True)
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)
+        new.replace(path)
+    finally:
+        new.unlink(missing_ok=True)
 
 
 @contextmanager

@@ -8,14 +8,13 @@ the end it is looked at, and made anew if it is not what was written.
 
 from __future__ import annotations
 
-import shutil
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from .database import Execute, connect, connect_to_read, loaded, stored
+from .database import Execute, connect, connect_to_read, loaded, stored, write_anew
 from .lock import WriterLock
 from .marks import differences, mark_rows
 from .schema import TABLES
@@ -146,16 +145,8 @@ class Mirrored:
         """Write the file anew, and put it in the place of whatever is there."""
         with suppress(sqlite3.Error):
             self._file.close()
-        folder, new = self._path.parent, self._path.with_name(f"{self._path.name}.new")
-        folder.mkdir(parents=True, exist_ok=True)
-        new.unlink(missing_ok=True)
-        with closing(sqlite3.connect(new)) as target:
-            self.copy.backup(target)
-        for suffix in ("-wal", "-shm"):  # they are of the other file: SQLite would read them into this one
-            self._path.with_name(self._path.name + suffix).unlink(missing_ok=True)
-        if self._path.is_dir() and not self._path.is_symlink():
-            shutil.rmtree(self._path)
-        new.replace(self._path)
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        write_anew(self.copy, self._path)
         self._lock.renew()
         self._file, self.is_new = connect(self._path), False
         self._know_file()

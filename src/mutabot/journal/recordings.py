@@ -13,7 +13,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from .database import connect, connect_to_read, guarded
+from .database import connect, connect_to_read, guarded, loaded
 
 _TABLE = """
 CREATE TABLE IF NOT EXISTS recording (
@@ -67,13 +67,14 @@ class Recordings:
         return found
 
     @classmethod
-    def to_read(cls, journal: Path) -> Recordings | None:
-        """Those of this journal; None if there are none."""
+    def to_read(cls, journal: Path, *, copied: bool = False) -> Recordings | None:
+        """Those of this journal; None if there are none. ``copied``: as they are now, whatever comes."""
         path = recordings_path(journal)
         if not path.is_file():
             return None
         with guarded(path):
-            return cls(path, connect_to_read(path))
+            found = connect_to_read(path)
+            return cls(path, loaded(found) if copied else found)
 
     def __enter__(self) -> Self:
         return self

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mutabot.errors import JournalError
 
-from .database import connect, guarded
+from .database import SUFFIXES, connect, guarded, write_anew
 from .files import previous_of
 from .sound import check_schema
 from .store import Store
@@ -22,7 +22,8 @@ def make_way(path: Path) -> Path | None:
 
     Raises JournalError for a file that is not ours.
     """
-    _remove(_half_a_copy_of(path))
+    for half in (path, previous_of(path)):  # of a campaign that was killed meanwhile
+        half.with_name(f"{half.name}.new").unlink(missing_ok=True)
     if not path.exists():
         return None
     with path.open("rb") as file:
@@ -39,29 +40,18 @@ def make_way(path: Path) -> Path | None:
         kept = path.with_name(f"{path.stem}.version-{error.version}{path.suffix}")
     if _is_empty(path):  # of a campaign that was killed before it had begun
         return None
-    _remove(kept)
-    for suffix in ("", "-wal", "-shm"):
-        old = path.with_name(path.name + suffix)
+    for suffix in SUFFIXES:
+        old, new = path.with_name(path.name + suffix), kept.with_name(kept.name + suffix)
+        new.unlink(missing_ok=True)
         if old.exists():
-            old.replace(kept.with_name(kept.name + suffix))
+            old.replace(new)
     return kept
 
 
 def keep_copy(store: Store) -> None:
     """Keep the campaign of an opened journal as it is, as ``previous_of`` its path."""
-    kept, new = previous_of(store.path), _half_a_copy_of(store.path)
     with guarded(store.path):
-        try:
-            with closing(sqlite3.connect(new)) as target:
-                store.connection.backup(target)
-            _remove(kept)
-            new.replace(kept)
-        finally:
-            new.unlink(missing_ok=True)
-
-
-def _half_a_copy_of(path: Path) -> Path:
-    return path.with_name(f"{previous_of(path).name}.new")
+        write_anew(store.connection, previous_of(store.path))
 
 
 def _is_empty(path: Path) -> bool:
@@ -84,8 +74,3 @@ def _is_journal(path: Path) -> bool:
             raise
         return False
     return bool(sound == "ok")
-
-
-def _remove(path: Path) -> None:
-    for suffix in ("", "-wal", "-shm"):
-        path.with_name(path.name + suffix).unlink(missing_ok=True)
