@@ -52,8 +52,8 @@ from mutabot.inside.text.scripts import hook_script
 from mutabot.model import Call
 from mutabot.model.values.quantity import Value
 
-from .carried import carry
-from .killers import starts_a_killer
+from .environment import carry
+from .exits import starts_a_killer
 from .now import Now
 
 #: the member that this process is; None in all others

@@ -27,7 +27,6 @@ from mutabot.inside.fork.trunk import FAILED as BRANCH_FAILED
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import limit_memory
 from mutabot.inside.node_ids import node_id
-from mutabot.inside.processes.host import Host
 from mutabot.inside.processes.member import watch_forks
 from mutabot.inside.processes.members import Members
 from mutabot.inside.session import Session
@@ -116,10 +115,8 @@ class Conductor:
 
     def _begin(self, home: str) -> None:
         prepare(self.job.root, home, self.job.vocabulary)
-        host = Host(home, self.job)
-        host.open()
-        self.running.members = Members(host, self.session)
-        watch_forks(host.folder, self.session)
+        self.running.members = Members(home, self.session)
+        watch_forks(self.running.members.folder, self.session)
         if self.job.branching is not None:
             preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
             self.grow(self.job.branching, os.path.join(home, LOG))
