@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.inside.watching.message import Parts, type_of
+from mutabot.inside.watching.named import Parts, type_of
 from mutabot.model.named import Form
 from mutabot.proposal.named.entries import entries, unused
 from mutabot.proposal.named.meanings import Place, meaning

@@ -44,6 +44,11 @@ class Evidence:
     away: dict[str, int] = field(default_factory=dict)
 
     @property
+    def culprits(self) -> frozenset[int]:
+        """The refusals and all that they hold, each by its ``id``."""
+        return frozenset(id(leaf) for refusal in self.refusals for leaf in (refusal, *leaves(refusal)))
+
+    @property
     def refusal(self) -> str | None:
         """How the robot refused a mutated call, in its own words; None if it did not."""
         return str(leaves(self.refusals[-1])[0]) if self.refusals else self.said

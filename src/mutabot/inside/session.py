@@ -24,10 +24,9 @@ from mutabot.inside.calls.trace import Recorder
 from mutabot.inside.fork.bunch import Bunch
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.readings.along import Along, Rehearsal, rehearse
-from mutabot.inside.readings.clock import ClockReader
+from mutabot.inside.readings.clock import ClockReader, ProgramTime
 from mutabot.inside.readings.instances import Instances
 from mutabot.inside.readings.probes import Reading, take
-from mutabot.inside.readings.program_time import ProgramTime
 from mutabot.inside.readings.recording import TestRecording
 from mutabot.inside.targets.interception import Interception
 from mutabot.inside.targets.target import Finding, Handler

@@ -38,21 +38,19 @@ from mutabot.border.events import (
 )
 from mutabot.border.job import Job, read_job
 from mutabot.border.signals import ANYBODY
-from mutabot.errors import MutabotError
 from mutabot.inside import FOLDER as OURS
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.event_file import EventFile
 from mutabot.inside.evidence import Evidence
-from mutabot.inside.exception_groups import everything, is_due_to, leaves
+from mutabot.inside.exception_groups import failure_in, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
 from mutabot.inside.session import Session
-from mutabot.inside.targets.names import is_named
 from mutabot.inside.text.scripts import hook_script
 from mutabot.model import Call
 from mutabot.model.values.quantity import Value
 
-from .carried import carry
-from .killers import starts_a_killer
+from .environment import carry
+from .exits import starts_a_killer
 from .now import Now
 
 #: the member that this process is; None in all others
@@ -302,8 +300,7 @@ class Member:
         if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:
             return
         self.poll()
-        refusals = self.session.evidence.refusals
-        culprits = frozenset(id(leaf) for refusal in refusals for leaf in (refusal, *leaves(refusal)))
+        culprits = self.session.evidence.culprits
         first = leaves(error)[0]
         if isinstance(first, BudgetExceeded):
             return
@@ -311,19 +308,10 @@ class Member:
             Raised(
                 f"{type(first).__qualname__}: {str(first)[:2000].strip()}",
                 is_refusal=bool(culprits) and is_due_to(error, culprits),
-                failure=self._failure(error),
+                failure=failure_in(error, self.session.job.vocabulary.failures),
                 in_thread=in_thread,
             )
         )
-
-    def _failure(self, error: BaseException) -> str | None:
-        failures = self.session.job.vocabulary.failures
-        for link in everything(error):
-            if isinstance(link, MemoryError):
-                return "the memory limit was reached"
-            if isinstance(link, MutabotError) or is_named(link, failures):
-                return f"{type(link).__name__}: {link}"
-        return None
 
 
 def _copy_of(evidence: Evidence) -> Evidence:
