@@ -9,10 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE
-from mutabot.inside.node_ids import node_id
-from mutabot.inside.suite.any_scope import offer_at_every_scope
-from mutabot.model.seed import ROUND_VARIABLE, SEED_VARIABLE
+from mutabot.inside.unrewritten import import_us_unrewritten
+
+import_us_unrewritten()  # before anything else of us is imported
+
+from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
+from mutabot.inside.node_ids import node_id  # noqa: E402
+from mutabot.inside.suite.any_scope import offer_at_every_scope  # noqa: E402
+from mutabot.model.seed import ROUND_VARIABLE, SEED_VARIABLE  # noqa: E402
 
 if TYPE_CHECKING:
     from mutabot.inside.suite.conductor import Conductor
@@ -26,10 +30,7 @@ def pytest_addoption(pluginmanager: pytest.PytestPluginManager) -> None:
     """Before pytest loads other plug-ins: if there is a job, keep out those that it cannot do with."""
     if JOB_VARIABLE not in os.environ:
         return
-    from .unrewritten import import_us_unrewritten  # noqa: PLC0415  # a sleeping plugin costs nothing
-
-    import_us_unrewritten()
-    from mutabot.inside.suite.switched_off import switch_off  # noqa: PLC0415
+    from mutabot.inside.suite.switched_off import switch_off  # noqa: PLC0415  # a sleeping plugin costs nothing
 
     switch_off(pluginmanager)
 
