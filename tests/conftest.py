@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import compileall
 import os
 import signal
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 
@@ -16,7 +18,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Tests interrupt campaigns: a shell that starts us in the background has had interruptions ignored."""
+    """Tests interrupt campaigns: a shell that starts us in the background has had interruptions ignored.
+
+    Tests start a thousand processes that may not write bytecode: it is there before them.
+    """
+    if not hasattr(config, "workerinput"):
+        compileall.compile_dir(Path(__file__).parents[1] / "src", quiet=2)
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     config.pluginmanager.register(ProcessorTime(config))

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Generator
 from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE
-from mutabot.inside.node_ids import node_id
-from mutabot.model.seed import ROUND_VARIABLE, SEED_VARIABLE
+from mutabot.inside.unrewritten import import_us_unrewritten
+
+import_us_unrewritten()  # before anything else of us is imported
+
+from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
+from mutabot.inside.node_ids import node_id  # noqa: E402
+from mutabot.model.seed import ROUND_VARIABLE, SEED_VARIABLE  # noqa: E402
 
 if TYPE_CHECKING:
     from mutabot.inside.suite.conductor import Conductor
@@ -36,7 +39,6 @@ def pytest_addoption(pluginmanager: pytest.PytestPluginManager) -> None:
     """Before pytest loads other plug-ins: if there is a job, keep out those that it cannot do with."""
     if JOB_VARIABLE not in os.environ:
         return
-    _import_us_unrewritten()
     from mutabot.inside.suite.switched_off import switch_off  # noqa: PLC0415  # a sleeping plugin costs nothing
 
     switch_off(pluginmanager)
@@ -152,16 +154,3 @@ def _offer_at_every_scope(owner: str) -> None:
 def _is_defined_by(owner: str, request: Any) -> bool:
     definitions = request._fixturemanager.getfixturedefs(_NAME, request._pyfuncitem)
     return bool(definitions) and getattr(definitions[-1].func, "__module__", None) == owner
-
-
-def _import_us_unrewritten() -> None:
-    """From now on pytest does not rewrite modules of mutabot that are imported.
-
-    It would rewrite the asserts of everything in a plugin's distribution, and parse each module anew in
-    every process, as none may write bytecode beside the sources.
-    """
-    for finder in sys.meta_path:
-        marked: Any = getattr(finder, "_must_rewrite", None)
-        if isinstance(marked, set):
-            marked.difference_update([name for name in marked if name.partition("_")[0] == "mutabot"])
-            getattr(finder, "_marked_for_rewrite_cache", {}).clear()
