@@ -31,7 +31,7 @@ from mutabot.model import Diverged, Mutant, Outcome
 
 from .filming import choose_graphics, film
 from .shown import Shown
-from .sights import module, sights_of
+from .sights import check, module, sights_of
 
 #: tests that are named where several fit
 _LISTED = 5
@@ -175,7 +175,8 @@ def motion(
     path = find_journal(context.obj)
     sights = list(sights_of(path.parent, view=view, rerun=rerun, rrd=rrd, mcap=mcap))
     if video is not None:
-        module("pictures.video").check_video(video)
+        module("pictures.video")
+        check(video, ".mp4")
     elif not sights:
         raise UsageError("say how to show it: --video, --view, --rerun, --rrd or --mcap")
     with JournalReader.open(path) as journal, StoredEvidence(path) as evidence:
@@ -184,7 +185,7 @@ def motion(
         wanted = None if round is None else number_of(round, results.rounds)
         shown = choose(results, result, evidence, wanted, test)
     if sights:
-        lines = chain(missing_in(shown), (sight.show(shown) for sight in sights))
+        lines = chain(missing_in(shown), (sight(shown) for sight in sights))
         tell(f"mutabot: {line}" for line in lines)
     if video is not None:
         request = request_again(path.parent.parent, results, jobs)

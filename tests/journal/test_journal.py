@@ -426,7 +426,7 @@ def test_a_journal_of_another_schema_version_is_refused(path: Path) -> None:
     with connection:
         connection.execute("UPDATE meta SET value = '99' WHERE key = 'journal:version'")
     connection.close()
-    with pytest.raises(JournalError, match="version 99, this one reads 4"):
+    with pytest.raises(JournalError, match="version 99, this one reads 5"):
         Journal.open(path)
 
 

@@ -57,7 +57,7 @@ def _sampled(strata: Mapping[tuple[str, str], Sequence[Mutant]], seed: int, samp
 def _sampled_of_family(roles: Mapping[str, Sequence[Mutant]], seed: int, sample: Sample) -> Iterator[Mutant]:
     sizes = sample.sizes({role: len(those) for role, those in roles.items()})
     for role, those in roles.items():
-        yield from _shuffled(those, f"{seed}:sample")[: sizes[role]]
+        yield from shuffled(those, f"{seed}:sample")[: sizes[role]]
 
 
 def _strata(mutants: Iterable[Mutant]) -> dict[tuple[str, str], list[Mutant]]:
@@ -67,7 +67,7 @@ def _strata(mutants: Iterable[Mutant]) -> dict[tuple[str, str], list[Mutant]]:
     return strata
 
 
-def _shuffled(mutants: Iterable[Mutant], salt: str) -> list[Mutant]:
+def shuffled(mutants: Iterable[Mutant], salt: str) -> list[Mutant]:
     """In an order that each mutant's place depends on by its own id only."""
     return sorted(mutants, key=lambda one: blake2b(f"{salt}:{one.id}".encode(), digest_size=16).digest())
 
