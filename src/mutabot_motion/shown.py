@@ -47,6 +47,11 @@ class Shown:
     ended: tuple[str, str] = ("", "")
 
     @property
+    def name(self) -> str:
+        """What a file of it is called."""
+        return f"mutant-{self.number}-round-{self.round + 1}"
+
+    @property
     def title(self) -> str:
         """Which mutant it is and what it changes."""
         return f"mutant {self.number} · {self.place} · {self.what}"

@@ -12,10 +12,8 @@ from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import refuse_unfit, refuse_unhooked
 from mutabot.campaign.engines.choice import first_engine, repetitions_for
 from mutabot.campaign.faults.providers import prepare
-from mutabot.campaign.plan.plan import make_plan
-from mutabot.campaign.plan.planned import Plan, draw
-from mutabot.campaign.plan.selection import select
-from mutabot.campaign.plan.typos import refuse_typos
+from mutabot.campaign.plan.plan import Plan, draw, make_plan
+from mutabot.campaign.plan.selection import refuse_typos, select
 from mutabot.campaign.workers.descriptors import provide
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptions_kept

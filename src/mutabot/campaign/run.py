@@ -22,7 +22,7 @@ from mutabot.campaign.faults.demanded import demanded_of
 from mutabot.campaign.faults.ladders import apart
 from mutabot.campaign.faults.providers import family_of
 from mutabot.campaign.plan.earlier import carry, note_outdated
-from mutabot.campaign.plan.planned import Plan
+from mutabot.campaign.plan.plan import Plan
 from mutabot.campaign.plan.told import drawing, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles

@@ -15,7 +15,7 @@ import av
 from mutabot.errors import UsageError
 from mutabot.evidence.film import Film
 from mutabot_motion.shown import Shown
-from mutabot_motion.sights import check, written_whole
+from mutabot_motion.sights import written_whole
 
 from .drawn import Drawn
 from .frame import Filmed, Frames, Shots
@@ -24,11 +24,6 @@ from .frame import Filmed, Frames, Shots
 RATE = 25
 #: how long the last frame stays, s
 _HELD = 1.5
-
-
-def check_video(file: Path) -> None:
-    """Raise UsageError if a video cannot be written there."""
-    check(file, "video", ".mp4", b"ftyp", at=4)
 
 
 def show(file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[str]) -> list[str]:

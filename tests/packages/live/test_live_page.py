@@ -12,9 +12,8 @@ import pytest
 
 from analysis import samples
 from mutabot.journal.journal import Journal
-from mutabot_live.feed import Feed
 from mutabot_live.pages import Pages
-from mutabot_live.server import Server
+from mutabot_live.server import Feed, Server
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="requirements-reports.lock is not installed")
 

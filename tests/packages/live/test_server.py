@@ -13,9 +13,8 @@ import pytest
 
 import mutabot
 from mutabot.errors import UsageError
-from mutabot_live.feed import Feed
 from mutabot_live.pages import Pages
-from mutabot_live.server import Server
+from mutabot_live.server import Feed, Server
 from packages.live.visits import ask, command, listening, origin
 from report.html import reports
 

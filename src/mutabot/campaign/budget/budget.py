@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from hashlib import blake2b
 
 from mutabot.border.codec import to_data
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.choice import run_trials
 from mutabot.campaign.engines.engine import Trial
 from mutabot.campaign.faults.ladders import apart
+from mutabot.campaign.plan.plan import shuffled
 from mutabot.campaign.reuse.reuse import Reused
 from mutabot.campaign.search.search import run_ladders
 from mutabot.campaign.sink import Sink
@@ -51,8 +51,8 @@ def in_order(
 
     found: list[Trial] = []
     for round in range(rounds):
-        shuffled = _shuffled(mutants, f"{seed}:budget:{round}")
-        left = [(mutant, round) for mutant in shuffled if (mutant.id, round) not in done]
+        at_random = shuffled(mutants, f"{seed}:budget:{round}")
+        left = [(mutant, round) for mutant in at_random if (mutant.id, round) not in done]
         found += sorted(left, key=rank)
     return found
 
@@ -70,13 +70,9 @@ def _rank(before: Verdict | None, is_changed: bool, is_first: bool) -> int:
 
 def _one_per_site(mutants: Sequence[Mutant], seed: int) -> set[str]:
     chosen: dict[tuple[str, object], str] = {}
-    for mutant in _shuffled(mutants, f"{seed}:site"):
+    for mutant in shuffled(mutants, f"{seed}:site"):
         chosen.setdefault((mutant.family, mutant.site), mutant.id)
     return set(chosen.values())
-
-
-def _shuffled(mutants: Iterable[Mutant], salt: str) -> list[Mutant]:
-    return sorted(mutants, key=lambda one: blake2b(f"{salt}:{one.id}".encode(), digest_size=16).digest())
 
 
 #: the share of the time left that a batch may take, and that of the first, whose cost is a guess

@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.plan.planned import Plan
+from mutabot.campaign.plan.plan import Plan
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.counted import WRITTEN, is_note, own_files
 from mutabot.campaign.reuse.keys import Dependencies, says_same
