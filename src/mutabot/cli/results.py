@@ -26,7 +26,7 @@ def show(
     """Show everything about one mutant."""
     from mutabot.analysis.results import find_mutant, read_results
     from mutabot.analysis.stored.evidence import StoredEvidence
-    from mutabot.analysis.stored.suggested import kept_suggestions
+    from mutabot.analysis.suggested import kept_suggestions
     from mutabot.journal.reader import JournalReader
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.mutant.detail import print_mutant
