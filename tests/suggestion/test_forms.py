@@ -8,15 +8,12 @@ import pytest
 
 from mutabot.campaign.request import Request
 from mutabot.settings.configuration import load_configuration
-from mutabot.suggestion.choosing.bands import band_of
-from mutabot.suggestion.choosing.checks import Check, Expected
-from mutabot.suggestion.measuring.commands import commands_of
-from mutabot.suggestion.measuring.readings import PROBE, WAY, Reading
-from mutabot.suggestion.measuring.watches import watch_of
+from mutabot.suggestion.checks import Check, Expected, band_of
+from mutabot.suggestion.project import Project, diff_of
 from mutabot.suggestion.prove import texts_with
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import diff_of
+from mutabot.suggestion.readings import PROBE, WAY, Reading
 from mutabot.suggestion.styles.choice import place_of
+from mutabot.suggestion.watches import commands_of, watch_of
 from mutabot.vocabulary import load
 
 from .projects import STYLES, make, passes, patched

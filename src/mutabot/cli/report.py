@@ -153,7 +153,7 @@ def _check_folder(folder: Path, *, with_changes: bool) -> None:
 
 def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: str | None) -> None:
     from mutabot.analysis.stored.evidence import StoredEvidence
-    from mutabot.analysis.stored.suggested import kept_suggestions
+    from mutabot.analysis.suggested import kept_suggestions
     from mutabot.report.html.folder import Contents, write_folder
     from mutabot.report.suggested import suggest_from
     from mutabot.report.texts import Cleaner

@@ -44,7 +44,7 @@ def suggest(
 ) -> None:
     """Suggest checks that kill survivors of the last campaign, each proven by running it."""
     from mutabot.analysis.results import read_results
-    from mutabot.analysis.stored.suggested import keep_suggestions
+    from mutabot.analysis.suggested import keep_suggestions
     from mutabot.journal.reader import JournalReader
     from mutabot.report.suggested import print_suggestions, suggested_data
     from mutabot.report.terminal.console import make_console

@@ -13,7 +13,7 @@ from rich.text import Text
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group
 from mutabot.analysis.stored.changes import Changes, Pair
-from mutabot.report.as_json import FORMAT, mutant_data
+from mutabot.report.as_json import FORMAT, facts, mutant_data
 from mutabot.report.status import rounds_text, status_of
 from mutabot.report.terminal.campaign import WIDE
 from mutabot.report.terminal.console import (
@@ -101,20 +101,14 @@ def changes_data(changes: Changes) -> dict[str, Any]:
     """Everything about a comparison with an older campaign."""
     return {
         "format": FORMAT,
-        "old_state": changes.old_state,
-        "new_state": changes.new_state,
-        "notes": list(changes.notes),
+        **facts(changes, "old_state new_state notes"),
         "same_survivors": changes.same,
         "new_survivors": _pairs(changes.appeared),
         "fixed_survivors": _pairs(changes.fixed),
         "changed_survivors": _pairs(changes.changed),
         "unknown_survivors": _pairs(changes.unknown),
-        "gone_mutants": [
-            {**mutant_data(one.mutant), "old": _result(one), "new": None} for one in changes.gone
-        ],
-        "new_mutants": [
-            {**mutant_data(one.mutant), "old": None, "new": _result(one)} for one in changes.added
-        ],
+        "gone_mutants": _pairs(Pair(one, None) for one in changes.gone),
+        "new_mutants": _pairs(Pair(None, one) for one in changes.added),
         "groups": [
             {"family": family, "role": role, "old": _score(old), "new": _score(new)}
             for (family, role), (old, new) in changes.scores.items()
@@ -136,10 +130,8 @@ def _result(result: MutantResult | None) -> dict[str, Any] | None:
     return {
         "status": status.value if status is not None else None,
         "rounds": [one.verdict.value if one is not None else None for one in result.rounds],
-        "killed": result.kill_rate.killed,
-        "valid": result.kill_rate.valid,
-        "indistinguishable": result.indistinguishable,
-        "why": result.why,
+        **facts(result.kill_rate, "killed valid"),
+        **facts(result, "indistinguishable why"),
     }
 
 

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
+from mutabot.report.as_json import facts
 from mutabot.report.terminal.console import heading, plain, plural
 
 
@@ -26,27 +27,15 @@ def suggested_data(found: Suggestions) -> dict[str, Any]:
             {"mutant": _mutant_data(one.mutant, found), "reason": one.reason, "never": one.never}
             for one in found.unsolved
         ],
-        "dropped": [
-            {"test": one.test, "statement": one.statement, "reason": one.reason} for one in found.dropped
-        ],
+        "dropped": [facts(one, "test statement reason") for one in found.dropped],
     }
 
 
 def _suggestion_data(one: Suggestion, found: Suggestions) -> dict[str, Any]:
     return {
-        "test": one.test,
-        "style": one.style,
-        "moment": one.moment,
-        "looks_at": one.looks_at,
-        "statement": one.statement,
-        "tolerance": one.tolerance,
-        "band": one.band,
-        "factor": one.factor,
-        "spread": one.spread,
-        "runs": one.runs,
-        "alarm": one.alarm,
-        "fresh": one.fresh,
-        "unseen": one.unseen,
+        **facts(
+            one, "test style moment looks_at statement tolerance band factor spread runs alarm fresh unseen"
+        ),
         "kills": [
             {"mutant": _mutant_data(mutant, found), "rounds": [round + 1 for round in rounds]}
             for mutant, rounds in one.kills.items()

@@ -14,12 +14,11 @@ from mutabot.campaign.workers.task import Task, death
 from mutabot.errors import MutabotError
 from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Verdict
-from mutabot.suggestion.choosing.checks import Check
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import changed_texts
-from mutabot.suggestion.sources.workspace import copy_of
+from mutabot.suggestion.checks import Check
+from mutabot.suggestion.project import Project, changed_texts
 from mutabot.suggestion.styles.choice import insertions_of
 from mutabot.suggestion.styles.style import Place
+from mutabot.suggestion.workspace import copy_of
 
 
 @dataclass(slots=True)

@@ -9,8 +9,7 @@ import pytest
 
 from analysis import samples
 from mutabot.analysis.results import MutantResult, find_mutant, read_results
-from mutabot.analysis.stored.suggested import keep_suggestions, kept_suggestions
-from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
+from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved, keep_suggestions, kept_suggestions
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
 from mutabot.report.suggested import suggest_from

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,8 +12,8 @@ from mutabot.analysis.stored.evidence import StoredEvidence
 from mutabot.border.codec import to_data
 from mutabot.evidence.recording import Block, Moment, Recording, Told
 from mutabot.model import Looked, Outcome
-from mutabot.model.seen.diverged import Diverged
 from mutabot.model.values.quantity import value_text
+from mutabot.report.as_json import facts
 from mutabot.report.html.thin import thinned
 from mutabot.report.status import rounds_text
 
@@ -61,33 +61,19 @@ def _round(outcome: Outcome | None) -> dict[str, Any] | None:
     if outcome is None:
         return None
     known = {
-        "test": outcome.test,
-        "exception": outcome.exception,
-        "message": outcome.message,
-        "place": outcome.place,
-        "hits": outcome.hits,
-        "acted": outcome.acted,
+        **facts(outcome, "test exception message place hits acted"),
         "away": [[why, count] for why, count in outcome.away.items()],
         "example": [_value(one) for one in outcome.example] if outcome.example is not None else None,
-        "tests": outcome.tests,
-        "wall": outcome.wall,
-        "simulated": outcome.simulated,
-        "divergence": outcome.divergence,
-        "gaps": outcome.gaps,
+        **facts(outcome, "tests wall simulated divergence gaps"),
         "compared": outcome.compared.text if outcome.compared is not None else None,
-        "indistinguishable": outcome.indistinguishable,
-        "engine": outcome.engine,
-        "repeats": outcome.repeats,
-        "stuck": outcome.stuck,
-        "beside": outcome.beside,
+        **facts(outcome, "indistinguishable engine repeats stuck beside"),
         "kills": [[one.test, one.by.value, one.message] for one in outcome.kills[1:]],
-        "diverged": [_diverged(one) for one in outcome.diverged],
+        "diverged": [_told(to_data(one)) for one in outcome.diverged],
     }
-    return {name: value for name, value in known.items() if value not in _NOTHING}
+    return _told(known)
 
 
-def _diverged(diverged: Diverged) -> Any:
-    data = to_data(diverged)
+def _told(data: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in data.items() if value not in _NOTHING}
 
 
@@ -95,13 +81,9 @@ def _looked(result: MutantResult) -> dict[str, Any] | None:
     """The first round that it survived: who ran it, what they checked, and by how much that held."""
     for number, outcome in enumerate(result.rounds):
         if outcome is not None and outcome.looked:
-            return {"round": number, "tests": [_test(one) for one in _by_use(outcome.looked)]}
+            first_of_use = sorted(outcome.looked, key=lambda one: not one.acted)
+            return {"round": number, "tests": [_test(one) for one in first_of_use]}
     return None
-
-
-def _by_use(looked: Iterable[Looked]) -> list[Looked]:
-    """Those in which the mutant did anything first."""
-    return sorted(looked, key=lambda one: not one.acted)
 
 
 def _test(looked: Looked) -> dict[str, Any]:

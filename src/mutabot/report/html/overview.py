@@ -16,6 +16,7 @@ from mutabot.analysis.unlooked import unlooked
 from mutabot.border.codec import to_data
 from mutabot.journal.records import Verification
 from mutabot.model import By, Outcome
+from mutabot.report.as_json import facts
 from mutabot.report.format import place_of, utf16
 from mutabot.report.status import status_of, why_alone
 from mutabot.report.terminal.console import mark_of
@@ -36,11 +37,7 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
     results, rows = campaign.results, Rows(campaign)
     return {
         "name": name,
-        "state": results.state,
-        "attempt": results.attempt,
-        "done": results.done,
-        "planned": results.planned,
-        "rounds": results.rounds,
+        **facts(results, "state attempt done planned rounds"),
         "meta": {key: results.meta[key] for key in _META if key in results.meta},
         "groups": [_group(one) for one in results.groups],
         "operators": dict(campaign.operators),
@@ -65,17 +62,14 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
             "falseKills": _chance(false_kills(results.repeats)),
             "falseSurvivors": _chance(false_survivors(results.repeats)),
         },
-        "drawing": _drawing(campaign),
+        "drawing": facts(results.drawing, "sample selected") if results.drawing is not None else None,
     }
 
 
 def _group(group: Group) -> dict[str, Any]:
     scores, total = group.scores, group.scores.total
     return {
-        "family": group.family,
-        "role": group.role,
-        "mutants": group.mutants,
-        "population": group.population,
+        **facts(group, "family role mutants population"),
         "score": scores.mean,
         "check": scores.mean_check,
         "interval": _ends(scores.interval),
@@ -128,13 +122,6 @@ def _chance(found: Any) -> list[float] | None:
     return [found.expected, found.low, found.high, found.known] if found is not None else None
 
 
-def _drawing(campaign: StoredCampaign) -> dict[str, Any] | None:
-    found = campaign.results.drawing
-    if found is None:
-        return None
-    return {"sample": found.sample, "selected": found.selected}
-
-
 class Rows:
     """Rows that name what they share by numbers.
 
@@ -173,20 +160,15 @@ class Rows:
             "endLine": place.end_line,
             "endColumn": place.end_column,
             "function": span.function,
-            "operation": mutant.operation,
-            "quantity": mutant.quantity,
+            **facts(mutant, "operation quantity"),
             "unit": result.quantity.unit if result.quantity is not None else None,
-            "operator": mutant.operator,
-            "variant": mutant.variant,
-            "family": mutant.family,
+            **facts(mutant, "operator variant family"),
             "role": mutant.site.role.value,
             "description": mutant.description,
             "ends": "".join(mark_of(one).letter for one in result.rounds),
             "status": status.value if status is not None else "not run",
-            "killed": rate.killed,
-            "valid": rate.valid,
-            "worst": result.worst,
-            "indistinguishable": result.indistinguishable,
+            **facts(rate, "killed valid"),
+            **facts(result, "worst indistinguishable"),
             "why": why_alone(result),
             "site": self._site(result),
             "kills": self._kills(result),

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mutabot.analysis.thresholds.comparing import Comparison
 from mutabot.analysis.thresholds.demands import suggested
-from mutabot.analysis.thresholds.floor import Floor
 from mutabot.analysis.thresholds.ladders import Ladder, Step
 from mutabot.analysis.thresholds.rounds import LadderRound
-from mutabot.analysis.thresholds.thresholds import Thresholds
+from mutabot.analysis.thresholds.thresholds import Floor, Thresholds
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.model.graded.demand import OFFSET
-from mutabot.report.as_json import FORMAT, interval_data
+from mutabot.report.as_json import FORMAT, facts, interval_data
 
 
 def thresholds_data(thresholds: Thresholds) -> dict[str, Any]:
@@ -26,54 +24,38 @@ def thresholds_data(thresholds: Thresholds) -> dict[str, Any]:
         "rounds": thresholds.rounds,
         "ladders": [ladder_data(one) for one in thresholds.all],
         "floors": [_floor(one) for one in thresholds.floors],
-        "runs": thresholds.runs,
-        "exhaustive": thresholds.exhaustive,
-        "controls": thresholds.controls,
-        "false_alarms": thresholds.false_alarms,
-        "most_violated": thresholds.most_violated,
+        **facts(thresholds, "runs exhaustive controls false_alarms most_violated"),
     }
 
 
 def ladder_data(ladder: Ladder) -> dict[str, Any]:
     """One ladder."""
-    mutant, span = ladder.mutant, ladder.mutant.site.span
+    mutant = ladder.mutant
     judged = not ladder.why_unjudged
     median = ladder.median if judged else None
     return {
-        "id": ladder.id,
-        "place": ladder.place,
-        "name": ladder.name,
-        "file": span.file,
-        "line": span.line,
-        "function": span.function,
+        **facts(ladder, "id place name"),
+        **facts(mutant.site.span, "file line function"),
         "call": mutant.site.text,
         "role": mutant.site.role.value,
-        "quantity": mutant.quantity,
-        "operator": mutant.operator,
-        "direction": mutant.direction,
-        "unit": ladder.unit,
+        **facts(mutant, "quantity operator direction unit"),
         "magnitudes": list(ladder.sizes),
         "judged": judged,
         "why": ladder.why_unjudged or None,
         "text": line_of(ladder) if judged else None,
         "none_up_to": (ladder.none_up_to or None) if judged else None,
-        "half_from": _end(ladder.half_from) if judged else None,
-        "all_from": _end(ladder.all_from) if judged else None,
+        "half_from": ladder.half_from if judged else None,
+        "all_from": ladder.all_from if judged else None,
         "refused_from": ladder.refused_from if judged else None,
         "rounds_counted": len(ladder.counted),
         "median": None
         if median is None
-        else {"above": median.low or None, "at_most": _end(median.high), "level": median.level},
+        else {"above": median.low or None, "at_most": median.high, "level": median.level},
         "share_shown": ladder.share_shown if judged else None,
         "rounds": [_round(one) for one in ladder.rounds],
         "steps": [_step(one) for one in ladder.steps],
-        "violations": [
-            {"round": one.round + 1, "noticed": one.noticed, "missed": one.missed}
-            for one in ladder.violations
-        ],
-        "better": [
-            {"round": one.round + 1, "magnitude": one.magnitude, "text": one.text} for one in ladder.better
-        ],
+        "violations": [{"round": one.round + 1, **facts(one, "noticed missed")} for one in ladder.violations],
+        "better": [{"round": one.round + 1, **facts(one, "magnitude text")} for one in ladder.better],
         "runs": ladder.runs,
     }
 
@@ -85,9 +67,7 @@ def compared_data(comparison: Comparison) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "why_no_words": comparison.why_no_words or None,
-        "mean": None
-        if mean is None
-        else {"steps": mean.mean, "low": mean.low, "high": mean.high, "level": mean.level},
+        "mean": None if mean is None else {"steps": mean.mean, **facts(mean, "low high level")},
         "improved": comparison.has_improved,
         "ladders": [
             {
@@ -99,8 +79,7 @@ def compared_data(comparison: Comparison) -> dict[str, Any]:
             }
             for one in comparison.ladders
         ],
-        "gone": list(comparison.gone),
-        "added": list(comparison.added),
+        **facts(comparison, "gone added"),
     }
 
 
@@ -121,38 +100,27 @@ def _round(one: LadderRound) -> dict[str, Any]:
 
 def _step(step: Step) -> dict[str, Any]:
     return {
-        "magnitude": step.magnitude,
-        "number": step.number,
-        "noticed": step.noticed,
-        "valid": step.valid,
+        **facts(step, "magnitude number noticed valid"),
         "interval": interval_data(step.interval),
-        "by": dict(step.by),
-        "refused": step.refused,
-        "unknown": step.unknown,
+        **facts(step, "by refused unknown"),
     }
 
 
 def _floor(one: Floor) -> dict[str, Any]:
-    low, high = one.half_width
     return {
         "up": one.up.id,
         "down": one.down.id,
         "unit": one.up.unit,
-        "blind": [_end(end) for end in one.blind],
-        "half_width": [low, _end(high)],
+        "blind": list(one.blind),
+        "half_width": list(one.half_width),
         "bias": [
-            {"round": pair.round + 1, "above": _end(pair.bias[0]), "at_most": _end(pair.bias[1])}
-            for pair in one.pairs
+            {"round": pair.round + 1, "above": pair.bias[0], "at_most": pair.bias[1]} for pair in one.pairs
         ],
         "noise": one.noise,
         "below_noise": one.is_below_noise,
         "false_alarms": one.false_alarms,
         "text": one.text if one.is_below_noise else None,
     }
-
-
-def _end(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 def suggested_toml(ladders: Sequence[Ladder], *, table: str) -> str:

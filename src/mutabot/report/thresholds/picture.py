@@ -1,8 +1,8 @@
 """Thresholds as a picture: a bar per ladder from where no round notices to where all do, on a log scale.
 
 Ladders of a unit share an axis. Left of a bar no round notices, which is the rail; right of it all do, which
-is a pale band. A bar is split from top to bottom by how the rounds ended, as many parts as rounds. Pictures
-are rectangles and texts in pixels, written as SVG.
+is a pale band. A bar is split from top to bottom by how the rounds ended, as many parts as rounds.
+Pictures are rectangles and texts in pixels, written as SVG.
 """
 
 from __future__ import annotations

@@ -11,10 +11,9 @@ from rich.padding import Padding
 from rich.text import Text
 
 from mutabot.analysis.thresholds.comparing import Change, Compared, Comparison
-from mutabot.analysis.thresholds.floor import Floor
 from mutabot.analysis.thresholds.interval import Between
 from mutabot.analysis.thresholds.ladders import Ladder, Step
-from mutabot.analysis.thresholds.thresholds import Thresholds
+from mutabot.analysis.thresholds.thresholds import Floor, Thresholds
 from mutabot.analysis.thresholds.words import amount, line_of, rounds_left_out, violations_in_words
 from mutabot.report.terminal.console import heading, make_table, percent, plain, plural
 

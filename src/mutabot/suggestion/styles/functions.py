@@ -1,29 +1,27 @@
-"""Plain pytest: test functions, and methods of classes that are no ``TestCase``."""
+"""Plain pytest and unittest: test functions, methods of classes, and methods of ``TestCase`` classes."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
 
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import Insertion, imports_of
-
-from .style import (
+from mutabot.suggestion.project import Insertion, Project, imports_of
+from mutabot.suggestion.styles.style import (
     Addition,
     Function,
     Place,
     PlainAsserts,
     arguments_of,
+    class_of,
     end_of,
     functions_of,
     put_at_end,
 )
-from .watching import asked_for, at_start, fixture, helper, watcher
+from mutabot.suggestion.watches import asked_for, at_start, fixture, helper, watcher
 
 
 class _Functions(PlainAsserts):
     name = "pytest"
-    order = 30
 
     def place(self, project: Project, node: str) -> Place | None:
         file, *path = node.split("::")
@@ -76,4 +74,44 @@ def _names(function: Function) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*arguments_of(function), *assigned)))
 
 
-STYLE = _Functions()
+PYTEST = _Functions()
+
+
+class _TestCases:
+    name = "unittest"
+
+    def place(self, project: Project, node: str) -> Place | None:
+        file, *path = node.split("::")
+        module = project.module(file)
+        if module is None or len(path) != 2 or not _is_test_case(module, path[0]):
+            return None
+        found = PYTEST.place(project, node)
+        return Place(self.name, file, node, found.names) if found is not None else None
+
+    def at_end(self, project: Project, additions: Sequence[Addition]) -> list[Insertion]:
+        return at_ends(project, additions, fixtures=False)
+
+    def within(self, text: str, value: str, tolerance: str) -> str:
+        return f"self.assertAlmostEqual({text}, {value}, delta={tolerance})"
+
+    def equal(self, text: str, value: str) -> str:
+        plain = {
+            "True": f"self.assertTrue({text})",
+            "False": f"self.assertFalse({text})",
+            "None": f"self.assertIsNone({text})",
+        }
+        return plain.get(value, f"self.assertEqual({text}, {value})")
+
+    def needs(self, line: str) -> tuple[str, ...]:
+        return ()
+
+
+def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
+    owner = class_of(module, name)
+    bases = [ast.unparse(one) for one in owner.bases] if owner is not None else []
+    return any(
+        base.endswith("TestCase") or (depth > 0 and _is_test_case(module, base, depth - 1)) for base in bases
+    )
+
+
+UNITTEST = _TestCases()

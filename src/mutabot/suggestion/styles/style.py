@@ -1,7 +1,4 @@
-"""The contract of a style of tests, and what all styles share.
-
-A style is one file in this folder that sets ``STYLE``; ``choice`` there asks them in the order of ``order``.
-"""
+"""The contract of a style of tests, and what all styles share."""
 
 from __future__ import annotations
 
@@ -10,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import Insertion
+from mutabot.suggestion.project import Insertion, Project
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -78,11 +74,9 @@ class Style(Protocol):
 
     Attributes:
         name: as people call it.
-        order: who is asked first.
     """
 
     name: str
-    order: int
 
     def place(self, project: Project, node: str) -> Place | None:
         """The place of a test by its node id without parameters; None if it is not of this style."""

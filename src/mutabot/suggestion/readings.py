@@ -11,8 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from mutabot.model import Operation
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import Name, name_in
+from mutabot.suggestion.project import Name, Project, name_in
 from mutabot.suggestion.styles.style import Place, Watch
 
 #: from the one a reader of the tests knows best

@@ -1,12 +1,70 @@
-"""Text that looks after every command on the way of a test, as a fixture or as a helper of a ``TestCase``."""
+"""Looking along the way of a test: after which commands, and the text that does so in a test file."""
 
 from __future__ import annotations
 
+import ast
+import re
 from collections.abc import Sequence
 
-from mutabot.suggestion.sources.texts import Insertion
+from mutabot.suggestion.project import Insertion, Project, name_in
+from mutabot.suggestion.styles.style import Function, Place, Watch, arguments_of
 
-from .style import Function, Watch, arguments_of
+#: module, class (empty for what the module has itself) and name
+Command = tuple[str, str, str]
+
+
+def commands_of(project: Project) -> list[Command]:
+    """The vocabulary's commands; functions also under the names that the program imports them by."""
+    found: dict[Command, None] = {}
+    for operation in project.request.vocabulary.operations:
+        if operation.command and operation.named is None and operation.kind is None:
+            owner, _, name = operation.qualname.rpartition(".")
+            found[operation.module, owner, name] = None
+            if not owner:
+                found.update(dict.fromkeys(_imported(project, operation.module, name)))
+    return list(found)
+
+
+def _imported(project: Project, module: str, name: str) -> list[Command]:
+    found = []
+    for file in project.python_files(project.request.configuration.program):
+        tree = project.module(file)
+        for node in tree.body if tree is not None else ():
+            if isinstance(node, ast.ImportFrom) and node.module == module and not node.level:
+                names = [alias.asname or alias.name for alias in node.names if alias.name == name]
+                found += [(project.import_name(file), "", one) for one in names]
+    return found
+
+
+_OF_COMMANDED = "args[0]"
+
+
+def watch_of(
+    project: Project, commands: Sequence[Command], place: Place, look: str
+) -> tuple[Watch, tuple[str, ...]]:
+    """What looks at this expression after every command, and the imports that it needs.
+
+    An expression of the object that was commanded is looked at after the commands of objects alone.
+    """
+    module = project.module(place.file)
+    assert module is not None
+    found: dict[tuple[str, str], None] = {}
+    needs: list[str] = []
+    for where, owner, name in commands:
+        if not owner and _OF_COMMANDED in look:
+            continue
+        if owner:
+            first, dot, rest = owner.partition(".")
+            holder = name_in(module, where, first, place.names)
+            text = holder.text + dot + rest
+            needs += [holder.needs] if holder.needs else []
+        else:
+            text = where
+            needs.append(f"import {where}")
+        found[text, name] = None
+    parts = re.findall(r"[^\W\d]\w*", look.replace(_OF_COMMANDED, ""))
+    slug = "_".join(dict.fromkeys(parts[-2:])).lower()
+    return Watch(f"seen_{slug}", look, tuple(found)), tuple(dict.fromkeys(needs))
 
 
 def fixture(watch: Watch, *, for_all: bool = False) -> list[str]:

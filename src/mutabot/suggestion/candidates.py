@@ -8,14 +8,12 @@ from dataclasses import replace
 from typing import Any
 
 from mutabot.model.values.steps import step_of
-from mutabot.suggestion.measuring.measure import Measured, Read
-from mutabot.suggestion.measuring.readings import HAND, PROBE, WAY, Reading
-from mutabot.suggestion.measuring.watches import watch_of
-from mutabot.suggestion.sources.project import Project
+from mutabot.suggestion.checks import Band, Check, Expected, band_of, is_number, rounded
+from mutabot.suggestion.measure import Measured, Read
+from mutabot.suggestion.project import Project
+from mutabot.suggestion.readings import HAND, PROBE, WAY, Reading
 from mutabot.suggestion.styles.style import Place
-
-from .bands import Band, band_of, rounded
-from .checks import Check, Expected, is_number
+from mutabot.suggestion.watches import watch_of
 
 #: values a label may have, runs that each must have been seen in, labels and partners that are tried
 _LABELS, _SEEN, _TRIED = 4, 4, 8
@@ -32,16 +30,16 @@ def candidates(project: Project, measured: Measured) -> list[Check]:
 
     Those along the way of a test are for survivors that none at the end of a test would notice.
     """
-    at_ends = list(_all(project, measured, along=False))
+    at_ends = list(_all_checks(project, measured, along=False))
     noticed = {mutant for one in at_ends for mutant in one.margins}
     way = [
         replace(one, margins={key: found for key, found in one.margins.items() if key not in noticed})
-        for one in _all(project, measured, along=True)
+        for one in _all_checks(project, measured, along=True)
     ]
     return [*at_ends, *(one for one in way if one.margins)]
 
 
-def _all(project: Project, measured: Measured, *, along: bool) -> Iterator[Check]:
+def _all_checks(project: Project, measured: Measured, *, along: bool) -> Iterator[Check]:
     for place, originals in measured.originals.items():
         mutants = measured.mutants.get(place, {})
         runs = list(originals.values())

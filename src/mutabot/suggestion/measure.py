@@ -16,14 +16,12 @@ from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.fresh import task
 from mutabot.campaign.request import Progress, Request
 from mutabot.model import Mutant, Probe
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import Insertion, changed_texts
-from mutabot.suggestion.sources.workspace import copy_of
+from mutabot.suggestion.project import Insertion, Project, changed_texts
+from mutabot.suggestion.readings import ORACLE, PROBE, Reading, of_objects, readings_at
 from mutabot.suggestion.styles.choice import insertions_of
 from mutabot.suggestion.styles.style import Addition, Place
-
-from .commands import Command, commands_of
-from .readings import ORACLE, PROBE, Reading, of_objects, readings_at
+from mutabot.suggestion.watches import Command, commands_of
+from mutabot.suggestion.workspace import copy_of
 
 #: what notes readings in the tests' process, and the probe that carries them out of it
 _NOTED = "mutabot.inside.readings.noted"
