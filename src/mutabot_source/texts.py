@@ -65,7 +65,7 @@ def find_places(
         place = seed.place(number, file, finder.extents)
         key = (place.span.function, place.node, place.text)
         counts[key] = counts.get(key, 0) + 1
-        yield _with_occurrence(place, counts[key])
+        yield replace(place, occurrence=counts[key])
         number += 1
 
 
@@ -165,10 +165,6 @@ class _Finder(cst.CSTVisitor):
         seed.alternatives.append(
             Alternative(rule.name, draft.variant, made, text, draft.needs, rule.family, draft.raises)
         )
-
-
-def _with_occurrence(place: TextPlace, occurrence: int) -> TextPlace:
-    return replace(place, occurrence=occurrence)
 
 
 def _decoded(source: bytes) -> str:
