@@ -32,7 +32,8 @@ from mutabot.journal.marks import mark_of
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import REACHING
 from mutabot.journal.schema import COLUMNS
-from mutabot.report.format import Material, format_of
+from mutabot.report.choice import format_of
+from mutabot.report.format import Material
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant.detail import print_mutant

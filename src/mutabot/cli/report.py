@@ -53,14 +53,6 @@ Html = Annotated[
         help="Write pages for a browser into this folder, to be opened from disk: DIR/index.html.",
     ),
 ]
-Old = Annotated[
-    Path | None,
-    typer.Option(
-        "--compare",
-        metavar="OLD",
-        help="Tell what differs from this journal, or a project's folder with one.",
-    ),
-]
 Prefix = Annotated[
     str, typer.Option("--prefix", metavar="FOLDER", help="Folder of the project in its repository.")
 ]
@@ -71,7 +63,7 @@ def report(
     format: Formats = None,
     output: Outputs = None,
     html: Html = None,
-    compare: Old = None,
+    compare: options.Compared = None,
     prefix: Prefix = "",
     json: options.Json = False,
 ) -> None:
@@ -113,14 +105,14 @@ def report(
 
 
 def _names() -> list[str]:
-    from mutabot.report.format import names
+    from mutabot.report.choice import names
 
     return names()
 
 
 def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Format, Path]]:
     """Each format with its file. Raises UsageError if they do not go together."""
-    from mutabot.report.format import format_of
+    from mutabot.report.choice import format_of
 
     if len(files) > len(names) or (len(names) > 1 and len(files) < len(names)):
         raise UsageError(
@@ -155,13 +147,12 @@ def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: st
     from mutabot.analysis.stored.evidence import StoredEvidence
     from mutabot.analysis.suggested import kept_suggestions
     from mutabot.report.html.folder import Contents, write_folder
-    from mutabot.report.suggested import suggest_from
     from mutabot.report.texts import Cleaner
 
     name = Path(root).name if root else ""
     with StoredEvidence(journal) as evidence:
-        suggest = suggest_from(kept_suggestions(journal, campaign.results.meta))
-        written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root), suggest=suggest))
+        suggestions = kept_suggestions(journal, campaign.results.meta)
+        written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root), suggestions))
     lines = [f"mutabot: {written.page}, {written.size / 1e6:.1f} MB in its folder: open it in a browser"]
     if written.without:
         lines.append(

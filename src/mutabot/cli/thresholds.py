@@ -34,14 +34,6 @@ Steps = Annotated[bool, typer.Option("--steps", help="Also what became of each m
 Drawing = Annotated[
     Path | None, typer.Option("--picture", metavar="FILE", help="Also draw a bar for each, as SVG.")
 ]
-Old = Annotated[
-    Path | None,
-    typer.Option(
-        "--compare",
-        metavar="OLD",
-        help="Tell what differs from this journal, or a project's folder with one.",
-    ),
-]
 Suggest = Annotated[
     bool, typer.Option("--suggest-demands", help="Print demands that this campaign meets, as TOML.")
 ]
@@ -52,7 +44,7 @@ def thresholds(
     sort: Sort = "loosest",
     steps: Steps = False,
     picture: Drawing = None,
-    compare: Old = None,
+    compare: options.Compared = None,
     suggest_demands: Suggest = False,
     json: options.Json = False,
 ) -> None:

@@ -8,17 +8,13 @@ special in the format it escapes itself.
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.changes import Changes
-from mutabot.errors import ExtensionError, UsageError, unknown_name_text
-from mutabot.extensions import Part, brought
 from mutabot.model import Span
-from mutabot.report import formats
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +39,18 @@ class Material:
         """Where a span is. ``length`` counts the characters of a part of a line."""
         return place_of(span, self.campaign.source(span.file), length)
 
+    def scores(self) -> list[dict[str, Any]]:
+        """The scores of each family and role."""
+        return [
+            {
+                "family": one.family,
+                "role": one.role,
+                "score": one.scores.mean,
+                "checkScore": one.scores.mean_check,
+            }
+            for one in self.campaign.scores
+        ]
+
 
 @dataclass(frozen=True, slots=True)
 class Format:
@@ -57,35 +65,6 @@ class Format:
     name: str
     make: Callable[[Material], str]
     tells_changes: bool = False
-
-
-def names() -> list[str]:
-    """The names of all formats."""
-    return sorted([*_own(), *_of_packages()])
-
-
-def format_of(name: str) -> Format:
-    """The format of this name. Raises UsageError, with the nearest name, if there is none."""
-    if name in _own():
-        module = importlib.import_module(f"{formats.__name__}.{name.replace('-', '_')}")
-        found: Format = module.FORMAT
-        return found
-    part = _of_packages().get(name)
-    if part is None:
-        raise UsageError(unknown_name_text("format", name, names()))
-    loaded = part.load()
-    if not isinstance(loaded, Format):
-        raise ExtensionError(f"{part.words} is no {Format.__module__}.Format")
-    return loaded
-
-
-def _own() -> list[str]:
-    found = (module.name for module in pkgutil.iter_modules(formats.__path__))
-    return [name.replace("_", "-") for name in found if not name.startswith("_")]
-
-
-def _of_packages() -> Mapping[str, Part]:
-    return brought("formats", _own())
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from rich.console import Console, RenderableType
@@ -164,35 +163,12 @@ def _would_catch(result: MutantResult, found: Suggestions | None) -> Iterator[st
         yield f"`mutabot suggest --only {mutant.number}` looks for one, and proves it"
 
 
-@dataclass(frozen=True, slots=True)
-class SuggestedCheck:
-    """A check that would catch a mutant.
-
-    Attributes:
-        code: the lines to add to the tests.
-        test: node id of the test that they belong to; empty if they are a test of their own.
-        notes: what is known of it, a sentence each: what it was tried on, what else it kills.
-    """
-
-    code: str
-    test: str = ""
-    notes: tuple[str, ...] = ()
-
-
-#: the check for a mutant; None if there is none
-Suggest = Callable[[MutantResult], SuggestedCheck | None]
-
-
-def suggest_from(found: Suggestions | None) -> Suggest | None:
-    """What knows the checks that ``mutabot suggest`` found; None if it was not asked."""
+def check_on_page(result: MutantResult, found: Suggestions | None) -> dict[str, Any] | None:
+    """The check that was suggested for a mutant, as its page has it; None if there is none."""
     if found is None:
         return None
-
-    def suggest(result: MutantResult) -> SuggestedCheck | None:
-        for one in found.suggestions:
-            if result.mutant.id in one.kills:
-                statement, *notes = lines_of(one, found)
-                return SuggestedCheck(statement, one.test, tuple(notes))
-        return None
-
-    return suggest
+    for one in found.suggestions:
+        if result.mutant.id in one.kills:
+            statement, *notes = lines_of(one, found)
+            return {"code": statement, "test": one.test, "notes": notes}
+    return None

@@ -60,15 +60,7 @@ def _config(material: Material) -> dict[str, Any]:
         **{key: results.meta.get(key) for key in ("families", "rounds", "seed", "engine", "order")},
         "state": results.state,
         "outcomes": {"known": results.done, "planned": results.planned},
-        "scores": [
-            {
-                "family": group.family,
-                "role": group.role,
-                "score": group.scores.mean,
-                "checkScore": group.scores.mean_check,
-            }
-            for group in results.groups
-        ],
+        "scores": material.scores(),
         "leftOut": dict(Counter(item.reason for item in results.left_out)),
     }
 

@@ -39,7 +39,7 @@ def make(material: Material) -> str:
                     "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
                     "invocations": [_invocation(material)],
                     "results": [_result(one, material, rules) for one in survivors],
-                    "properties": _scores(material),
+                    "properties": {"state": material.campaign.state, "scores": material.scores()},
                 }
             ],
         }
@@ -125,22 +125,6 @@ def _location(span: Span, material: Material) -> dict[str, Any]:
 def _message(text: str) -> str:
     """Plain text for ``message.text``, in which braces stand for arguments and ``[…](…)`` for a link."""
     return text.replace("{", "{{").replace("}", "}}").replace("](", "] (")
-
-
-def _scores(material: Material) -> dict[str, Any]:
-    groups = material.campaign.scores
-    return {
-        "state": material.campaign.state,
-        "scores": [
-            {
-                "family": one.family,
-                "role": one.role,
-                "score": one.scores.mean,
-                "checkScore": one.scores.mean_check,
-            }
-            for one in groups
-        ],
-    }
 
 
 FORMAT = Format("sarif", make)

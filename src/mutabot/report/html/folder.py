@@ -15,12 +15,12 @@ from typing import Any
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.evidence import StoredEvidence
-from mutabot.border.codec import to_data
+from mutabot.analysis.suggested import Suggestions
 from mutabot.errors import UsageError
 from mutabot.journal.files import REPORT_MARK
 from mutabot.report.html.mutant import Recorded, mutant_page
 from mutabot.report.html.overview import campaign_data
-from mutabot.report.suggested import Suggest
+from mutabot.report.suggested import check_on_page
 
 _MARK_TEXT = (
     "A report of mutabot: open index.html. `mutabot report --html` replaces it, and leaves clips/ alone.\n"
@@ -57,14 +57,14 @@ class Contents:
         name: what the project is called.
         evidence: its recordings.
         clean: makes texts of recordings fit to leave the machine.
-        suggest: what suggests a check for a survivor, if anything does.
+        suggestions: the checks that were suggested for its survivors; None if none were looked for.
     """
 
     campaign: StoredCampaign
     name: str
     evidence: StoredEvidence
     clean: Callable[[str], str]
-    suggest: Suggest | None = None
+    suggestions: Suggestions | None = None
 
 
 def check_folder(folder: Path) -> None:
@@ -119,7 +119,7 @@ def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]]
         number = result.mutant.number
         page = {
             **mutant_page(result),
-            "suggestion": _suggestion(contents, result),
+            "suggestion": check_on_page(result, contents.suggestions),
             "media": clips.get(number, []),
         }
         used += _write(folder / "mutants" / f"{number}.js", f"mutant {number}", page)
@@ -166,11 +166,6 @@ def _recordings(
         one.mutant.number: recorded.count(one) - len(found.get(one.mutant.number, ())) for one in results
     }
     return found, {number: count for number, count in counts.items() if count}
-
-
-def _suggestion(contents: Contents, result: MutantResult) -> Any:
-    found = contents.suggest(result) if contents.suggest is not None else None
-    return to_data(found) if found is not None else None
 
 
 def _clips(folder: Path) -> dict[int, list[str]]:
