@@ -9,7 +9,7 @@ from mutabot.suggestion.candidates import candidates
 from mutabot.suggestion.measure import Measured
 from mutabot.suggestion.project import Project
 from mutabot.suggestion.readings import PROBE, Reading
-from mutabot.suggestion.styles.style import Place
+from mutabot.suggestion.style import Place
 from mutabot.suggestion.survivors import why_unsolved
 
 SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)

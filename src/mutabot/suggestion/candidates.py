@@ -12,7 +12,7 @@ from mutabot.suggestion.checks import Band, Check, Expected, band_of, is_number,
 from mutabot.suggestion.measure import Measured, Read
 from mutabot.suggestion.project import Project
 from mutabot.suggestion.readings import HAND, PROBE, WAY, Reading
-from mutabot.suggestion.styles.style import Place
+from mutabot.suggestion.style import Place
 from mutabot.suggestion.watches import watch_of
 
 #: values a label may have, runs that each must have been seen in, labels and partners that are tried

@@ -25,8 +25,8 @@ from typing import Any, TypeGuard
 
 from mutabot.suggestion.measure import Read
 from mutabot.suggestion.readings import WAY, Reading
+from mutabot.suggestion.style import Addition, Place
 from mutabot.suggestion.styles.choice import style_of
-from mutabot.suggestion.styles.style import Addition, Place
 
 #: of all runs of the original, how many the band holds, and how sure that is
 CONTENT, CONFIDENCE = 0.99999, 0.95

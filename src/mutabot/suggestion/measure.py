@@ -18,8 +18,8 @@ from mutabot.campaign.request import Progress, Request
 from mutabot.model import Mutant, Probe
 from mutabot.suggestion.project import Insertion, Project, changed_texts
 from mutabot.suggestion.readings import ORACLE, PROBE, Reading, of_objects, readings_at
+from mutabot.suggestion.style import Addition, Place
 from mutabot.suggestion.styles.choice import insertions_of
-from mutabot.suggestion.styles.style import Addition, Place
 from mutabot.suggestion.watches import Command, commands_of
 from mutabot.suggestion.workspace import copy_of
 

@@ -16,8 +16,8 @@ from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Verdict
 from mutabot.suggestion.checks import Check
 from mutabot.suggestion.project import Project, changed_texts
+from mutabot.suggestion.style import Place
 from mutabot.suggestion.styles.choice import insertions_of
-from mutabot.suggestion.styles.style import Place
 from mutabot.suggestion.workspace import copy_of
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from mutabot.model import Operation
 from mutabot.suggestion.project import Name, Project, name_in
-from mutabot.suggestion.styles.style import Place, Watch
+from mutabot.suggestion.style import Place, Watch
 
 #: from the one a reader of the tests knows best
 ORACLE, PROBE, HAND, WAY = 0, 1, 2, 3

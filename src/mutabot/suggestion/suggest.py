@@ -19,8 +19,8 @@ from mutabot.suggestion.measure import Measured, measure
 from mutabot.suggestion.project import Project, diff_of
 from mutabot.suggestion.prove import Proof, texts_with
 from mutabot.suggestion.readings import WAY
+from mutabot.suggestion.style import Place
 from mutabot.suggestion.styles.choice import place_of
-from mutabot.suggestion.styles.style import Place
 from mutabot.suggestion.survivors import survivors_of, why_unsolved
 
 #: how often the smallest set is looked for anew because a check of it failed its proof

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 
 from mutabot.suggestion.project import Insertion, Project, name_in
-from mutabot.suggestion.styles.style import Function, Place, Watch, arguments_of
+from mutabot.suggestion.style import Function, Place, Watch, arguments_of
 
 #: module, class (empty for what the module has itself) and name
 Command = tuple[str, str, str]

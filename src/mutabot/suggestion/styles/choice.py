@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from mutabot.suggestion.project import Insertion, Project
+from mutabot.suggestion.style import Addition, Place, Style
 from mutabot.suggestion.styles.functions import PYTEST, UNITTEST
 
 from .scenarios import PYTEST_BDD
-from .style import Addition, Place, Style
 
 #: in the order in which they are asked
 STYLES: tuple[Style, ...] = (UNITTEST, PYTEST_BDD, PYTEST)

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Sequence
 
 from mutabot.suggestion.project import Insertion, Project, imports_of
-from mutabot.suggestion.styles.style import (
+from mutabot.suggestion.style import (
     Addition,
     Function,
     Place,
