@@ -88,10 +88,9 @@ comparison: $(READY)
 	cd benchmarks && ../$(RUN) -m comparison.page \
 	    $(foreach name,paper pick_and_place scales,$(name)=../$(VENV)/$(name).json)
 
-## measure: the cost of an intercepted call, start-up, simulation speed, 200 seeds of each example
+## measure: the cost of an intercepted call, simulation speed, 200 seeds of each example
 bench: $(READY)
 	$(RUN) benchmarks/interception.py
-	$(RUN) benchmarks/process_starts.py
 	$(RUN) benchmarks/instrumentation.py
 	$(RUN) benchmarks/cell_speed.py
 	$(RUN) benchmarks/paper_seeds.py

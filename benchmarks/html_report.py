@@ -31,7 +31,7 @@ from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model import By, Check, Looked, Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.seen.diverged import Apart, Diverged
 from mutabot.report.html.folder import Contents, Written, write_folder
-from mutabot.report.shaping.portable import portable
+from mutabot.report.texts import portable
 
 FILES, LINES, TESTS = 8, 400, 40
 #: s, and moments per s

@@ -19,7 +19,7 @@ from statistics import NormalDist, median
 import numpy as np
 
 from mutabot.analysis.thresholds.interval import median_between
-from mutabot.campaign.search.ladder import LadderSearch
+from mutabot.campaign.search.search import LadderSearch
 from mutabot.model.graded.ladder import Bracket, Seen, bracket_of
 
 CAMPAIGNS = 2000

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import compileall
 import os
 import signal
+import sys
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 
@@ -16,10 +19,26 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Tests interrupt campaigns: a shell that starts us in the background has had interruptions ignored."""
+    """Tests interrupt campaigns: a shell that starts us in the background has had interruptions ignored.
+
+    Tests start a thousand processes that may not write bytecode: it is there before them.
+    """
+    if not hasattr(config, "workerinput"):
+        compileall.compile_dir(Path(__file__).parents[1] / "src", quiet=2)
     if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     config.pluginmanager.register(ProcessorTime(config))
+    config.pluginmanager.register(Bytecode())
+
+
+class Bytecode:
+    """What pytest makes of our files is kept until they change, whatever the environment says."""
+
+    def __init__(self) -> None:
+        self._is_unwanted, sys.dont_write_bytecode = sys.dont_write_bytecode, False
+
+    def pytest_collection_finish(self) -> None:
+        sys.dont_write_bytecode = self._is_unwanted
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -19,9 +19,12 @@ TOOLS = Path(__file__).parents[1] / "tools"
 
 
 def copied(folder: Path, dropped: Mapping[str, str], of: ModuleType = mutabot) -> Path:
-    """The folder, in which now is a copy of a package with these files, by their paths in the package."""
+    """The folder, in which now is a copy of a package with these files, by their paths in the package.
+
+    Its bytecode is copied as well, or every process would compile all of it.
+    """
     package = folder / of.__name__
-    shutil.copytree(Path(str(of.__file__)).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(Path(str(of.__file__)).parent, package)
     for name, code in dropped.items():
         file = package / name
         assert not file.exists()

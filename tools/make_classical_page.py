@@ -26,8 +26,7 @@ compared with those that do ([operators](operators.md)).
 `mutabot run --family classical` (or `text`, or `robot,classical,text`; also for `list` and `check`) plants
 them, as does `families = ["robot", "classical"]` in the configuration. They run in the same engines, are
 judged and reported in the same way, and have scores of their own. Mutants of calls come first and keep their
-numbers. `-o order=2` plants two at once: as many as `pairs` says (200 if not set), chosen by the seed among
-those that one and the same test reaches. What changed in one of the two alone has no effect.
+numbers.
 
 No file is changed for it. While the program is imported, each place with alternatives is compiled as *the
 original, unless an alternative is chosen*, with the lines and columns of your text: tracebacks and

@@ -18,7 +18,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from mutabot.report.picture import svg
+from mutabot.report.thresholds.picture import svg
 
 from .bars import FamilyBar, picture_of
 from .claims import CLAIMS, CONVENTIONAL, Claim, Data, Stance, finding, further, percent, share_text

@@ -8,8 +8,6 @@ ROUNDS = 10_000
 JOBS = 1_024
 #: what every program that reads JSON can hold without loss
 SEED = 2**53 - 1
-#: pairs that --order 2 plants: each is run
-PAIRS = 1_000_000
 #: runs of the original per round
 BASELINES = 1_000
 #: outcomes to look at again: all that there are

@@ -25,7 +25,7 @@ from mutabot.campaign.workers.task import Result, Task
 from mutabot.campaign.workers.workers import Workers
 from mutabot.errors import ClusterError
 
-from .bundle import Bundle
+from .bundle import Bundle, explained, summary, warnings
 from .dispatch import Dispatch, is_for_home
 from .environment import decided, module_folders
 from .link import Link, is_private
@@ -33,7 +33,6 @@ from .local import LocalCluster, address_in
 from .roster import Roster
 from .settings import ClusterSettings
 from .shipping import Shipment
-from .telling import explained, summary, warnings
 from .unit import Ground
 
 #: seconds to wait for those that are there to say who they are, and for a scheduler that is gone

@@ -12,19 +12,18 @@ from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from secrets import token_hex
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from mutabot.border.events import BranchDied, Event
-from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptible
-from mutabot.campaign.workers.pause import Pause
 from mutabot.campaign.workers.task import Result, Task
 
 from . import far
-from .checked import Misfit
-from .link import Link, News, shown
-from .roster import Roster
-from .unit import Answer, Ground, Unit
+from .link import News, shown
+from .unit import Answer, Ground, Misfit, Unit
+
+if TYPE_CHECKING:
+    from .cluster import Cluster
 
 #: how often a unit is tried: at first, and three times elsewhere
 TRIES = 4
@@ -58,37 +57,6 @@ class _Trial:
     lines: list[Event] = field(default_factory=list)
     unit: Unit | None = None
     until: float = 0.0
-
-
-class Cluster(Protocol):
-    """A cluster, as far as it is needed here.
-
-    Attributes:
-        link, roster: the connection, and who is there.
-        pause: while it is on, no unit begins.
-        done: units done since the last connection.
-    """
-
-    @property
-    def home(self) -> Executor:
-        """What runs tasks on this machine."""
-
-    link: Link
-    roster: Roster
-    pause: Pause | None
-    done: int
-
-    def tell(self, text: str) -> None:
-        """Tell the user."""
-
-    def give_up(self, why: str) -> None:
-        """From now on run everything at home."""
-
-    def look_after(self) -> None:
-        """Start again what is gone of workers on this machine."""
-
-    def reconnect(self) -> bool:
-        """Reach a scheduler again that is gone; returns whether that worked."""
 
 
 class Dispatch:

@@ -85,14 +85,10 @@ def differences(here: Mapping[str, str], there: Mapping[str, str]) -> list[str]:
     found = []
     for name in sorted({*here, *there}, key=lambda name: (name not in _FIRST, name)):
         if here.get(name) != there.get(name):
-            ours, theirs = (_shown(versions.get(name)) for versions in (here, there))
+            ours, theirs = (versions.get(name, "missing") for versions in (here, there))
             is_digest = "#" in (here.get(name, " ") + there.get(name, " "))
             found.append(f"{name} is another" if is_digest else f"{name} is {theirs} there, {ours} here")
     return found
 
 
 _FIRST = ("python", "machine", "mutabot")
-
-
-def _shown(version: str | None) -> str:
-    return "missing" if version is None else version

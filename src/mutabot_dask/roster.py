@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 
 from . import far
 from .bundle import Bundle
-from .checked import Misfit
 from .environment import differences
 from .link import Link, News, shown
-from .unit import Introduction
+from .unit import Introduction, Misfit
 
 #: how often a worker may fail to say who it is, or to take the project
 _FAILURES = 3

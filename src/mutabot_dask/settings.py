@@ -18,7 +18,7 @@ from mutabot.settings.table import ProjectFiles, Table
 if TYPE_CHECKING:
     from mutabot.settings.configuration import Configuration
 
-    from .telling import Forecast
+    from .bundle import Forecast
 
 _LOCAL = re.compile(r"local:([0-9]+)")
 _ADDRESS = re.compile(r"(?:tcp|tls)://(?:[^/:]+|\[[0-9a-fA-F:]+\]):0*([0-9]{1,5})")
@@ -95,7 +95,7 @@ class ClusterSettings(ExecutorChoice):
     @classmethod
     def preview(cls, configuration: Configuration) -> Forecast:
         """See ``ExecutorChoice``: what workers are sent."""
-        from .telling import Forecast  # noqa: PLC0415  # it looks at the whole project
+        from .bundle import Forecast  # noqa: PLC0415  # it looks at the whole project
 
         return Forecast.of(configuration)
 

@@ -1,17 +1,189 @@
-"""``mutabot live``: a campaign with a page in a browser."""
+"""``mutabot live``: a campaign with a page.
+
+What it tells goes to the terminal and to browsers, which can pause and stop it.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated, Unpack
+import signal
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import Annotated, Any, Self, Unpack
 
 import typer
 
+from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.run import run_campaign
+from mutabot.campaign.workers.pause import Pause
 from mutabot.cli import options
 from mutabot.cli.campaign import show_end
 from mutabot.cli.output import tell
 from mutabot.cli.request import request_of
+from mutabot.report.terminal.progress import Pace
+from mutabot.report.texts import legible
 
-from .live import Live
+from .pages import Pages
+from .server import Feed, Server
+
+#: seconds that pages get for what was found last, when the command ends at once; and to be loaded again
+_FAREWELL, _AGAIN = 1.5, 3.0
+_TICK = 0.1
+
+
+class Live:
+    """Campaigns run by it have a page; use as a context manager, and ``run`` in the main thread.
+
+    After a campaign that has run to its end it stays as long as a browser shows the page, or until Ctrl-C.
+
+    Args:
+        request: what the campaign is asked.
+        port: of this machine; 0 for any that is free.
+        tell: told on the way what the user should know.
+
+    Raises UsageError if the port cannot be had.
+    """
+
+    def __init__(self, request: Request, port: int, tell: Callable[[str], None]) -> None:
+        self._request, self._tell = request, tell
+        self._feed, self._pause = Feed(), Pause()
+        self._told = _Told(self._feed, self._pause)
+        pages = Pages(request.journal_path, request.root.resolve().name, lambda: self._told.steps)
+        self._told.pages = pages
+        commands = {"pause": self._begin_pause, "resume": self._end_pause, "stop": _stop}
+        self._server = Server(pages, self._feed, commands, port)
+
+    @property
+    def address(self) -> str:
+        """Where a browser finds the page."""
+        return self._server.address
+
+    def __enter__(self) -> Self:
+        self._told.tell()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            if self._told.ended == "complete":
+                self._stay()
+            else:
+                self._wait(time.monotonic() + _FAREWELL, 0.0)
+        except KeyboardInterrupt:
+            pass
+        finally:
+            self._feed.close()
+            self._server.close()
+            self._pause.__exit__(kind, error, trace)
+
+    def run(self, progress: Progress) -> Path:
+        """The campaign; like ``run_campaign``."""
+        self._told.progress = progress
+        try:
+            path = run_campaign(replace(self._request, pause=self._pause), self._told)
+        except BaseException as error:
+            self._told.end("interrupted" if isinstance(error, KeyboardInterrupt) else str(error))
+            raise
+        self._told.end("complete")
+        return path
+
+    def _stay(self) -> None:
+        if self._feed.is_listened_to(0.0):
+            self._tell("the page stays as long as a browser shows it; Ctrl-C ends it")
+        self._wait(None, _AGAIN)
+
+    def _wait(self, until: float | None, seconds: float) -> None:
+        while self._feed.is_listened_to(seconds) and (until is None or time.monotonic() < until):
+            time.sleep(_TICK)
+
+    def _begin_pause(self) -> None:
+        if not self._told.ended and self._pause.begin():
+            self._told.note("paused from the page: what is at work ends, nothing new begins")
+            self._told.tell()
+
+    def _end_pause(self) -> None:
+        if self._pause.end():
+            self._told.note("going on")
+            self._told.tell()
+
+
+def _stop() -> None:
+    """Like Ctrl-C, in the thread that Python tells of it."""
+    main = threading.main_thread().ident
+    assert main is not None
+    signal.pthread_kill(main, signal.SIGINT)
+
+
+class _Told:
+    """A progress that also tells the feed.
+
+    Attributes:
+        progress: what shows it on the terminal, once there is anything to show.
+        pages: what browsers ask for.
+        steps: how many things happened since the journal is this campaign's; 0 before.
+        ended: how the campaign ended; empty before.
+    """
+
+    pages: Pages
+
+    def __init__(self, feed: Feed, pause: Pause) -> None:
+        self._feed, self._pause = feed, pause
+        self._lock = threading.Lock()
+        self._stage, self._line, self._pace = "", "", Pace(clock=pause.clock)
+        self.progress: Progress | None = None
+        self.steps, self.ended = 0, ""
+
+    def stage(self, text: str, total: int | None = None) -> None:
+        """A new stage begins."""
+        if self.progress is not None:
+            self.progress.stage(text, total)
+        self._stage, self._line, self._pace = text, "", Pace(total, self._pause.clock)
+        self.steps += 1
+        self.tell()
+
+    def advance(self, line: str | None = None) -> None:
+        """One step is done."""
+        if self.progress is not None:
+            self.progress.advance(line)
+        self._line = legible(line or "")
+        self._pace.advance()
+        self.steps += 1
+        self.tell()
+
+    def note(self, text: str) -> None:
+        """Something the user should know."""
+        if self.progress is not None:
+            self.progress.note(text)
+        self._feed.note(legible(text))
+
+    def end(self, how: str) -> None:
+        """It has ended."""
+        self.ended = legible(how)
+        self.steps += 1
+        self.pages.look_at_once()
+        self.tell()
+
+    def tell(self) -> None:
+        """Tell the state as it is now."""
+        with self._lock:
+            pace = self._pace
+            state: dict[str, Any] = {
+                "stage": self._stage,
+                "line": self._line,
+                "done": pace.done,
+                "total": pace.total,
+                "left": None if pace.left is None else round(pace.left, 1),
+                "paused": self._pause.is_on,
+                "ended": self.ended,
+                "version": self.steps,
+                "every": self.pages.every,
+            }
+            self._feed.put(state)
+
 
 Port = Annotated[
     int | None,

@@ -15,16 +15,14 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.analysis.results import MutantResult
-from mutabot.analysis.stored.campaign import BEHIND, StoredCampaign
+from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.campaign import open as open_campaign
 from mutabot.analysis.stored.evidence import StoredEvidence
 from mutabot.errors import JournalError
-from mutabot.report.html.mutant import mutant_page
+from mutabot.report.html.folder import script_of
+from mutabot.report.html.mutant import Recorded, mutant_page
 from mutabot.report.html.overview import campaign_data
-from mutabot.report.html.recorded import Recorded
-from mutabot.report.html.scripts import script_of
-from mutabot.report.shaping.portable import portable
-from mutabot.report.shaping.texts import Cleaner
+from mutabot.report.texts import Cleaner, portable
 
 #: seconds between two looks into the journal, at least; and how many times as long as one takes
 _LEAST, _TIMES = 1.0, 20.0
@@ -80,7 +78,6 @@ class Pages:
         self._snapshot = _Snapshot(0, None, Cleaner(None))
         self._scripts: dict[str, bytes] = {}
         self._recorded: Recorded | None = None
-        self._newest, self._since = 0, 0.0
         self._next = 0.0
         self.every = _LEAST
 
@@ -103,18 +100,13 @@ class Pages:
         """The campaign has ended: the next who asks gets all of it."""
         with self._lock:
             self._next = 0.0
-            self._newest, self._since = self._version(), float("-inf")
 
     def _look(self) -> _Snapshot:
         """The campaign, as new as may be: reading must not take the time of those who do the work."""
         version, now = self._version(), time.monotonic()
-        if version != self._newest:
-            self._newest, self._since = version, now
         if version == self._snapshot.version or now < self._next:
             return self._snapshot
-        # Outcomes wait to be written together: what came last may not be in the journal yet.
-        surely = version if now - self._since > BEHIND else version - 1
-        self._snapshot = _Snapshot(surely, *self._read())
+        self._snapshot = _Snapshot(version, *self._read())
         self._scripts.clear()
         took = time.monotonic() - now
         self.every = max(_LEAST, _TIMES * took)

@@ -15,31 +15,15 @@ from foxglove import channels, messages
 from mutabot.evidence.recording import Block
 from mutabot.evidence.tracks import Path as Way
 
-from .events import Weight, events
-from .shown import BLOCK, COLOURS, Shown, things_in, values_in
-from .target import check, written_whole
+from .shown import BLOCK, COLOURS, Shown, Weight, events, things_in, values_in
 
-_MAGIC = b"\x89MCAP0\r\n"
+READER = "Foxglove"
 _WORLD = "world"
 #: m
 _LINE, _DOT = 0.006, 0.024
 
 
-class Mcap:
-    """A file of MCAP. Raises UsageError if it cannot be written."""
-
-    def __init__(self, file: Path) -> None:
-        self._file = file
-        check(file, "recording", ".mcap", _MAGIC)
-
-    def show(self, shown: Shown) -> str:
-        """See ``Sight``."""
-        with written_whole(self._file) as part:
-            write_mcap(part, shown)
-        return f"{self._file}: {self._file.stat().st_size / 1e3:.0f} kB for Foxglove"
-
-
-def write_mcap(file: Path, shown: Shown) -> None:
+def write(file: Path, shown: Shown) -> None:
     """Write what is recorded; the times are those of the clock of the recording, from 0 on."""
     context = foxglove.Context()
     file.unlink(missing_ok=True)

@@ -20,41 +20,17 @@ from mutabot.errors import UsageError
 from mutabot.evidence.recording import Block, Kind, Recording
 from mutabot.evidence.tracks import Path as Way
 
-from .events import Weight, events
-from .shown import BLOCK, COLOURS, Shown, things_in, values_in
-from .target import check, has_screen, written_whole
+from .shown import BLOCK, COLOURS, Shown, Weight, events, things_in, values_in
+from .sights import has_screen
 
-_MAGIC = b"RRF2"
+READER = "Rerun"
 #: seconds after which a viewer that cannot begin has ended
 _BEGINNING = 4.0
 #: m: half the width of paths, and what stands for things without a size
 _LINE, _DOT, _AXIS = 0.003, 0.012, 0.06
 
 
-class Rrd:
-    """A file for Rerun. Raises UsageError if it cannot be written, or the viewer not be opened.
-
-    Args:
-        home: where it goes if the user names no file.
-        file: the file that the user names.
-        opens: whether to open the viewer.
-    """
-
-    def __init__(self, home: Path, file: Path | None, *, opens: bool) -> None:
-        self._home, self._file, self._opens = home, file, opens
-        if file is not None:
-            check(file, "recording", ".rrd", _MAGIC)
-
-    def show(self, shown: Shown) -> str:
-        """See ``Sight``."""
-        file = self._file or self._home / f"mutant-{shown.number}-round-{shown.round + 1}.rrd"
-        with written_whole(file) as part:
-            write_rrd(part, shown)
-        said = f"{file}: {file.stat().st_size / 1e3:.0f} kB for Rerun"
-        return f"{said}; {open_viewer(file, self._home)}" if self._opens else said
-
-
-def write_rrd(file: Path, shown: Shown) -> None:
+def write(file: Path, shown: Shown) -> None:
     """Write what is recorded, with the layout in which it is to be seen."""
     about = "\n\n".join(f"**{name}** {text}" for name, text in shown.about.items())
     name = f"mutant {shown.number}, round {shown.round + 1}: {shown.test}"

@@ -1,10 +1,13 @@
-"""What is shown: one test, of the original and of a mutant, and what is said of it."""
+"""What is shown: one test, of the original and of a mutant, what is said of it, and what happened in it."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
 
-from mutabot.evidence.recording import Block, Kind, Recording
+from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told
 from mutabot.evidence.tracks import Path, paths_of
 
 #: of both sides: red, green and blue that people with any kind of sight tell apart
@@ -42,6 +45,11 @@ class Shown:
     story: str = ""
     apart: float | None = None
     ended: tuple[str, str] = ("", "")
+
+    @property
+    def name(self) -> str:
+        """What a file of it is called."""
+        return f"mutant-{self.number}-round-{self.round + 1}"
 
     @property
     def title(self) -> str:
@@ -100,3 +108,64 @@ def things_in(recording: Recording) -> list[tuple[str, Path]]:
 def values_in(recording: Recording) -> list[tuple[str, Path]]:
     """What has a value over time, with its name."""
     return [(name, way) for name, way in paths_of(recording).items() if way.track.kind is Kind.VALUE]
+
+
+_TOUCH = {"touch": "{} touch", "part": "{} no longer touch"}
+
+
+class Weight(IntEnum):
+    """How much a line says."""
+
+    READING = 0
+    COMMAND = 1
+    FAULT = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One line.
+
+    Attributes:
+        time: s.
+        text: what happened.
+        weight: how much it says.
+        file, line: where in the program; empty and 0 if it is nowhere there.
+    """
+
+    time: float
+    text: str
+    weight: Weight = Weight.COMMAND
+    file: str = ""
+    line: int = 0
+
+
+def events(shown: Shown, recording: Recording) -> list[Event]:
+    """All of one side, in the order of their times; calls without a time are left out."""
+    found = [_call(one) for one in recording.calls if one.began is not None]
+    found += [Event(one.time, _moment(one)) for one in recording.moments]
+    if recording.fault is not None:
+        found.append(Event(recording.fault, f"FAULT: {shown.what}", Weight.FAULT))
+    return sorted(found, key=lambda one: one.time)
+
+
+def _call(call: Told) -> Event:
+    assert call.began is not None
+    file, _, line = call.place.rpartition(":")
+    name = call.pattern or call.operation.rpartition(":")[2]
+    read = f"reads {_values(call.read)}" if call.read else ""
+    written = {part: value for part, value in call.written.items() if value != 0} or call.written
+    said = " ".join(part for part in (name, _values(written), read) if part)
+    weight = Weight.COMMAND if call.written or not call.read else Weight.READING
+    return Event(call.began, said, weight, file, int(line) if line.isdigit() else 0)
+
+
+def _values(values: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name}={_number(value)}" for name, value in values.items())
+
+
+def _number(value: Any) -> str:
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
+
+
+def _moment(moment: Moment) -> str:
+    return _TOUCH.get(moment.what, "{}").format(moment.text.replace(", ", " and "))

@@ -1,11 +1,18 @@
-"""The ways to look at what is recorded, as they are asked for. Each needs an extra of its own."""
+"""The ways to look at what is recorded, as they are asked for. Each needs an extra of its own.
+
+A file is refused before anything runs, and there only when it is whole.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from mutabot.errors import UsageError
 
@@ -20,24 +27,44 @@ _NEEDS = {
 }
 
 
-class Sight(Protocol):
-    """One way to look at it. It is made before anything is read: UsageError says that it cannot be done."""
+#: of files, by the end of their names: what they are, and the bytes that each has from a place on
+_FILES = {
+    ".rrd": ("recording", 0, b"RRF2"),
+    ".mcap": ("recording", 0, b"\x89MCAP0\r\n"),
+    ".mp4": ("video", 4, b"ftyp"),
+}
 
-    def show(self, shown: Shown) -> str:
-        """Do it. Returns what there is now, in words. Raises UsageError where it fails."""
+#: one way to look at it: says what there is now, in words, and raises UsageError where it fails
+Sight = Callable[[Shown], str]
 
 
 def sights_of(home: Path, *, view: bool, rerun: bool, rrd: Path | None, mcap: Path | None) -> Iterator[Sight]:
-    """Those that are asked for. Raises UsageError for one that cannot be done here.
+    """Those that are asked for, before anything is read. Raises UsageError for one that cannot be done here.
 
-    ``home``: the project's folder of mutabot.
+    ``home``: the project's folder of mutabot, for a file that the user does not name.
     """
     if rerun or rrd is not None:
-        yield module("rrd").Rrd(home, rrd, opens=rerun)
+        of_rerun = module("rrd")
+        if rrd is not None:
+            check(rrd, ".rrd")
+        opened = partial(of_rerun.open_viewer, home=home) if rerun else None
+        yield lambda shown: written(of_rerun, rrd or home / f"{shown.name}.rrd", shown, opened)
     if mcap is not None:
-        yield module("mcap").Mcap(mcap)
+        of_mcap = module("mcap")
+        check(mcap, ".mcap")
+        yield partial(written, of_mcap, mcap)
     if view:
-        yield module("view").Viewer()
+        viewer = module("view")
+        viewer.need_screen()
+        yield viewer.show
+
+
+def written(target: Any, file: Path, shown: Shown, opened: Callable[[Path], str] | None = None) -> str:
+    """Write a recording by a module of this package, and open what shows it; says what there is now."""
+    with written_whole(file) as part:
+        target.write(part, shown)
+    said = f"{file}: {file.stat().st_size / 1e3:.0f} kB for {target.READER}"
+    return f"{said}; {opened(file)}" if opened is not None else said
 
 
 def module(name: str) -> Any:
@@ -48,3 +75,42 @@ def module(name: str) -> Any:
     except ImportError as error:
         install = f"pip install 'path/to/mutabot[{extra}]'"
         raise UsageError(f"{needs} {library}, not installed here: {install}") from error
+
+
+def check(file: Path, suffix: str) -> None:
+    """Raise UsageError if a file of this kind cannot be written there; no other file is written over."""
+    what, at, magic = _FILES[suffix]
+    cannot = f"the {what} {file} cannot be written"
+    if file.suffix.lower() != suffix:
+        raise UsageError(f"{cannot}: its name must end in {suffix}")
+    if file.is_dir():
+        raise UsageError(f"{cannot}: it is a folder")
+    if not file.parent.is_dir():
+        raise UsageError(f"{cannot}: there is no folder {file.parent}")
+    if not os.access(file.parent, os.W_OK):
+        raise UsageError(f"{cannot}: the folder {file.parent} is read-only")
+    if file.exists() and not _begins(file, magic, at):
+        raise UsageError(f"{cannot}: there is another file of that name, which is no {what}")
+
+
+def _begins(file: Path, magic: bytes, at: int) -> bool:
+    with file.open("rb") as opened:
+        return opened.read(at + len(magic))[at:] == magic
+
+
+@contextmanager
+def written_whole(file: Path) -> Iterator[Path]:
+    """Where to write: beside the file, whose place it takes when all is written; else nothing is left."""
+    part = file.with_name(f".{file.stem}.part{file.suffix}")
+    try:
+        yield part
+        part.replace(file)
+    except OSError as error:
+        raise UsageError(f"{file} cannot be written: {error.strerror or error}") from error
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def has_screen() -> bool:
+    """Whether a window can be opened."""
+    return sys.platform != "linux" or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -23,7 +23,7 @@ from mutabot.evidence.tracks import Path as Way
 
 from .pictures.lettering import letters_of_english
 from .shown import BLOCK, COLOURS, Shown, end_of, things_in
-from .target import has_screen
+from .sights import has_screen
 
 #: how much of each side is seen
 _OPACITY = {"original": 0.4, "mutant": 1.0}
@@ -39,25 +39,24 @@ _BEGINNING = 1.0
 _SPACE, _RIGHT, _LEFT, _HOME = 32, 262, 263, 268
 
 
-class Viewer:
-    """MuJoCo's viewer. Raises UsageError where there is no screen, or no MuJoCo."""
+def need_screen() -> None:
+    """Raise UsageError where there is no screen."""
+    if not has_screen():
+        raise UsageError(
+            "--view needs a screen, and there is none (DISPLAY is not set); --video FILE.mp4, "
+            "--rrd FILE.rrd and --mcap FILE.mcap do without"
+        )
 
-    def __init__(self) -> None:
-        if not has_screen():
-            raise UsageError(
-                "--view needs a screen, and there is none (DISPLAY is not set); --video FILE.mp4, "
-                "--rrd FILE.rrd and --mcap FILE.mcap do without"
-            )
 
-    def show(self, shown: Shown) -> str:
-        """See ``Sight``. It ends when the window is closed."""
-        stage = Stage(shown)
-        if not stage.things:
-            raise UsageError(
-                "--view has nothing to show: no simulator tells where things are, see docs/motion.md"
-            )
-        _watch(stage)
-        return "the window was closed"
+def show(shown: Shown) -> str:
+    """Show it until the window is closed. Raises UsageError if there is nothing to show."""
+    stage = Stage(shown)
+    if not stage.things:
+        raise UsageError(
+            "--view has nothing to show: no simulator tells where things are, see docs/motion.md"
+        )
+    _watch(stage)
+    return "the window was closed"
 
 
 class Stage:

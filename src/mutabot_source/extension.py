@@ -1,9 +1,15 @@
-"""What this package brings."""
+"""What this package brings to mutabot: its provider of faults in the program text, and its families."""
 
 from __future__ import annotations
 
 from mutabot.extensions import INTERFACE, Extension
 
-from .families import PROVIDER
+PROVIDER = "source"
+
+CLASSICAL = "classical"
+TEXT = "text"
+#: in the order of their numbers
+OF_TEXT = (CLASSICAL, TEXT)
+
 
 EXTENSION = Extension(interface=INTERFACE, faults={PROVIDER: "mutabot_source.provider:SourceFaults"})

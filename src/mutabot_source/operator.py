@@ -17,7 +17,7 @@ import libcst as cst
 from mutabot.model.alternative import Alternative
 from mutabot.operators.rule import Rule
 
-from .families import CLASSICAL
+from .extension import CLASSICAL
 
 #: what the helper object is called in templates; an operator may call, and names what it raises by itself:
 #: ``absolute(value)``, whatever the program calls ``abs``; ``fail(name, text)``, which raises; and
@@ -80,6 +80,11 @@ class Example:
     kinds: Mapping[str, str] = field(default_factory=dict)
     variables: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     note: str = ""
+
+
+def each(program: str, texts: str) -> tuple[str, ...]:
+    """The same program with each of several texts, set apart by commas, in the place of ``{}``."""
+    return tuple(program.format(text) for text in texts.split(", "))
 
 
 class ClassicalOperator(Rule):

@@ -17,7 +17,7 @@ from mutabot.languages.registry import program_files
 from mutabot.model.alternative import ProgramText
 from mutabot.model.place import Place
 
-from .families import OF_TEXT, PROVIDER
+from .extension import OF_TEXT, PROVIDER
 
 if TYPE_CHECKING:
     from .operator import ClassicalOperator
@@ -61,8 +61,7 @@ class SourceFaults(FaultProvider):
         """The alternatives that can run and fit the types that were seen."""
         if not prepared.texts:
             return Planned()
-        from .mutants import plant, planted_of
-        from .refine import merge, refine
+        from .refine import merge, plant, planted_of, refine
 
         seen = [seen for _, seen in sorted(original.text.items())]
         why = _why_not_instrumented(prepared.texts, seen)

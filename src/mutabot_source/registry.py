@@ -11,7 +11,7 @@ from mutabot.errors import OperatorError, unknown_name_text
 from mutabot.operators.registry import classes_in, modules_in
 from mutabot.operators.rule import in_order
 
-from .families import OF_TEXT
+from .extension import OF_TEXT
 from .operator import ClassicalOperator
 
 _PACKAGE = f"{__package__}.operators"

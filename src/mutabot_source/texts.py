@@ -21,12 +21,10 @@ from mutabot.model.alternative import Alternative, Extent, ProgramText, TextPlac
 from mutabot.model.site import Span
 
 from . import registry
-from .extents import Extents
-from .families import CLASSICAL
+from .extension import CLASSICAL
 from .index import Found, Index
+from .nodes import Extents, is_variable, shortened, shown, surroundings, template
 from .operator import ClassicalOperator, Draft
-from .rendering import shortened, shown, template
-from .surroundings import is_variable, surroundings
 
 #: characters of the longest expression that is worth an alternative; tables are longer
 LONGEST = 1000
@@ -67,7 +65,7 @@ def find_places(
         place = seed.place(number, file, finder.extents)
         key = (place.span.function, place.node, place.text)
         counts[key] = counts.get(key, 0) + 1
-        yield _with_occurrence(place, counts[key])
+        yield replace(place, occurrence=counts[key])
         number += 1
 
 
@@ -167,10 +165,6 @@ class _Finder(cst.CSTVisitor):
         seed.alternatives.append(
             Alternative(rule.name, draft.variant, made, text, draft.needs, rule.family, draft.raises)
         )
-
-
-def _with_occurrence(place: TextPlace, occurrence: int) -> TextPlace:
-    return replace(place, occurrence=occurrence)
 
 
 def _decoded(source: bytes) -> str:

@@ -14,7 +14,7 @@ from comparison.data import comparison_data
 from comparison.ends import End
 from comparison.families import FamilyComparison, compare_families
 from mutabot.report.as_json import dumps
-from mutabot.report.picture import Rectangle, svg
+from mutabot.report.thresholds.picture import Rectangle, svg
 
 from . import campaigns
 

@@ -49,21 +49,20 @@ def test_without_checks_only_exceptions_kill(tmp_path: Path, monkeypatch: pytest
     inverted = "mission.py:near:1 / (x - 0.5) < 0#1:UOI=not"
     program = "mission.py:near:x >= 0#1:UOI=not"  # an assertion of the program is none of the tests'
     bomb = "mission.py:near:return 1 / (x - 0.5) < 0#1:BSR"
-    for engine in ("auto", "replay"):
-        wanted = {
-            "engine": engine,
-            "families": ("classical",),
-            "only": (inverted, program, bomb),
-            "fresh": True,
-        }
-        checked = ends(request_for(project, **wanted))
-        request, variables = switched_off(request_for(project, **wanted))
-        with monkeypatch.context() as patch:
-            for name, value in variables.items():
-                patch.setenv(name, value)
-            unchecked = ends(request)
-        assert checked.keys() == unchecked.keys()
-        assert not [mutant for mutant, one in unchecked.items() if one.by is By.CHECK]
-        assert (checked[inverted].by, unchecked[inverted].verdict) == (By.CHECK, Verdict.SURVIVED)
-        assert (unchecked[program].verdict, unchecked[program].by) == (Verdict.KILLED, By.EXCEPTION)
-        assert unchecked[bomb].verdict is Verdict.KILLED
+    wanted = {
+        "engine": "auto",
+        "families": ("classical",),
+        "only": (inverted, program, bomb),
+        "fresh": True,
+    }
+    checked = ends(request_for(project, **wanted))
+    request, variables = switched_off(request_for(project, **wanted))
+    with monkeypatch.context() as patch:
+        for name, value in variables.items():
+            patch.setenv(name, value)
+        unchecked = ends(request)
+    assert checked.keys() == unchecked.keys()
+    assert not [mutant for mutant, one in unchecked.items() if one.by is By.CHECK]
+    assert (checked[inverted].by, unchecked[inverted].verdict) == (By.CHECK, Verdict.SURVIVED)
+    assert (unchecked[program].verdict, unchecked[program].by) == (Verdict.KILLED, By.EXCEPTION)
+    assert unchecked[bomb].verdict is Verdict.KILLED

@@ -358,21 +358,6 @@ def test_every_test_that_notices_is_known_when_asked_for(tmp_path: Path, engine:
     assert [kill.test.rpartition("::")[2] for kill in one.kills] == ["test_far"]
 
 
-@pytest.mark.whole
-@pytest.mark.parametrize("engine", ["auto", "replay"])
-def test_two_mutants_at_once_count_only_if_both_act(project: Path, engine: str) -> None:
-    wanted = {"families": ("robot", "classical"), "order": 2, "pairs": 8, "fresh": True}
-    ends = run(project, engine=engine, only=ONLY, **wanted)
-    assert len(ends) == 8
-    assert all("+" in mutant for mutant in ends)
-    idle = [one for one in ends.values() if one.verdict is Verdict.NO_EFFECT]
-    assert any("of the two" in (one.message or "") for one in idle)
-    assert {one.verdict for one in ends.values()} >= {Verdict.KILLED, Verdict.NO_EFFECT}
-
-
-ONLY = ("mission.py:right:*", "mission.py:<module>:*")
-
-
 @ENGINES
 def test_controls_run_in_the_program_text_as_well(project: Path, engine: str) -> None:
     request = request_for(project, families=("classical",), only=("mission.py:right:*",), engine=engine)

@@ -10,7 +10,7 @@ from mutabot.errors import MutabotError
 from mutabot.model import By, Outcome, Verdict
 from tests.campaign.project import REPLAY, run, write_project
 
-pytestmark = pytest.mark.usefixtures("plugins")
+WITH_PLUGINS = pytest.mark.usefixtures("plugins")
 
 MISSION = """
     def go(arm):
@@ -70,6 +70,7 @@ def is_killed_by_the_test(outcome: Outcome) -> bool:
     return outcome.verdict is Verdict.KILLED and outcome.by is By.CHECK
 
 
+@WITH_PLUGINS
 @pytest.mark.parametrize("engine", ["branch", REPLAY])
 @pytest.mark.parametrize("more", ["", "-p xdist -p pytest_cov.plugin -p no:cacheprovider -d"])
 def test_options_settings_markers_fixtures_and_hooks_of_plugins_are_accepted_and_without_effect(
@@ -82,6 +83,7 @@ def test_options_settings_markers_fixtures_and_hooks_of_plugins_are_accepted_and
     assert not list(tmp_path.glob(".coverage*"))
 
 
+@WITH_PLUGINS
 def test_options_may_come_from_the_environment_and_name_plugins_of_the_project(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -102,11 +104,6 @@ def test_options_may_come_from_the_environment_and_name_plugins_of_the_project(
         ),
         (
             TESTS,
-            {"pytest.ini": "[pytest]\nrequired_plugins = pytest-nowhere pytest-xdist\n"},
-            "Missing required plugins: pytest-nowhere",
-        ),
-        (
-            TESTS,
             {"pytest.ini": "[pytest]\naddopts = --strict-config\nnonsense = 3\n"},
             "Unknown config option: nonsense",
         ),
@@ -123,7 +120,17 @@ def test_options_may_come_from_the_environment_and_name_plugins_of_the_project(
 def test_where_tests_cannot_be_run_pytests_own_message_is_shown(
     tmp_path: Path, tests: str, files: dict[str, str], said: str
 ) -> None:
+    check_what_is_said(tmp_path, tests, files, said)
+
+
+@WITH_PLUGINS
+def test_a_plugin_that_is_required_and_not_installed_is_named(tmp_path: Path) -> None:
+    files = {"pytest.ini": "[pytest]\nrequired_plugins = pytest-nowhere pytest-xdist\n"}
+    check_what_is_said(tmp_path, TESTS, files, "Missing required plugins: pytest-nowhere")
+
+
+def check_what_is_said(folder: Path, tests: str, files: dict[str, str], said: str) -> None:
     with pytest.raises(MutabotError) as caught:
-        run(write_project(tmp_path, MISSION, tests, more=files))
+        run(write_project(folder, MISSION, tests, more=files))
     assert said in str(caught.value)
     assert "rootdir" not in str(caught.value)

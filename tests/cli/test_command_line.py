@@ -223,6 +223,7 @@ def test_a_key_of_the_configuration_can_be_set_for_one_command(fake: Campaign) -
         ("when=onc", "'onc' is no moment"),
         pytest.param("cluster.cacert=x", "unknown key 'cacert'", marks=pytest.mark.needs("dask")),
         ("program=nowhere.py", "there is no 'nowhere.py'"),
+        ("order=2", "the key 'order' is gone: a mutant is one fault"),
         (f"rounds={'[' * 5000}", "rounds"),
         (f"rounds={'9' * 5000}", "rounds"),
     ],
@@ -242,6 +243,7 @@ def test_a_wrong_setting_is_2_and_names_the_option(
         ("run --table", "`mutabot results`"),
         ("run --serve", "`mutabot live`"),
         ("list --when once", "use -o when=MOMENT"),
+        ("run --order 2", "--order is gone; a mutant is one fault"),
         ("compare", "the command compare is gone; `make comparison`"),
     ],
 )
@@ -472,7 +474,7 @@ def test_the_shell_completes_commands_and_names(project: Path) -> None:
 
     assert completed("mutabot re") == ["replay", "results", "report"]
     assert completed("mutabot report --format s") == ["sarif"]
-    assert completed("mutabot run --engine ") == ["auto", "branch", "replay", "warm"]
+    assert completed("mutabot run --engine ") == ["auto", "branch", "replay"]
     assert completed("mutabot run --family cl") == ["classical"]
 
 

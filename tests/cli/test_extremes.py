@@ -126,7 +126,7 @@ def test_a_setting_that_cannot_be_meant_is_told(tmp_path: Path, key: str) -> Non
 
 
 BOUNDS = {
-    "rounds": limits.ROUNDS, "seed": limits.SEED, "jobs": limits.JOBS, "pairs": limits.PAIRS,
+    "rounds": limits.ROUNDS, "seed": limits.SEED, "jobs": limits.JOBS,
     "timeout_factor": limits.FACTOR, "timeout_seconds": limits.SECONDS, "memory": limits.BYTES,
     "evidence": limits.BYTES, "baseline_repetitions": limits.BASELINES,
 }  # fmt: skip

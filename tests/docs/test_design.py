@@ -46,9 +46,16 @@ def named(name: str) -> object:
     raise ModuleNotFoundError(name)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_every_name_on_the_page_is_one_in_the_code(name: str) -> None:
-    assert named(name) is not None
+def test_every_name_on_the_page_is_one_in_the_code() -> None:
+    assert len(NAMES) > 50
+    assert [name for name in NAMES if not is_named(name)] == []
+
+
+def is_named(name: str) -> bool:
+    try:
+        return named(name) is not None
+    except (ModuleNotFoundError, AttributeError):
+        return False
 
 
 def test_no_word_is_explained_twice() -> None:

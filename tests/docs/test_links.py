@@ -38,10 +38,10 @@ def fault(page: str, target: str) -> str:
     return ""
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_every_link_leads_somewhere(page: str) -> None:
-    faults = {target: fault(page, target) for target in relative_targets(page)}
-    assert {target: what for target, what in faults.items() if what} == {}
+def test_every_link_leads_somewhere() -> None:
+    faults = {(page, target): fault(page, target) for page in PAGES for target in relative_targets(page)}
+    assert len(faults) > 100
+    assert {where: what for where, what in faults.items() if what} == {}
 
 
 @pytest.mark.parametrize(

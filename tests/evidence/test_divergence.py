@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.evidence.divergence import Seen, diverged, noise_between
+from mutabot.evidence.divergence import diverged, noise_between
 from mutabot.evidence.recording import Recording, Told
+from mutabot.evidence.tracks import Seen
 from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded, story
 
 #: up from the shelf, over to the table, down, and away

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 
 from mutabot.evidence import tape as tapes
-from mutabot.evidence.divergence import Seen, diverged
+from mutabot.evidence.divergence import diverged
 from mutabot.evidence.feed import Feed
 from mutabot.evidence.recording import Recording, Told
+from mutabot.evidence.tracks import Seen
 from mutabot.model.seen.diverged import Diverged
 
 Place = tuple[float, float, float]

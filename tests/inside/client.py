@@ -22,9 +22,8 @@ from mutabot.inside.calls.activation import Activation
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.session import Session
 from mutabot.inside.targets.delivery import deliver, wait_for
-from mutabot.inside.targets.means import Means
 from mutabot.inside.targets.messages import Messages
-from mutabot.inside.targets.target import Where
+from mutabot.inside.targets.target import Means, Where
 from mutabot.model import Mutant, Operation, Role, Site, Vocabulary
 from mutabot.model.named import Form
 

@@ -34,10 +34,10 @@ from mutabot.journal.records import REACHING
 from mutabot.journal.schema import COLUMNS
 from mutabot.report.choice import format_of
 from mutabot.report.format import Material
-from mutabot.report.shaping.portable import portable
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant.detail import print_mutant
+from mutabot.report.texts import portable
 
 TIMES, SEED = 1000, 24
 OTHER = replace(samples.SKIP, number=9, site=replace(samples.SKIP.site, occurrence=2))

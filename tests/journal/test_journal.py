@@ -8,21 +8,22 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from contextlib import closing, suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from analysis import samples
 from mutabot.border.test_end import TestEnd
 from mutabot.errors import JournalError
-from mutabot.journal.database import Batch, connect, guarded
+from mutabot.journal.database import connect, guarded
 from mutabot.journal.files import previous_of
 from mutabot.journal.journal import Journal
 from mutabot.journal.lock import is_written
 from mutabot.journal.records import Kept
+from mutabot.journal.schema import SCHEMA_VERSION
 from mutabot.journal.store import Store
 from mutabot.model import By, Outcome, Verdict
 
@@ -224,68 +225,27 @@ def test_what_is_no_journal_of_this_version_is_moved_aside(path: Path, content: 
     assert moved.read_bytes() == before
 
 
-def test_readers_see_each_outcome_soon_while_the_writer_is_active(path: Path) -> None:
-    with Journal.create(path, meta={}) as writer, Journal.open(path) as reader:
+def test_readers_see_each_outcome_at_once_while_the_writer_is_active(path: Path) -> None:
+    def found() -> int:
+        with Journal.open(path) as reader:
+            return len(reader.outcomes())
+
+    with Journal.create(path, meta={}) as writer:
         assert is_written(path)
         for round in range(3):
             writer.add_outcome(Outcome("m", round, Verdict.SURVIVED))
-            until = time.monotonic() + 60  # the promise is a second; the machine may be busy
-            while len(reader.outcomes()) <= round and time.monotonic() < until:
-                time.sleep(0.01)
-            assert len(reader.outcomes()) == round + 1
+            assert found() == round + 1
     assert not is_written(path)
 
 
-def test_outcomes_that_come_at_once_are_committed_together_and_the_first_at_once(tmp_path: Path) -> None:
-    now = 100.0
-    commits: list[str] = []
-    with closing(sqlite3.connect(tmp_path / "file", isolation_level=None, check_same_thread=False)) as file:
-        file.execute("CREATE TABLE found (number INTEGER)")
-        file.set_trace_callback(lambda text: commits.append(text) if text == "COMMIT" else None)
-        batch = Batch(file, clock=lambda: now)
-        for number in range(100):
-            batch.add("INSERT INTO found VALUES (?)", number)
-        assert len(commits) == 1
-        assert file.execute("SELECT count(*) FROM found").fetchone() == (1,)
-        batch.commit()
-        now += 10.0
-        batch.add("INSERT INTO found VALUES (100)")
-        assert len(commits) == 3
-        assert [one for (one,) in file.execute("SELECT number FROM found")] == list(range(101))
-
-
-def test_a_row_that_cannot_be_written_takes_no_other_with_it(tmp_path: Path) -> None:
-    with closing(sqlite3.connect(tmp_path / "file", isolation_level=None, check_same_thread=False)) as file:
-        file.execute("CREATE TABLE found (number INTEGER UNIQUE)")
-        batch = Batch(file)
-        for number in (0, 1, 2, 1, 3):
-            batch.add("INSERT INTO found VALUES (?)", number)
-        batch.commit()
-        assert batch.unstored == ["1: IntegrityError: UNIQUE constraint failed: found.number"]
-        assert [one for (one,) in file.execute("SELECT number FROM found")] == [0, 1, 2, 3]
-        batch.add("INSERT INTO found VALUES (4)")
-        batch.commit()
-
-
-@pytest.mark.parametrize(
-    "value", ["\udcff", 1 << 64, object()], ids=["no UTF-8", "more than 64 bits", "no type of SQLite's"]
-)
-@pytest.mark.parametrize("is_late", [False, True])
-def test_a_value_that_cannot_be_stored_takes_no_other_row_with_it(
-    tmp_path: Path, value: object, is_late: bool
-) -> None:
-    with closing(sqlite3.connect(tmp_path / "file", isolation_level=None, check_same_thread=False)) as file:
-        file.execute("CREATE TABLE found (number)")
-        batch = Batch(file)
-        for number in (0, 1, value, 2):
-            batch.add("INSERT INTO found VALUES (?)", number)
-        if is_late:  # by the thread that commits what nobody else does
-            until = time.monotonic() + 60
-            while not batch.unstored and time.monotonic() < until:
-                time.sleep(0.01)
-        batch.commit()
-        assert [one for (one,) in file.execute("SELECT number FROM found")] == [0, 1, 2]
-        assert len(batch.unstored) == 1
+@pytest.mark.parametrize("round", [1 << 64, object(), None], ids=["64 bits", "no type of SQLite's", "none"])
+def test_a_row_that_cannot_be_stored_takes_no_other_with_it(path: Path, round: Any) -> None:
+    with Journal.create(path, meta={}) as journal:
+        for each in (0, round, 2):
+            journal.add_outcome(Outcome("m", each, Verdict.SURVIVED))
+        assert [one.partition(",")[0] for one in journal.unstored] == ["m"]
+    with Journal.open(path) as reader:
+        assert [one.round for one in reader.outcomes()] == [0, 2]
 
 
 def test_texts_that_are_no_utf_8_are_stored_and_found_again(path: Path) -> None:
@@ -296,7 +256,7 @@ def test_texts_that_are_no_utf_8_are_stored_and_found_again(path: Path) -> None:
         journal.add_control("tests/t\udcff.py", "identity", ok=True, detail="\udcff")
         journal.add_test(0, 0, TestEnd("t\udcff", "passed"))
         journal.set_plan([], [], sources={"mission\udcff.py": "x = '\udcff'"})
-        assert journal.unstored == ()
+        assert not journal.unstored
     with Journal.open(path) as reader:
         assert [one.mutant for one in reader.outcomes()] == ["mission\\udcff.py"]
         assert reader.outcomes()[0].example == (1, "\\udcfe")
@@ -335,6 +295,7 @@ WRITER = """
 import sys
 import time
 from pathlib import Path
+from typing import Any
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict
 journal = Journal.create(Path(sys.argv[1]), meta={"rounds": 100000})
@@ -345,7 +306,7 @@ for round in range(100000):
 """
 
 
-def test_a_writer_ended_by_sigkill_loses_the_last_second_at_most(path: Path) -> None:
+def test_a_writer_ended_by_sigkill_loses_nothing(path: Path) -> None:
     writer = subprocess.Popen([sys.executable, "-c", WRITER, str(path)], stdout=subprocess.PIPE, text=True)
     assert writer.stdout is not None
     with writer, writer.stdout:
@@ -356,11 +317,8 @@ def test_a_writer_ended_by_sigkill_loses_the_last_second_at_most(path: Path) -> 
         reported += [line.split() for line in writer.stdout.read().split("\n")[:-1]]
     with Journal.open(path) as journal:
         found = {outcome.round for outcome in journal.outcomes()}
-        last = float(reported[-1][1])
         assert len(found) > 1
-        assert found >= {
-            int(round) for round, when in reported if float(when) < last - 2.0
-        }  # half of it is promised
+        assert found >= {int(round) for round, _ in reported}
         assert found == set(range(len(found)))
         assert journal.finished is None
     with Journal.create(path, meta={}) as journal:  # and its lock went with it
@@ -370,11 +328,10 @@ def test_a_writer_ended_by_sigkill_loses_the_last_second_at_most(path: Path) -> 
 def test_a_full_disk_is_a_clear_error_and_keeps_what_was_there(path: Path) -> None:
     with Journal.create(path, meta={}) as journal:
         journal.add_outcome(KILLED)
-        journal._store.connection._file.execute("PRAGMA max_page_count = 1")
+        journal._store._file._file.execute("PRAGMA max_page_count = 1")
         big = Outcome("n", 0, Verdict.ERROR, message="x" * 1_000_000)
-        journal.add_outcome(big)
         with pytest.raises(JournalError, match="disk is full") as error:
-            journal.outcomes()
+            journal.add_outcome(big)
         assert error.value.path == str(path)
         assert str(path) in str(error.value)
         with pytest.raises(JournalError, match="disk is full"):
@@ -426,7 +383,7 @@ def test_a_journal_of_another_schema_version_is_refused(path: Path) -> None:
     with connection:
         connection.execute("UPDATE meta SET value = '99' WHERE key = 'journal:version'")
     connection.close()
-    with pytest.raises(JournalError, match="version 99, this one reads 4"):
+    with pytest.raises(JournalError, match=f"version 99, this one reads {SCHEMA_VERSION}"):
         Journal.open(path)
 
 
@@ -446,6 +403,7 @@ def readable_by_all() -> Iterator[Path]:
 ATTEMPT = """
 import os, sys
 from pathlib import Path
+from typing import Any
 from mutabot.journal.journal import Journal
 from mutabot.errors import JournalError
 path = Path(sys.argv[1])

@@ -154,7 +154,7 @@ def test_a_journal_that_another_program_holds_locked_is_written_nevertheless(pat
     with Journal.create(path, meta={}) as journal:
         journal.add_outcome(KILLED)
         journal.outcomes()
-        journal._store.connection._file.execute("PRAGMA busy_timeout = 10")
+        journal._store._file._file.execute("PRAGMA busy_timeout = 10")
         with closing(sqlite3.connect(path)) as other:
             other.execute("BEGIN IMMEDIATE")
             journal.add_outcome(SURVIVED)

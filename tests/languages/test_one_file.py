@@ -70,31 +70,17 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return copied(tmp_path_factory.mktemp("site"), {"languages/steps.py": STEPS})
 
 
-@pytest.mark.parametrize("engine", ["branch", "replay"])
-def test_its_lines_are_sites_with_verdicts_from_both_engines(engine: str, site: Path, tmp_path: Path) -> None:
+def test_its_lines_are_sites_with_verdicts(site: Path, tmp_path: Path) -> None:
     more = {"interpreter.py": INTERPRETER, "mission.steps": MISSION}
     configuration = 'program = ["mission.steps"]\nvocabulary = ["robot.toml"]\n'
     write_project(tmp_path, "", TESTS, more=more, configuration=configuration)
-    found = mutants(
-        site,
-        tmp_path,
-        "run",
-        "--engine",
-        engine,
-        "-o",
-        "repeats=false",
-        "--only",
-        "*skip",
-        "--only",
-        "*reverse",
-    )
+    found = mutants(site, tmp_path, "run", "-o", "repeats=false", "--only", "*skip", "--only", "*reverse")
     verdicts = {name: one["rounds"][0]["verdict"] for name, one in found.items()}
     assert verdicts == {
         f"mission.steps:steps:move#{number}:{rule}": "killed"
         for number in (1, 2)
         for rule in ("dx:reverse", "call:skip")
     }
-    assert {one["rounds"][0]["engine"] for one in found.values()} == {engine}
     # columns of the JSON are those of editors, which begin with 1
     spans = {name.split(":")[2]: one["span"] for name, one in found.items()}
     assert {name: (one["line"], one["end_column"]) for name, one in spans.items()} == {

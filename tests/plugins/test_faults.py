@@ -133,7 +133,7 @@ def by_parameter(found: dict[str, Any]) -> dict[str, dict[str, Any]]:
 
 
 def test_parameters_get_verdicts_in_processes_of_their_own(site: Path, project: Path) -> None:
-    done = mutabot(site, project, "run", "--json")
+    done = mutabot(site, project, "run", "--json", "-o", "repeats=false")
     assert done.returncode == ERRORS, done.stderr
     assert "4 mutants: each is in place from the start of each test" in done.stderr
     found = by_parameter(json.loads(done.stdout))
@@ -148,10 +148,13 @@ def test_parameters_get_verdicts_in_processes_of_their_own(site: Path, project: 
     assert (rounds["mass"]["hits"], rounds["mass"]["acted"]) == (3, 0)
     assert rounds["mass"]["message"] == "the site was reached, but no value changed"
     assert "parameter cannot be put in place: AttributeError" in rounds["wind"]["message"]
-    for words in (["results"], ["show", "1"], *(["report", "--format", one] for one in FORMATS)):
-        told = mutabot(site, project, *words)
-        assert told.returncode == 0, told.stderr
-    again = mutabot(site, project, "run", "--json")
+    reports = [["results"], ["show", "1"], *(["report", "--format", one] for one in FORMATS)]
+    every = (
+        "import sys; from mutabot.cli.app import main; sys.exit([main(words) for words in %r] != [0] * %d)"
+    )
+    told = python(site, "-c", every % ([["-C", str(project), *words] for words in reports], len(reports)))
+    assert told.returncode == 0, told.stderr
+    again = mutabot(site, project, "run", "--json", "-o", "repeats=false")
     assert by_parameter(json.loads(again.stdout))["colour"]["rounds"][0]["verdict"] == "survived"
 
 

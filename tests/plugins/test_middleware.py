@@ -53,7 +53,7 @@ SITE = {
         from functools import partial
 
         from mutabot.inside.targets.delivery import deliver
-        from mutabot.inside.targets.means import Means
+        from mutabot.inside.targets.target import Means
         from mutabot.inside.targets.target import Where
         from mutabot.model.named import Form
 

@@ -255,12 +255,12 @@ def test_a_part_that_is_not_what_it_should_be_is_named(
     assert told in done.stderr
 
 
-@pytest.fixture
-def alone(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder without these packages beside the core."""
-    ignored = shutil.ignore_patterns("__pycache__", "mutabot_dask", "mutabot_live", "mutabot_motion")
+    ignored = shutil.ignore_patterns("mutabot_dask", "mutabot_live", "mutabot_motion")
     source = Path(mutabot.__file__).parents[1]
-    return Path(shutil.copytree(source, tmp_path / "alone", ignore=ignored))
+    return Path(shutil.copytree(source, tmp_path_factory.mktemp("site") / "alone", ignore=ignored))
 
 
 #: runs the command line as if these were not installed

@@ -180,7 +180,7 @@ def mutants(done: subprocess.CompletedProcess[str], *, code: int = 0) -> dict[st
 
 
 def test_the_operator_of_an_installed_plug_in_gets_a_verdict(installed: Path, project: Path) -> None:
-    creep = mutants(mutabot(installed, project, "run", "--json"))["creep"]
+    creep = mutants(mutabot(installed, project, "run", "--json", "-o", "repeats=false"))["creep"]
     # Each reading is 5 mm farther off, half of what the robot drives in between: it drives too far.
     assert creep["id"] == "approach.py:run:robot.distance#1:result:creep"
     assert (creep["rounds"][0]["verdict"], creep["rounds"][0]["by"]) == ("killed", "check")
@@ -233,7 +233,7 @@ def test_an_operator_that_fails_while_at_work_is_an_error_and_never_a_kill(
     project: Path, tmp_path: Path
 ) -> None:
     site = broken_plug_in(tmp_path / "site", "late", BREAKS_LATE)
-    done = mutabot(site, project, "run", "--json", "--only", "late")
+    done = mutabot(site, project, "run", "--json", "-o", "repeats=false", "--only", "late")
     end = mutants(done, code=ERRORS)["late"]["rounds"][0]
     assert end["verdict"] == "error"
     assert end["message"] == "operator late: ValueError: broken while at work"

@@ -15,7 +15,7 @@ from mutabot.journal.records import Reaching
 from mutabot.model import LeftOut
 from mutabot.report.choice import format_of
 from mutabot.report.format import Material
-from mutabot.report.shaping.portable import portable
+from mutabot.report.texts import portable
 
 #: where the campaign of the samples says that it ran
 ROOT = "/nowhere"

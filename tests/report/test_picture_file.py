@@ -8,9 +8,10 @@ import pytest
 
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import UsageError
-from mutabot.report.picture import Picture
-from mutabot.report.picture_file import check_picture, write_drawing
+from mutabot.report.thresholds.picture import Picture, check_picture, write_drawing
+from tests.campaign.conftest import script as script  # noqa: PLC0414  # a fixture
 from tests.campaign.project import Quiet, request_for, write_project
+from tests.campaign.scripted import Script
 
 
 @pytest.mark.parametrize("name", ["ends", "ends.jpg", "nowhere/ends.svg", ".", "ends.svg.txt"])
@@ -28,7 +29,10 @@ def test_a_picture_of_another_format_is_told_the_name_it_may_have(tmp_path: Path
         check_picture(tmp_path / "ends.png")
 
 
-def test_what_mutabot_writes_into_a_project_does_not_make_it_run_again(tmp_path: Path) -> None:
+def test_what_mutabot_writes_into_a_project_does_not_make_it_run_again(
+    tmp_path: Path, script: Script
+) -> None:
+    script.kill("reverse")
     mission = "def run(arm):\n    arm.move_by(0.5)\n"
     test = "from mission import run\nfrom robot import Arm\n\ndef test_it():\n    run(Arm())\n"
     selections = {"used.txt": "mission.py:run:arm.move_by#1:dx:reverse\n", "other.txt": "mission.py:*\n"}

@@ -8,7 +8,7 @@ from statistics import NormalDist, fmean, stdev
 
 import pytest
 
-from mutabot.suggestion.choosing.bands import (
+from mutabot.suggestion.checks import (
     CONFIDENCE,
     FREE,
     NORMAL,
@@ -20,7 +20,7 @@ from mutabot.suggestion.choosing.bands import (
     tolerance_factor,
     unseen,
 )
-from mutabot.suggestion.choosing.cover import smallest_cover
+from mutabot.suggestion.suggest import smallest_cover
 
 
 @pytest.mark.parametrize("count", [8, 25, 60])

@@ -1,4 +1,4 @@
-"""Checks in the tests that there are and in a new file, in every style: plain pytest runs them."""
+"""Checks at the ends of the tests that there are, in every style: plain pytest runs them."""
 
 from __future__ import annotations
 
@@ -8,15 +8,12 @@ import pytest
 
 from mutabot.campaign.request import Request
 from mutabot.settings.configuration import load_configuration
-from mutabot.suggestion.choosing.bands import band_of
-from mutabot.suggestion.choosing.checks import Check, Expected
-from mutabot.suggestion.forms import Form, InFile, InPlace
-from mutabot.suggestion.measuring.commands import commands_of
-from mutabot.suggestion.measuring.readings import PROBE, WAY, Reading
-from mutabot.suggestion.measuring.watches import watch_of
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import diff_of
+from mutabot.suggestion.checks import Check, Expected, band_of
+from mutabot.suggestion.project import Project, diff_of
+from mutabot.suggestion.prove import texts_with
+from mutabot.suggestion.readings import PROBE, WAY, Reading
 from mutabot.suggestion.styles.choice import place_of
+from mutabot.suggestion.watches import commands_of, watch_of
 from mutabot.vocabulary import load
 
 from .projects import STYLES, make, passes, patched
@@ -55,15 +52,12 @@ def checks(project: Project, style: str) -> list[Check]:
     ]
 
 
-@pytest.mark.parametrize("in_file", [False, True])
-def test_added_checks_pass_on_the_original_and_notice_a_fault(project: Project, in_file: bool) -> None:
-    form: Form = InFile(project, "tests/test_more.py") if in_file else InPlace(project)
+def test_added_checks_pass_on_the_original_and_notice_a_fault(project: Project) -> None:
     found = [one for style in STYLES.values() for one in checks(project, style)]
-    texts = form.texts(found)
-    assert ("tests/test_more.py" in texts) is in_file
+    texts = texts_with(project, found)
     patched(project.root, diff_of(project.root, texts))
     assert {file: (project.root / file).read_text() for file in texts} == texts
-    assert passes(project.root) == (0, len(NODES) + 3 + in_file * (len(NODES) + 1))
+    assert passes(project.root) == (0, len(NODES) + 3)
 
     program = project.root / "mission.py"
     program.write_text(program.read_text().replace("z=-0.1", "z=-0.2"))
@@ -75,7 +69,7 @@ def test_a_check_leaves_the_rest_of_the_file_as_it_is(project: Project) -> None:
     file = project.root / "tests" / "test_functions.py"
     file.write_bytes(file.read_bytes().replace(b"\n", b"\r\n") + "# ü".encode())
     before = file.read_bytes().decode().splitlines(keepends=True)
-    (text,) = InPlace(project).texts(checks(project, "pytest")[:1]).values()
+    (text,) = texts_with(project, checks(project, "pytest")[:1]).values()
     after = text.splitlines(keepends=True)
     assert [line for line in after if line in before or line.rstrip() == "# ü"] == [*before[:-1], "# ü\r\n"]
     assert all(line.endswith("\r\n") for line in after)

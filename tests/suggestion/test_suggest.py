@@ -74,21 +74,3 @@ def test_there_must_be_something_to_suggest_checks_for(
         journal.finish("complete")
     assert main(["suggest"]) == 3
     assert "no mutants" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("file", "said"),
-    [
-        ("mission.py", "exists"),
-        ("more.txt", "no Python file"),
-        ("nowhere/test_more.py", "no folder"),
-        ("/tmp/test_more.py", "not in the project"),
-    ],
-)
-def test_a_written_file_is_a_new_test_file_of_the_project(
-    file: str, said: str, folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with Journal.prepare(folder / ".mutabot" / "journal.sqlite", meta={}) as journal:
-        journal.begin({})
-    assert main(["suggest", "--write", file]) == 2
-    assert said in capsys.readouterr().err

@@ -103,9 +103,9 @@ def test_the_example_of_the_documentation_loads(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize("kind", Kind)
-def test_the_documentation_names_every_kind(kind: Kind) -> None:
-    assert f"`{kind}`" in PAGE.read_text(encoding="utf-8")
+def test_the_documentation_names_every_kind() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    assert [kind for kind in Kind if f"`{kind}`" not in text] == []
 
 
 def test_every_shipped_vocabulary_loads(tmp_path: Path) -> None:

@@ -319,12 +319,7 @@ class _Earlier:
     ) -> _Earlier:
         done = {(outcome.mutant, outcome.round) for outcome in outcomes}
         meta = journal.meta()
-        order = meta.get("order") or 1
-        known = {
-            mutant.id: (mutant, outdated)
-            for mutant, outdated in journal.known()
-            if len(mutant.singles) == order
-        }
+        known = {mutant.id: (mutant, outdated) for mutant, outdated in journal.known()}
         wanted = {mutant.id for mutant in planned} | known.keys()
         found = [
             outcome

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from mutabot.border.codec import from_data, to_data
+from mutabot.errors import UsageError
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +87,6 @@ class Suggestions:
     Attributes:
         suggestions: the smallest set that kills most, those first that kill most.
         diff: all of them as one unified diff of the project.
-        files: for ``--write``: the text of each new file, by its path in the project.
         unsolved: survivors that none of them kills.
         dropped: checks that failed their proof.
         numbers: number of each survivor by its id.
@@ -92,10 +97,38 @@ class Suggestions:
 
     suggestions: tuple[Suggestion, ...] = ()
     diff: str = ""
-    files: Mapping[str, str] = field(default_factory=dict)
     unsolved: tuple[Unsolved, ...] = ()
     dropped: tuple[Dropped, ...] = ()
     numbers: Mapping[str, int] = field(default_factory=dict)
     descriptions: Mapping[str, str] = field(default_factory=dict)
     rounds: int = 0
     seeds: int = 0
+
+
+#: what tells campaigns of the same journal apart
+_STARTED = "started"
+
+
+def keep_suggestions(journal: Path, meta: Mapping[str, Any], found: Suggestions) -> None:
+    """Write them down for reports of this campaign. Raises UsageError if that cannot be done."""
+    path = _path(journal)
+    data = {_STARTED: meta.get(_STARTED), "found": to_data(found)}
+    try:
+        path.write_text(json.dumps(data), encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{path} cannot be written: {error.strerror}") from error
+
+
+def kept_suggestions(journal: Path, meta: Mapping[str, Any]) -> Suggestions | None:
+    """Those for this campaign; None if none were looked for since, or the file is of another version."""
+    try:
+        data = json.loads(_path(journal).read_text(encoding="utf-8"))
+        if data[_STARTED] != meta.get(_STARTED):
+            return None
+        return from_data(Suggestions, data["found"])
+    except (OSError, ValueError, LookupError, TypeError):
+        return None
+
+
+def _path(journal: Path) -> Path:
+    return journal.with_name(f"{journal.stem}-suggestions.json")

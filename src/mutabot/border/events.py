@@ -59,12 +59,16 @@ class Watched:
 
 @dataclass(frozen=True, slots=True)
 class Acted:
-    """The mutant changed something for the first time in this test: proof that mutated code ran.
+    """The mutant is at work: proof that mutated code ran.
 
-    ``test`` is empty for a mutant of the program text that did so before any test began.
+    Attributes:
+        test: the test; empty for a mutant of the program text before any test began.
+        in_call: whether a mutated call begins, or has ended, which tells whether a process died in it; None
+            where the mutant changed something for the first time in this test.
     """
 
     test: str
+    in_call: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,13 +81,6 @@ class PlacesReached:
     test: str
     places: tuple[int, ...]
     elsewhere: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class CalledAtImport:
-    """Operations of the program that were called before any test began; the trace is like that of a test."""
-
-    trace: tuple[Any, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,14 +102,6 @@ class NotInstrumented:
 
     file: str
     reason: str
-
-
-@dataclass(frozen=True, slots=True)
-class MutatedCall:
-    """A mutated call begins or has ended: tells whether a process died in it."""
-
-    test: str
-    began: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,16 +232,13 @@ class Remark:
 
 @dataclass(frozen=True, slots=True)
 class Serving:
-    """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``."""
+    """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``.
+
+    ``copy``: the process that it has forked for the job that came last.
+    """
 
     reason: str | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Copied:
-    """A fork server has forked a copy of itself, process ``pid``, for the job that came last."""
-
-    pid: int
+    copy: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,13 +262,18 @@ class Began:
 
 @dataclass(frozen=True, slots=True)
 class Called:
-    """A call of an operation; the fields from ``site`` on are those of a trace."""
+    """A call of an operation below the tests, or of the program before any test began.
 
-    time: float
+    Attributes:
+        site, written, read, answer: as in a trace.
+        time: when it was, below the tests.
+    """
+
     site: int
     written: Any
     read: Any
     answer: Any = None
+    time: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -307,7 +298,6 @@ class Did:
         hits, acted, away, example, invalid, failure: as in ``TestEnd``.
         refused: how the robot refused a mutated call; None if it did not.
         is_final: whether this refusal decides about a test that fails, since it was told as data.
-        parts: the mutants of which it is made that changed something.
     """
 
     test: str
@@ -319,7 +309,6 @@ class Did:
     failure: str | None = None
     refused: str | None = None
     is_final: bool = False
-    parts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -402,10 +391,8 @@ Event = (
     | Watched
     | Acted
     | PlacesReached
-    | CalledAtImport
     | TextsSeen
     | NotInstrumented
-    | MutatedCall
     | TestEnd
     | BranchEnd
     | BranchDied
@@ -415,7 +402,6 @@ Event = (
     | Problem
     | Remark
     | Serving
-    | Copied
     | ForkEnded
     | Began
     | Called

@@ -22,7 +22,6 @@ from .events import (
     Did,
     Event,
     Found,
-    MutatedCall,
     Noted,
     PlacesReached,
     Raised,
@@ -90,9 +89,9 @@ class ChildRecord:
                 self.did.append(event)
                 if event.acted:
                     self.acted[event.test] = None
-            case MutatedCall():
-                self.is_in_call = event.began
-                if event.began:
+            case Acted(in_call=bool(is_in_call)):
+                self.is_in_call = is_in_call
+                if is_in_call:
                     self.acted[event.test] = None
             case PlacesReached():
                 self.places.update(event.places)
@@ -203,12 +202,12 @@ def acted_in(records: Collection[ChildRecord]) -> list[str]:
 
 def fold_fork(events: Sequence[Event], died: BranchDied | None) -> list[Event]:
     """What is to be known of a fork that has ended, by its events and, if it ``died``, its parent's word."""
-    found: list[Event] = [event for event in events if not isinstance(event, Acted | MutatedCall)]
+    found: list[Event] = [event for event in events if not isinstance(event, Acted)]
     if died is None:
         return found
-    calls = [event.began for event in events if isinstance(event, MutatedCall)]
-    acted = any(isinstance(event, Acted) for event in events)
-    return [*found, replace(died, acted=acted, in_mutated_call=calls[-1:] == [True])]
+    told = [event.in_call for event in events if isinstance(event, Acted)]
+    calls = [one for one in told if one is not None]
+    return [*found, replace(died, acted=None in told, in_mutated_call=calls[-1:] == [True])]
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,8 +217,6 @@ class Known:
     Attributes:
         job: its job.
         index_of: its own index of a site.
-        parts: the mutants of which its own is made that changed something in it.
-        part_names: all of them.
         has_acted: whether the mutant changed anything in an earlier test.
         codes: exit codes of processes.
         signalled: processes, and groups (negative), that somebody sent a signal to, or ``ANYBODY``.
@@ -227,8 +224,6 @@ class Known:
 
     job: Job
     index_of: Callable[[SiteSeen], int]
-    parts: Collection[str] = ()
-    part_names: Collection[str] = ()
     has_acted: bool = False
     codes: Mapping[int, int] = field(default_factory=dict)
     signalled: Collection[int] = ()
@@ -239,7 +234,7 @@ def fold(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:
     if not records:
         return end
     end = _with_calls(end, records, known)
-    end = _with_deeds(end, [did for one in records for did in one.did], known)
+    end = _with_deeds(end, [did for one in records for did in one.did])
     return _with_ends(end, records, known)
 
 
@@ -267,7 +262,7 @@ def _with_calls(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> T
     )
 
 
-def _with_deeds(end: TestEnd, did: list[Did], known: Known) -> TestEnd:
+def _with_deeds(end: TestEnd, did: list[Did]) -> TestEnd:
     """What the mutant did in all processes together."""
     if not did:
         return end
@@ -287,17 +282,7 @@ def _with_deeds(end: TestEnd, did: list[Did], known: Known) -> TestEnd:
         is_final = any(one.is_final for one in refused)
         caught = end.outcome == "failed" and not is_final
         end = replace(end, refused=refused[-1].refused, caught=caught)
-    return _of_all_parts(end, did, known)
-
-
-def _of_all_parts(end: TestEnd, did: list[Did], known: Known) -> TestEnd:
-    """A mutant of several acts if all of them do, be it in different processes."""
-    mutant = known.job.mutant
-    if mutant is None or len(mutant.singles) < 2:
-        return end
-    parts = {part for one in did for part in one.parts}.union(known.parts)
-    is_whole = parts.issuperset(known.part_names)
-    return replace(end, acted=max(end.acted, 1) if is_whole else 0, partly=bool(parts) and not is_whole)
+    return end
 
 
 def _with_ends(end: TestEnd, records: Sequence[ChildRecord], known: Known) -> TestEnd:

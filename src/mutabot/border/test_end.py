@@ -41,7 +41,6 @@ class TestEnd:
         hits: calls at the mutant's site (with its operation and pattern).
         acted: hits at which the mutant changed something.
         away: hits at which it stayed away, by the reason.
-        partly: whether a part of a mutant of higher order changed something, and another did not.
         example: value before and after at the first hit at which it acted.
         operations: intercepted calls at any site.
         commands: operations that made the robot do something, from any site.
@@ -87,7 +86,6 @@ class TestEnd:
     hits: int = 0
     acted: int = 0
     away: Mapping[str, int] = field(default_factory=dict)
-    partly: bool = False
     example: tuple[Any, ...] | None = None
     operations: int = 0
     commands: int = 0

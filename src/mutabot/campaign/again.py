@@ -11,7 +11,6 @@ from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.second_look import Looker
 from mutabot.campaign.faults.providers import prepare
-from mutabot.campaign.plan.second_order import pair
 from mutabot.errors import SelectionError
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import Replayed
@@ -62,9 +61,7 @@ def as_it_is_now(request: Request, baseline: Baseline, mutant: Mutant) -> Mutant
     if Place.of(mutant) in baseline.hits:
         return mutant
     planned = {one.id: one for one in plan_of(request, baseline).mutants}
-    gone = next((one.id for one in mutant.singles if one.id not in planned), None)
-    if gone is not None:
-        problem = f"the program has changed: no test reaches {gone} any more"
+    if mutant.id not in planned:
+        problem = f"the program has changed: no test reaches {mutant.id} any more"
         raise SelectionError(problem, unknown=[mutant.id])
-    now = [planned[one.id] for one in mutant.singles]
-    return pair(mutant.number, *now) if mutant.parts else replace(now[0], number=mutant.number)
+    return replace(planned[mutant.id], number=mutant.number)

@@ -12,12 +12,8 @@ from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.baseline.unfit import refuse_unfit, refuse_unhooked
 from mutabot.campaign.engines.choice import first_engine, repetitions_for
 from mutabot.campaign.faults.providers import prepare
-from mutabot.campaign.plan.plan import make_plan
-from mutabot.campaign.plan.planned import Plan
-from mutabot.campaign.plan.sampling import draw
-from mutabot.campaign.plan.second_order import pairs
-from mutabot.campaign.plan.selection import select
-from mutabot.campaign.plan.typos import refuse_typos
+from mutabot.campaign.plan.plan import Plan, draw, make_plan
+from mutabot.campaign.plan.selection import refuse_typos, select
 from mutabot.campaign.workers.descriptors import provide
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptions_kept
@@ -92,10 +88,6 @@ def selected(campaign: Campaign, plan: Plan) -> Plan:
     mutants = select(plan.mutants, request.only, request.skip, request.selection, left_out=plan.left_out)
     if not mutants:
         raise NothingToDoError("the selection leaves no mutant to run")
-    if request.order == 2:
-        mutants = pairs(campaign.baseline, mutants, request.pairs, request.seed)
-        if not mutants:
-            raise NothingToDoError("no test reaches two mutants of this selection at different places")
     if request.sample is None:
         return Plan(mutants, plan.left_out)
     drawn, drawing = draw(mutants, request.seed, request.sample)

@@ -9,7 +9,7 @@ from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.engines.choice import try_controls
 from mutabot.campaign.engines.engine import Remainder
-from mutabot.campaign.plan.planned import Plan
+from mutabot.campaign.plan.plan import Plan
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.extensions import brought
 from mutabot.families import CATALOGUE

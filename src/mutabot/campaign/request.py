@@ -89,8 +89,6 @@ class Request:
         families: the families of operators whose mutants are made.
         every_test: whether a mutant runs every test that reaches it, also after one has noticed it.
         sample: how many of the mutants to run, chosen at random; None for all.
-        order: how many mutants are one: 1 or 2.
-        pairs: how many mutants of the second order to plant.
         journal: name of the journal's file in mutabot's folder.
         moments: at which of their calls mutants act, a mutant each; None for every call.
         shard: the part of the plan to run; None for all of it.
@@ -118,8 +116,6 @@ class Request:
     families: tuple[str, ...] = USUAL
     every_test: bool = False
     sample: Sample | None = None
-    order: int = 1
-    pairs: int = 200
     journal: str = JOURNAL
     moments: tuple[Moment | None, ...] = (None,)
     shard: Shard | None = None
@@ -143,7 +139,7 @@ class Request:
             self.vocabulary,
             self.families,
             self.moments,
-            self.configuration.demands if self.order == 1 else (),
+            self.configuration.demands,
         )
 
     @property

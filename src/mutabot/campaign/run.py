@@ -22,7 +22,7 @@ from mutabot.campaign.faults.demanded import demanded_of
 from mutabot.campaign.faults.ladders import apart
 from mutabot.campaign.faults.providers import family_of
 from mutabot.campaign.plan.earlier import carry, note_outdated
-from mutabot.campaign.plan.planned import Plan
+from mutabot.campaign.plan.plan import Plan
 from mutabot.campaign.plan.told import drawing, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
@@ -204,11 +204,10 @@ def _run_mutants(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tu
 
 
 def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
-    """Forget mutants that the program has no longer; of other families and orders nothing is known now."""
-    if request.order == 1:
-        there = {mutant.id for mutant, _ in journal.known()} | {mutant.id for mutant in whole.mutants}
-        rest = {mutant for mutant, _ in journal.kept()} - there
-        journal.tidy([*there, *(one for one in rest if family_of(one) not in request.families)])
+    """Forget mutants that the program has no longer; of other families nothing is known now."""
+    there = {mutant.id for mutant, _ in journal.known()} | {mutant.id for mutant in whole.mutants}
+    rest = {mutant for mutant, _ in journal.kept()} - there
+    journal.tidy([*there, *(one for one in rest if family_of(one) not in request.families)])
 
 
 def _collected(results: Sequence[Result]) -> set[str]:
@@ -333,8 +332,6 @@ def _meta(request: Request) -> dict[str, Any]:
         "engine": first_engine(request).name,
         "jobs": request.jobs,
         "families": list(request.families),
-        "order": request.order,
-        "pairs": request.pairs,
         "every_test": request.every_test,
         "fresh": request.fresh,
         "started": time.time(),

@@ -18,11 +18,9 @@ from mutabot.errors import MutabotError, UsageError
 from mutabot.exit_codes import ExitCode
 from mutabot.limits import shortened
 
-from . import campaign, init, replay, report, results, suggest, thresholds
+from . import campaign, init, report, results, suggest, thresholds
 from .commands import SETTINGS, Commands
 from .gone import gone
-from .lists import operators
-from .merging import merge
 from .options import Version, with_options
 from .termination import terminated_like_ctrl_c
 
@@ -57,10 +55,10 @@ def options(
 app.command(rich_help_panel=_SETUP)(init.init)
 app.command(rich_help_panel=_SETUP)(with_options(campaign.check))
 app.command("list", rich_help_panel=_SETUP)(with_options(campaign.list_))
-app.command(rich_help_panel=_SETUP)(operators.operators)
+app.command(rich_help_panel=_SETUP)(init.operators)
 app.command(rich_help_panel=_RUN)(with_options(campaign.run))
-app.command(rich_help_panel=_RUN)(merge.merge)
-app.command(rich_help_panel=_RUN)(replay.replay)
+app.command(rich_help_panel=_RUN)(campaign.merge)
+app.command(rich_help_panel=_RUN)(results.replay)
 app.command(rich_help_panel=_RUN)(suggest.suggest)
 app.command(rich_help_panel=_LOOK)(results.results)
 app.command(rich_help_panel=_LOOK)(results.show)

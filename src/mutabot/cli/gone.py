@@ -10,8 +10,7 @@ _COMMANDS = {"compare": "`make comparison` in a clone of mutabot compares famili
 _OPTIONS = {
     "--selection": "use --only @FILE",
     "--when": "use -o when=MOMENT",
-    "--order": "use -o order=2",
-    "--pairs": "use -o pairs=N",
+    **dict.fromkeys(("--order", "--pairs"), "a mutant is one fault, no pair of them"),
     "--baseline": "use -o baseline_repetitions=N",
     "--table": "`mutabot results` prints the table",
     "--serve": "`mutabot live` runs a campaign with its page",
@@ -24,6 +23,7 @@ _OPTIONS = {
     "--confirm": "use --verify N",
     "--repeats": "kills that may be a coincidence are re-run anyway",
     "--no-repeats": "use -o repeats=false",
+    "--write": "apply the diff that it prints",
     "--mixed": "workers run with the same versions as this machine",
     **{
         option: f"use `mutabot motion MUTANT {option}`"

@@ -129,6 +129,14 @@ OtherJournal = Annotated[
         help="Also reuse valid outcomes from this journal, e.g. one downloaded from CI.",
     ),
 ]
+Compared = Annotated[
+    Path | None,
+    typer.Option(
+        "--compare",
+        metavar="OLD",
+        help="Tell what differs from this journal, or a project's folder with one.",
+    ),
+]
 Budget = Annotated[
     str | None,
     typer.Option(

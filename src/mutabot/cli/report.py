@@ -53,14 +53,6 @@ Html = Annotated[
         help="Write pages for a browser into this folder, to be opened from disk: DIR/index.html.",
     ),
 ]
-Old = Annotated[
-    Path | None,
-    typer.Option(
-        "--compare",
-        metavar="OLD",
-        help="Tell what differs from this journal, or a project's folder with one.",
-    ),
-]
 Prefix = Annotated[
     str, typer.Option("--prefix", metavar="FOLDER", help="Folder of the project in its repository.")
 ]
@@ -71,7 +63,7 @@ def report(
     format: Formats = None,
     output: Outputs = None,
     html: Html = None,
-    compare: Old = None,
+    compare: options.Compared = None,
     prefix: Prefix = "",
     json: options.Json = False,
 ) -> None:
@@ -81,7 +73,7 @@ def report(
     """
     from mutabot.analysis.stored.campaign import open as open_campaign
     from mutabot.report.format import Material
-    from mutabot.report.shaping.portable import portable
+    from mutabot.report.texts import portable
 
     wanted = list(_wanted(format or (), output or ()))
     if not wanted and compare is None and html is None:
@@ -153,15 +145,14 @@ def _check_folder(folder: Path, *, with_changes: bool) -> None:
 
 def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: str | None) -> None:
     from mutabot.analysis.stored.evidence import StoredEvidence
-    from mutabot.analysis.stored.suggested import kept_suggestions
+    from mutabot.analysis.suggested import kept_suggestions
     from mutabot.report.html.folder import Contents, write_folder
-    from mutabot.report.html.suggestion import suggest_from
-    from mutabot.report.shaping.texts import Cleaner
+    from mutabot.report.texts import Cleaner
 
     name = Path(root).name if root else ""
     with StoredEvidence(journal) as evidence:
-        suggest = suggest_from(kept_suggestions(journal, campaign.results.meta))
-        written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root), suggest=suggest))
+        suggestions = kept_suggestions(journal, campaign.results.meta)
+        written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root), suggestions))
     lines = [f"mutabot: {written.page}, {written.size / 1e6:.1f} MB in its folder: open it in a browser"]
     if written.without:
         lines.append(
@@ -183,7 +174,7 @@ def _changes(campaign: StoredCampaign, journal: Path, old: Path) -> Changes:
     from mutabot.analysis.stored.campaign import open as open_campaign
     from mutabot.analysis.stored.changes import changes
     from mutabot.journal.files import previous_of
-    from mutabot.report.shaping.portable import portable
+    from mutabot.report.texts import portable
 
     other = journal_at(old)
     if other.exists() and journal.exists() and other.samefile(journal):
@@ -196,11 +187,11 @@ def _changes(campaign: StoredCampaign, journal: Path, old: Path) -> Changes:
 
 def _show(changes: Changes, *, json: bool) -> None:
     if json:
-        from mutabot.report.changes.data import changes_data
+        from mutabot.report.changes import changes_data
 
         print_json(changes_data(changes))
     else:
-        from mutabot.report.changes.text import print_changes
+        from mutabot.report.changes import print_changes
         from mutabot.report.terminal.console import make_console
 
         print_changes(make_console(), changes)

@@ -26,7 +26,6 @@ def request_of(
     *,
     executor: tuple[str, str] | None = None,
     evidence: bool = False,
-    order: int | None = None,
     every_test: bool = False,
     configured_selection: bool = True,
     **given: Unpack[Running],
@@ -36,7 +35,7 @@ def request_of(
     Args:
         executor: the name of an executor, and the value of its option; None for this machine.
         evidence: whether to record, unless the configuration has no room for it.
-        order, every_test: as in ``Request``.
+        every_test: as in ``Request``.
         configured_selection: whether the selection that the configuration names holds.
         given: the options.
 
@@ -77,8 +76,6 @@ def request_of(
         baseline=configuration.baseline_repetitions,
         families=families,
         sample=size,
-        order=order or configuration.order,
-        pairs=configuration.pairs,
         every_test=every_test,
         moments=_moments(configuration.when),
         shard=Shard.parse(shard) if shard is not None else None,
@@ -94,7 +91,7 @@ def request_again(root: Path, results: Results, jobs: int | None) -> Request:
     meta = results.meta
     return request_of(
         root, rounds=results.rounds, seed=meta.get("seed"), jobs=jobs, family=meta.get("families"),
-        order=meta.get("order"), every_test=bool(meta.get("every_test")), configured_selection=False,
+        every_test=bool(meta.get("every_test")), configured_selection=False,
     )  # fmt: skip
 
 

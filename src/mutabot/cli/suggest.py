@@ -5,17 +5,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from mutabot import limits
-from mutabot.errors import NothingToDoError, UsageError
+from mutabot.errors import NothingToDoError
 from mutabot.journal.files import find_journal
 
 from . import options
-from .output import print_json, progress_shown, tell
+from .output import print_json, progress_shown
 from .request import request_again
 
 if TYPE_CHECKING:
@@ -23,10 +22,6 @@ if TYPE_CHECKING:
 
     from mutabot.analysis.results import MutantResult, Results
 
-Write = Annotated[
-    Path | None,
-    typer.Option("--write", metavar="FILE", help="Write them as a new test file instead of printing a diff."),
-]
 Seeds = Annotated[
     int,
     typer.Option(
@@ -44,36 +39,26 @@ def suggest(
     only: options.Only = None,
     skip: options.Skip = None,
     seeds: Seeds = 20,
-    write: Write = None,
     jobs: options.Jobs = None,
     json: options.Json = False,
 ) -> None:
     """Suggest checks that kill survivors of the last campaign, each proven by running it."""
     from mutabot.analysis.results import read_results
-    from mutabot.analysis.stored.suggested import keep_suggestions
+    from mutabot.analysis.suggested import keep_suggestions
     from mutabot.journal.reader import JournalReader
-    from mutabot.report.suggested.data import suggested_data
-    from mutabot.report.suggested.text import print_suggestions
+    from mutabot.report.suggested import print_suggestions, suggested_data
     from mutabot.report.terminal.console import make_console
     from mutabot.suggestion import suggest as find_checks
 
     path = find_journal(context.obj)
     with JournalReader.open(path) as journal:
         results = read_results(journal)
-    root = path.parent.parent
-    file = _new_file(write, root) if write is not None else None
     chosen = _chosen(results, only, skip)
-    request = request_again(root, results, jobs)
+    request = request_again(path.parent.parent, results, jobs)
     with progress_shown() as progress:
-        found = find_checks(request, results, chosen, progress, seeds=seeds, write=file)
-    for name in found.files:
-        if (root / name).exists():
-            raise UsageError(f"{name} exists; --write makes new files and changes none")
+        found = find_checks(request, results, chosen, progress, seeds=seeds)
     keep_suggestions(path, results.meta, found)
-    for name, text in found.files.items():
-        _write(root / name, text)
     print_json(suggested_data(found)) if json else print_suggestions(make_console(), found)
-    tell(f"written: {name}" for name in found.files)
 
 
 def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) -> list[MutantResult]:
@@ -94,26 +79,3 @@ def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) ->
     if not chosen:
         raise NothingToDoError("none of the mutants that were asked for survived")
     return chosen
-
-
-def _new_file(write: Path, root: Path) -> str:
-    """The file relative to the project. Raises UsageError if it cannot be a new test file."""
-    path = write if write.is_absolute() else Path.cwd() / write
-    if not path.resolve().is_relative_to(root.resolve()):
-        raise UsageError(f"{write} is not in the project {root}: a test file must be among its tests")
-    if path.exists():
-        raise UsageError(f"{path} exists; --write makes a new file and changes none")
-    if not path.parent.is_dir():
-        raise UsageError(f"there is no folder {path.parent}")
-    if path.suffix != ".py":
-        raise UsageError(f"{write} is no Python file; write it like tests/test_suggested.py")
-    return str(path.resolve().relative_to(root.resolve()))
-
-
-def _write(path: Path, text: str) -> None:
-    """Raises UsageError if there is such a file by now, or it cannot be written."""
-    try:
-        with path.open("x", encoding="utf-8", newline="") as file:
-            file.write(text)
-    except OSError as error:
-        raise UsageError(f"{path} cannot be written: {error.strerror}") from error

@@ -34,14 +34,6 @@ Steps = Annotated[bool, typer.Option("--steps", help="Also what became of each m
 Drawing = Annotated[
     Path | None, typer.Option("--picture", metavar="FILE", help="Also draw a bar for each, as SVG.")
 ]
-Old = Annotated[
-    Path | None,
-    typer.Option(
-        "--compare",
-        metavar="OLD",
-        help="Tell what differs from this journal, or a project's folder with one.",
-    ),
-]
 Suggest = Annotated[
     bool, typer.Option("--suggest-demands", help="Print demands that this campaign meets, as TOML.")
 ]
@@ -52,13 +44,13 @@ def thresholds(
     sort: Sort = "loosest",
     steps: Steps = False,
     picture: Drawing = None,
-    compare: Old = None,
+    compare: options.Compared = None,
     suggest_demands: Suggest = False,
     json: options.Json = False,
 ) -> None:
     """Show from which magnitude on the tests notice graded faults, the loosest first."""
     from mutabot.analysis.thresholds.thresholds import thresholds_of
-    from mutabot.report.picture_file import check_picture
+    from mutabot.report.thresholds.picture import check_picture
 
     if sort not in _SORTS:
         raise UsageError(unknown_name_text("order", sort, _SORTS))
@@ -123,21 +115,20 @@ def _compare(results: Results, journal: Path, old: Path, *, json: bool) -> None:
         print_json(compared_data(comparison))
     else:
         from mutabot.report.terminal.console import make_console
-        from mutabot.report.thresholds.compared import print_compared
+        from mutabot.report.thresholds.text import print_compared
 
         print_compared(make_console(), comparison)
 
 
 def _suggest(found: Thresholds, project: Path) -> None:
-    from mutabot.report.thresholds.demands import suggested_toml
+    from mutabot.report.thresholds.data import suggested_toml
 
     table = "demand" if (project / _OWN).is_file() else "tool.mutabot.demand"
     echo(suggested_toml(found.ladders, table=table))
 
 
 def _draw(found: Thresholds, picture: Path) -> None:
-    from mutabot.report.picture_file import write_drawing
-    from mutabot.report.thresholds.picture import picture_of
+    from mutabot.report.thresholds.picture import picture_of, write_drawing
 
     if not found.ladders:
         raise UsageError("there is nothing to draw: no ladder could be judged")

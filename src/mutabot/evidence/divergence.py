@@ -3,34 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
 from math import inf, isclose
 from typing import Any
 
 from mutabot.model.seen.diverged import Apart, Diverged
 from mutabot.model.values.quantity import is_number, told_apart, value_text
 
-from .recording import Recording, Told
+from .recording import Told
 from .story import story_of
-from .tracks import Path, approaches, differences, noise_of, paths_of
+from .tracks import Seen, approaches, differences, noise_of
 
 #: differences and approaches that are told
 _MOST = 8
 #: by so much may equal numbers of a trace differ, as where no probe has a tolerance
 _ROUNDING = 1e-6
-
-
-@dataclass(frozen=True)
-class Seen:
-    """A recording, and what is worked out of it once."""
-
-    recording: Recording
-
-    @cached_property
-    def paths(self) -> dict[str, Path]:
-        """Everything that was tracked."""
-        return paths_of(self.recording)
 
 
 def diverged(

@@ -7,12 +7,11 @@ what was hit, where things lie in the end. Then how far things strayed, and wher
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Protocol
 
 from mutabot.model.seen.diverged import Apart, Near
 
 from .recording import Block, Moment, Recording
-from .tracks import TURNED, Path
+from .tracks import TURNED, Seen
 
 #: parts of a sentence
 _MOST = 3
@@ -26,20 +25,8 @@ _EARLY = 1.0
 _HIGHER = 0.005
 
 
-class Told(Protocol):
-    """A recording and its paths."""
-
-    @property
-    def recording(self) -> Recording:
-        """All that was seen."""
-
-    @property
-    def paths(self) -> dict[str, Path]:
-        """Where things were."""
-
-
 def story_of(
-    original: Told, mutant: Told, apart: Sequence[Apart], near: Sequence[Near], *, is_cut: bool
+    original: Seen, mutant: Seen, apart: Sequence[Apart], near: Sequence[Near], *, is_cut: bool
 ) -> str:
     """The sentence, its greatest news first; empty if the world was the same.
 
@@ -101,7 +88,7 @@ def _never_touched(mutant: _Contacts, original: _Contacts) -> Iterator[str]:
             yield f"{one} and {other} never touched, in the original at {began:.1f} s"
 
 
-def _let_go(mutant: _Contacts, original: _Contacts, told: Told, usual: Told) -> Iterator[str]:
+def _let_go(mutant: _Contacts, original: _Contacts, told: Seen, usual: Seen) -> Iterator[str]:
     """Something was held, and came loose otherwise than in the original."""
     for pair in sorted(mutant.spans.keys() & original.spans.keys()):
         if not _is_carried(pair, told):
@@ -122,7 +109,7 @@ def _let_go(mutant: _Contacts, original: _Contacts, told: Told, usual: Told) -> 
             yield f"{held} slipped from {holder} at {loose:.1f} s{above}"
 
 
-def _calls_at(time: float, told: Told) -> set[str]:
+def _calls_at(time: float, told: Seen) -> set[str]:
     """The places of the program's calls that were under way, or had just ended."""
     calls = told.recording.calls
     return {
@@ -181,19 +168,19 @@ def _close(near: Sequence[Near], contacts: _Contacts) -> Iterator[str]:
             )
 
 
-def _is_carried(pair: str, told: Told) -> bool:
+def _is_carried(pair: str, told: Seen) -> bool:
     """Whether one of the two is tracked and the other neither stands around nor is tracked."""
     one, other = pair.split(", ", 1)
     blocks = {block.name for block in told.recording.blocks}
     return (one in told.paths) != (other in told.paths) and not {one, other} & blocks
 
 
-def _held(pair: str, told: Told) -> tuple[str, str]:
+def _held(pair: str, told: Seen) -> tuple[str, str]:
     one, other = pair.split(", ", 1)
     return (one, other) if one in told.paths else (other, one)
 
 
-def _height(thing: str, time: float, told: Told) -> tuple[float | None, str]:
+def _height(thing: str, time: float, told: Seen) -> tuple[float | None, str]:
     """How high something was over what stood below it, m, and what that was; None if nothing did."""
     if thing not in told.paths:
         return None, ""

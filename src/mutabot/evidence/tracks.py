@@ -81,6 +81,18 @@ def paths_of(recording: Recording) -> dict[str, Path]:
     return {name: path for name, path in found.items() if path.rows}
 
 
+@dataclass(frozen=True)
+class Seen:
+    """A recording, and what is worked out of it once."""
+
+    recording: Recording
+
+    @cached_property
+    def paths(self) -> dict[str, Path]:
+        """Everything that was tracked."""
+        return paths_of(self.recording)
+
+
 def differences(
     original: dict[str, Path],
     mutant: dict[str, Path],

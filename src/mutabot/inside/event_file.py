@@ -9,7 +9,6 @@ from typing import Any, Protocol
 
 from mutabot.border.event_file import sealed
 from mutabot.border.events import (
-    Copied,
     Event,
     ForkEnded,
     Serving,
@@ -19,7 +18,7 @@ from mutabot.border.processes import FOLDER, SESSION, SUFFIX, UNWRITTEN
 from mutabot.border.test_end import TestEnd
 
 #: what the controller is to hear of at once; it finds all else when it looks
-_PROMPT = (TestStart, TestEnd, ForkEnded, Serving, Copied)
+_PROMPT = (TestStart, TestEnd, ForkEnded, Serving)
 
 
 class Sink(Protocol):

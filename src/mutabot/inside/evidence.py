@@ -26,7 +26,6 @@ class Evidence:
         said: how the robot refused a mutated call by data, in words; None if it did not.
         invalid: whether a mutated call rejected its arguments' types.
         failure: what went wrong in the tool or the operator itself, or None.
-        is_partial: whether any of several mutants that are one changed something.
         is_of_text: whether the mutant is one of the program text, which makes no calls itself: a refusal
             then counts only if it ends the test.
         is_unknown: whether what the robot refused is no command at all.
@@ -40,10 +39,14 @@ class Evidence:
     said: str | None = None
     invalid: bool = False
     failure: str | None = None
-    is_partial: bool = False
     is_of_text: bool = False
     is_unknown: bool = False
     away: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def culprits(self) -> frozenset[int]:
+        """The refusals and all that they hold, each by its ``id``."""
+        return frozenset(id(leaf) for refusal in self.refusals for leaf in (refusal, *leaves(refusal)))
 
     @property
     def refusal(self) -> str | None:
@@ -63,7 +66,6 @@ def together(found: Sequence[Evidence]) -> Evidence:
         said=next((one.said for one in found if one.said is not None), None),
         invalid=any(one.invalid for one in found),
         failure=next((one.failure for one in found if one.failure is not None), None),
-        is_partial=any(one.acted or one.is_partial for one in found),
         is_of_text=any(one.is_of_text for one in found),
         is_unknown=any(one.is_unknown for one in found),
         away=added(one.away for one in found),

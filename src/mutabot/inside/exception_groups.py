@@ -6,8 +6,10 @@ raised, and the mismatches of a whole doctest.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+from mutabot.errors import MutabotError
+from mutabot.inside.targets.names import is_named
 from mutabot.model.class_name import class_name
 
 #: classes that are told by their names, since their modules may not be loaded, with what they hold
@@ -32,6 +34,19 @@ def everything(error: BaseException) -> Iterator[BaseException]:
         yield link
         cause = _cause(link)
         waiting += [*_held(link), *([cause] if cause is not None else [])]
+
+
+def failure_in(error: BaseException, failures: Iterable[str]) -> str | None:
+    """What went wrong in the tool or the machine, as far as an exception tells; None if nothing did.
+
+    ``failures``: names of exceptions that the vocabulary says mean nothing else.
+    """
+    for link in everything(error):
+        if isinstance(link, MemoryError):
+            return "the memory limit was reached"
+        if isinstance(link, MutabotError) or is_named(link, failures):
+            return f"{type(link).__name__}: {link}"
+    return None
 
 
 def is_due_to(error: BaseException, culprits: frozenset[int]) -> bool:

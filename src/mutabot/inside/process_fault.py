@@ -112,11 +112,6 @@ class ProcessFaults:
         self._placed.append(_Placed(mutant, how))
 
     @property
-    def ids(self) -> set[str]:
-        """The ids of the mutants."""
-        return {one.mutant.id for one in self._placed}
-
-    @property
     def evidence(self) -> list[Evidence]:
         """What each of them did in the running test."""
         return [one.evidence for one in self._placed]

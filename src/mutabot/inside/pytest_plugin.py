@@ -9,15 +9,28 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE
-from mutabot.inside.node_ids import node_id
-from mutabot.inside.suite.any_scope import offer_at_every_scope
-from mutabot.model.seed import ROUND_VARIABLE, SEED_VARIABLE
+from mutabot.inside.unrewritten import import_us_unrewritten
+
+import_us_unrewritten()  # before anything else of us is imported
+
+from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE  # noqa: E402
+from mutabot.inside.node_ids import node_id  # noqa: E402
+from mutabot.model.seed import ROUND_VARIABLE, SEED_VARIABLE  # noqa: E402
 
 if TYPE_CHECKING:
     from mutabot.inside.suite.conductor import Conductor
     from mutabot.inside.suite.plain_round import PlainRound
 
+_NAME = "mutabot_seed"
+#: the fixtures that stand for it, by scope of who asks
+_SHARED = {
+    "class": "_mutabot_class_seed",
+    "module": "_mutabot_module_seed",
+    "package": "_mutabot_package_seed",
+    "session": "mutabot_round_seed",
+}
+#: pytest has no public way to say this; where it is not there, ``mutabot_round_seed`` still works
+_ASK = "_get_active_fixturedef"
 _conductor: Conductor | None = None
 _plain_round: PlainRound | None = None
 
@@ -26,10 +39,7 @@ def pytest_addoption(pluginmanager: pytest.PytestPluginManager) -> None:
     """Before pytest loads other plug-ins: if there is a job, keep out those that it cannot do with."""
     if JOB_VARIABLE not in os.environ:
         return
-    from .unrewritten import import_us_unrewritten  # noqa: PLC0415  # a sleeping plugin costs nothing
-
-    import_us_unrewritten()
-    from mutabot.inside.suite.switched_off import switch_off  # noqa: PLC0415
+    from mutabot.inside.suite.switched_off import switch_off  # noqa: PLC0415  # a sleeping plugin costs nothing
 
     switch_off(pluginmanager)
 
@@ -58,7 +68,7 @@ def pytest_load_initial_conftests() -> Generator[None, Any, Any]:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Hand pytest's hooks to the conductor."""
-    offer_at_every_scope(__name__)
+    _offer_at_every_scope(__name__)
     if _conductor is not None:
         config.pluginmanager.register(_conductor, "mutabot-conductor")
         config.pluginmanager.register(_conductor.running, "mutabot-running")
@@ -118,3 +128,29 @@ def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, 
     watched = _conductor.footprints.setting_up(fixturedef) if _conductor is not None else nullcontext()
     with seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")), watched:
         return (yield)
+
+
+def _offer_at_every_scope(owner: str) -> None:
+    """Let fixtures of every scope ask for the seed. ``owner``: what defines it; others may override it.
+
+    To pytest a fixture has one scope, and one that is made anew for each test cannot be had by a fixture that
+    several tests share. A shared simulator needs a seed as well. So what a shared fixture gets by this name
+    is another fixture, of its own scope: the seed of the class, module, package or session that it lives as
+    long as.
+    """
+    ask: Any = getattr(pytest.FixtureRequest, _ASK, None)
+    if ask is None or hasattr(ask, "offers_seed"):
+        return
+
+    def asked(self: Any, argname: str) -> Any:
+        if argname == _NAME and self.scope in _SHARED and _is_defined_by(owner, self):
+            argname = _SHARED[self.scope]
+        return ask(self, argname)
+
+    asked.offers_seed = True  # type: ignore[attr-defined]  # a mark on it: several sessions may share a process
+    setattr(pytest.FixtureRequest, _ASK, asked)
+
+
+def _is_defined_by(owner: str, request: Any) -> bool:
+    definitions = request._fixturemanager.getfixturedefs(_NAME, request._pyfuncitem)
+    return bool(definitions) and getattr(definitions[-1].func, "__module__", None) == owner

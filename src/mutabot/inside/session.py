@@ -11,7 +11,7 @@ from functools import partial
 from random import Random
 from typing import Any
 
-from mutabot.border.events import Acted, CalledAtImport, Event, MutatedCall, SiteSeen, TextsSeen
+from mutabot.border.events import Acted, Called, Event, SiteSeen, TextsSeen
 from mutabot.border.job import Budget, Job
 from mutabot.inside.calls.activation import Activation, is_refusal
 from mutabot.inside.calls.answers import Answers, handles_of
@@ -23,10 +23,9 @@ from mutabot.inside.calls.trace import Recorder
 from mutabot.inside.fork.bunch import Bunch
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.readings.along import Along, Rehearsal, rehearse
-from mutabot.inside.readings.clock import ClockReader
+from mutabot.inside.readings.clock import ClockReader, ProgramTime
 from mutabot.inside.readings.instances import Instances
 from mutabot.inside.readings.probes import Reading, take
-from mutabot.inside.readings.program_time import ProgramTime
 from mutabot.inside.readings.recording import TestRecording
 from mutabot.inside.targets.callables import Callables
 from mutabot.inside.targets.interception import Interception
@@ -69,8 +68,6 @@ class Session:
         refused_calls: in the baseline, calls of the running test that the robot refused: see ``TestEnd``.
         live: in the baseline, sites that returned the robot's own memory: see ``TestEnd``.
         on_refused, on_live: told of each of them; None if nobody asks.
-        parts: the mutants of which its own consists that changed something in it; what is of the program text
-            has no name.
         placed: faults that their providers put in place before each test.
     """
 
@@ -96,7 +93,6 @@ class Session:
     live: set[int] = field(default_factory=set)
     on_refused: Callable[[int, int], None] | None = None
     on_live: Callable[[int], None] | None = None
-    parts: set[str] = field(default_factory=set)
     _doors: list[Door] = field(default_factory=list)
     _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
     _telling: list[Door] = field(default_factory=list)
@@ -169,8 +165,7 @@ class Session:
         """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
         mutants = self.job.branching.mutants if self.job.branching is not None else ()
         own = (self.job.mutant,) if self.job.mutant is not None else ()
-        singles = [one for mutant in (*mutants, *own) for one in mutant.singles]
-        self.standing.known = {one.site.span: one.operation for one in singles}
+        self.standing.known = {one.site.span: one.operation for one in (*mutants, *own)}
         if self.job.inspect:
             self.standing.noted = StandIns(lambda: self.test, self.locator.relative)
 
@@ -219,8 +214,8 @@ class Session:
         """The first test begins."""
         if self.meter is None or self.test:
             return
-        if self.recorder.trace:
-            self.pipe.send(CalledAtImport(tuple(self.recorder.trace)))
+        for call in self.recorder.trace:
+            self.pipe.send(Called(*call))
         for activation in self.activations:
             activation.keep_early()
 
@@ -260,16 +255,15 @@ class Session:
 
     def activate(self, mutant: Mutant) -> None:
         """Take on a mutant. What of it is an alternative in the program text stands there already."""
-        for single in mutant.singles:
-            operation = self.job.vocabulary.operation(single.operation)
-            if single.id in self.job.faults:
-                self.placed.add(single, self.job.faults[single.id])
-            elif operation is not None:
-                refusals = self._refusals(operation)
-                on_act = partial(self._acted, single.id)
-                made = Activation(single, operation, refusals, on_act, self._in_mutated_call)
-                made.time = self._time.now_if_known
-                self.passing.activate(made)
+        operation = self.job.vocabulary.operation(mutant.operation)
+        if mutant.id in self.job.faults:
+            self.placed.add(mutant, self.job.faults[mutant.id])
+        elif operation is not None:
+            refusals = self._refusals(operation)
+            on_act = partial(self._acted, mutant.id)
+            made = Activation(mutant, operation, refusals, on_act, self._in_mutated_call)
+            made.time = self._time.now_if_known
+            self.passing.activate(made)
 
     def grow(self, trunk: Trunk) -> None:
         """Run the original from now on, and fork a branch for every mutant of the trunk's."""
@@ -299,7 +293,6 @@ class Session:
         """
         self._end_imports()
         self.test = test
-        self.parts.clear()
         self._look_again()
         self.passing.meter = Meter(self.job.budgets.get(test, Budget()))
         is_baseline = self.job.record and self.job.mutant is None and self.job.branching is None
@@ -469,28 +462,18 @@ class Session:
         if self.branch is None:  # a branch sends its sites with its end
             self.pipe.send(site)
 
-    def _acted(self, part: str) -> None:
-        """A part of the mutant changed something; what is of the program text has no name."""
-        self.parts.add(part)
+    def _acted(self, mutant: str) -> None:
+        """The mutant changed something; what is of the program text has no name."""
         self.recording.note_fault(
-            len(self.recorder.trace), self.recorder.began if part else self.recording.clock()
+            len(self.recorder.trace), self.recorder.began if mutant else self.recording.clock()
         )
-        if self.text is not None and self.text.is_mutant and not self.text.has_acted:
-            return
-        if self.part_names - {""} <= self.parts:
-            self.pipe.send(Acted(self.test))
-
-    @property
-    def part_names(self) -> set[str]:
-        """What all parts of the mutant at work are called in ``parts``."""
-        of_text = {""} if self.text is not None and self.text.is_mutant else set()
-        return {one.mutant.id for one in self.activations} | self.placed.ids | of_text
+        self.pipe.send(Acted(self.test))
 
     def _simulated(self) -> float | None:
         return self.meter.simulated if self.meter is not None else None
 
     def _in_mutated_call(self, began: bool) -> None:
-        self.pipe.send(MutatedCall(self.test, began))
+        self.pipe.send(Acted(self.test, began))
 
     def _clock_is_wrong(self, key: str, text: str) -> None:
         clock = self.job.vocabulary.clock

@@ -9,7 +9,8 @@ from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from mutabot.border.codec import from_data
-from mutabot.model import By, Mutant, Outcome, Verdict, Vocabulary
+from mutabot.border.test_end import TestEnd
+from mutabot.model import By, LeftOut, Mutant, Outcome, Verdict, Vocabulary
 
 from .records import (
     ALTERED,
@@ -24,7 +25,9 @@ from .records import (
     SHARD,
     SINCE,
     VERIFICATION,
+    BaselineTest,
     Budgeted,
+    ControlEnd,
     Drawing,
     Flaky,
     Reaching,
@@ -51,8 +54,6 @@ _FACTS: Mapping[str, Any] = {
     "engine": str,
     "jobs": int,
     "families": tuple[str, ...],
-    "order": int,
-    "pairs": int,
     "every_test": bool,
     "fresh": bool,
     "started": float,
@@ -107,7 +108,7 @@ def fact(key: str, value: Any) -> Any:
     if value is None or key not in _FACTS:
         return value
     found = from_data(_FACTS[key], value)
-    if key in ("rounds", "order") and not 0 < value <= MOST_ROUNDS:
+    if key == "rounds" and not 0 < value <= MOST_ROUNDS:
         raise ValueError
     if isinstance(found, ShardOf) and not 1 <= found.number <= found.of <= MOST_SHARDS:
         raise ValueError
@@ -154,17 +155,43 @@ def agreed(value: T, *pairs: tuple[Any, Any]) -> T:
 def mutant_in(text: Any) -> Mutant:
     """A mutant."""
     found = from_data(Mutant, load(text))
-    for one in found.singles:
-        span = one.site.span
-        for number in (span.line, span.end_line, span.column, span.end_column):
-            _check_number(number)
-        _check_number(one.magnitude, least=-math.inf)
-    if found.number < 0 or any(one.parts for one in found.parts):
-        raise ValueError
+    span = found.site.span
+    for number in (found.number, span.line, span.end_line, span.column, span.end_column):
+        _check_number(number)
+    _check_number(found.magnitude, least=-math.inf)
     return found
 
 
-def outcome_in(text: Any, mutant: Any, round: Any, verdict: Any, by: Any) -> Outcome:
+def planned_in(number: Any, name: Any, text: Any) -> Mutant:
+    """A mutant of the plan, if it is that of the columns beside it."""
+    found = mutant_in(text)
+    return agreed(found, (found.number, number), (found.id, name))
+
+
+def known_in(name: Any, text: Any, outdated: Any) -> tuple[Mutant, bool]:
+    """A mutant of an earlier campaign, and whether something has changed that it depends on."""
+    found = mutant_in(text)
+    return agreed(found, (found.id, name)), outdated != 0
+
+
+def left_out_in(name: Any, reason: Any, text: Any) -> LeftOut:
+    """What the plan leaves out."""
+    found = from_data(LeftOut, load(text))
+    return agreed(found, (found.id, name))
+
+
+def baseline_test_in(round: Any, repetition: Any, name: Any, outcome: Any, text: Any) -> BaselineTest:
+    """A test of the baseline."""
+    found = BaselineTest(round_in(round), round_in(repetition), from_data(TestEnd, load(text)))
+    return agreed(found, (found.test.test, name))
+
+
+def control_in(file: Any, control: Any, ok: Any, detail: Any) -> ControlEnd:
+    """A control."""
+    return ControlEnd(text_in(file), text_in(control), ok == 1, text_in(detail))
+
+
+def outcome_in(mutant: Any, round: Any, verdict: Any, by: Any, text: Any, *_: Any) -> Outcome:
     """An outcome, if it is that of the columns beside it."""
     found = from_data(Outcome, load(text))
     agreed(found, (found.mutant, text_in(mutant)), (found.round, round_in(round)))

@@ -1,9 +1,8 @@
 """The journal: one SQLite file with the plan, the baseline and every outcome of a campaign.
 
-One process writes, any number read, also while it writes and after it was killed. Records that come close
-upon each other are committed together, none more than a second after it was added: a killed campaign loses
-the last second at most, and one that ends by itself, by an error or by Ctrl-C nothing. All else (reports,
-resuming, comparing) reads from here.
+One process writes, any number read, also while it writes and after it was killed. What is added is
+committed at once: a campaign that is killed loses nothing that it had found. All else (reports, resuming,
+comparing) reads from here.
 
 A new campaign begins in the same file: in one transaction the plan, the baseline and the outcomes of the
 one before make way. Its mutants and outcomes are kept aside: outcomes that still hold are taken over, and
@@ -21,10 +20,8 @@ from typing import Any
 from mutabot.border.test_end import TestEnd
 from mutabot.model import LeftOut, Mutant, Outcome
 
-from . import merging
 from .database import guarded
 from .lock import WriterLock
-from .marks import Unmarked, remove
 from .reader import JournalReader
 from .records import ALTERED, Row
 from .schema import (
@@ -33,7 +30,7 @@ from .schema import (
     FINISHED_KEY,
     KNOWN_BEFORE,
     SCHEMA_VERSION,
-    TABLES,
+    TAKE,
     VERSION_KEY,
 )
 from .store import Store, dump
@@ -48,12 +45,15 @@ class Journal(JournalReader):
 
     Attributes:
         moved: where what lay in its place was moved to, if that was no journal of this version.
+        lost: how often the file was deleted or replaced while it was written, in words; it was written again.
+        altered: what somebody else changed in the file meanwhile, in words; it was written again.
+        unstored: why rows of this campaign could not be stored, one line each: all others are.
     """
 
-    moved: Path | None = None
-
-    def __init__(self, store: Store, *, waits: bool) -> None:
+    def __init__(self, store: Store, moved: Path | None, *, waits: bool) -> None:
         super().__init__(store)
+        self.moved = moved
+        self.lost, self.altered, self.unstored = store.lost, store.altered, store.unstored
         self._waits = waits  # for its campaign to begin: until then it is that of the one before
 
     @classmethod
@@ -79,18 +79,17 @@ class Journal(JournalReader):
             path.parent.mkdir(parents=True, exist_ok=True)
             lock = WriterLock.take(path)
             try:
-                found = make_way(path)
-                journal = cls(Store.to_write(path, lock), waits=found.is_journal)
-                journal.moved = found.moved
+                moved = make_way(path)
+                store = Store.to_write(path, lock)
             except BaseException:
                 lock.release()
                 raise
-            with journal._store.closed_on_error():
-                if found.is_journal:
-                    journal._store.mark_rows()
+            journal = cls(store, moved, waits=not store.is_new)
+            with store.closed_on_error():
+                if journal._waits:
                     journal._wait()
                 else:
-                    journal._begin(meta, TABLES)
+                    journal._begin(meta)
         return journal
 
     def begin(self, meta: Mapping[str, Any], *, fresh: bool = False) -> None:
@@ -103,7 +102,7 @@ class Journal(JournalReader):
             return  # nothing was there before
         if self.finished == "complete":
             keep_copy(self._store)
-        self._begin(meta, ADOPT)
+        self._begin(meta)
         self._waits = False
         if fresh:
             self._store.write("UPDATE kept SET key = ''")
@@ -114,33 +113,15 @@ class Journal(JournalReader):
             self._store.put(FINISHED_KEY, "killed")
         self._store.put(ATTEMPT_KEY, None)
 
-    def _begin(self, meta: Mapping[str, Any], statements: str) -> None:
+    def _begin(self, meta: Mapping[str, Any]) -> None:
         with self._store.transaction() as execute:
             if self._waits:
-                self._set_aside()
-            for statement in filter(str.strip, statements.split(";")):
-                execute(statement)
-            if not self._waits:
-                self._store.mark_rows()
+                self._store.remove_unmarked()  # before any of it is believed
+                for statement in ADOPT.split(";"):
+                    execute(statement)
             self._store.put(VERSION_KEY, SCHEMA_VERSION)
             for key, value in meta.items():
                 self._store.put(key, value)
-
-    def _set_aside(self) -> None:
-        """Drop what something else than Mutabot has written, before any of it is believed."""
-        found = Unmarked(self._store.connection)
-        remove(self._store.connection, found)
-        self._store.unmarked = list(found.lines())
-
-    @property
-    def lost(self) -> list[str]:
-        """How often the file was deleted or replaced while it was written, in words; it was written again."""
-        return self._store.lost
-
-    @property
-    def altered(self) -> list[str]:
-        """What somebody else changed in the file meanwhile, in words; it was written again."""
-        return self._store.altered
 
     # What the campaign was and how it ended
 
@@ -157,11 +138,6 @@ class Journal(JournalReader):
         if self._store.altered:
             self._store.put(ALTERED, [*(self.meta().get(ALTERED) or []), *self._store.altered])
         self._store.put(ATTEMPT_KEY if self._waits else FINISHED_KEY, reason)
-
-    @property
-    def unstored(self) -> tuple[str, ...]:
-        """Why rows of this campaign could not be stored, one line each: all others are."""
-        return self._store.unstored
 
     # The baseline and the plan
 
@@ -262,11 +238,18 @@ class Journal(JournalReader):
 
     def take_plan(self, other: JournalReader) -> None:
         """Take over the plan of another journal, its baseline and the texts, whole or not at all."""
-        merging.take_plan(self._store, other._store)
+        with self._store.transaction() as execute:
+            for table in ("test", "mutant", "left_out", "source"):
+                execute(f"DELETE FROM {table}")
+                for row in other._store.rows(f"SELECT * FROM {table} ORDER BY rowid"):
+                    execute(f"INSERT INTO {table} VALUES ({', '.join('?' * len(row))})", *row)
 
     def take_outcomes(self, other: JournalReader) -> None:
         """Take over what another journal has found and knows of earlier campaigns; what is there stays."""
-        merging.take_outcomes(self._store, other._store)
+        with self._store.transaction() as execute:
+            for question, statement in TAKE.items():
+                for row in other._store.rows(question):
+                    execute(statement, *row)
 
     def tidy(self, mutants: Iterable[str]) -> None:
         """Forget what earlier campaigns found about other mutants, and what nothing refers to."""

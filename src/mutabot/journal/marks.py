@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager
 from hashlib import blake2b
 from typing import Any
 
-from .database import Connection, decode
+from .database import Execute, decode
 from .fitting import is_round
 from .schema import COLUMNS
 
@@ -22,6 +21,14 @@ _SIZE = 12
 _LONGEST = 150
 #: by which column people know a row
 _NAMES = {"meta": "key", "test": "test", "mutant": "id", "left_out": "id", "source": "file", "known": "id"}
+#: rows that are named before it is said how many more there are
+_SHOWN = 5
+#: the rows of a table with their marks
+_QUESTIONS = {
+    table: f"SELECT t.rowid, m.digest, t.* FROM main.{table} AS t "
+    f"LEFT JOIN main.mark AS m ON m.\"table\" = '{table}' AND m.row = t.rowid"
+    for table in COLUMNS
+}
 #: what people call rows of a table
 _WORDS = {
     "meta": "fact",
@@ -60,81 +67,56 @@ def mark_rows(connection: sqlite3.Connection) -> None:
             )
 
 
-class Unmarked(dict[str, dict[int, str]]):
-    """Rows that are not as Mutabot wrote them: by table and row id, what people know them by.
-
-    Attributes:
-        gone: number of rows that are gone, by table.
-    """
-
-    def __init__(self, connection: Connection) -> None:
-        super().__init__()
-        self.gone: dict[str, int] = {}
-        for table in COLUMNS:
-            self._look(connection, table)
-
-    def _look(self, connection: Connection, table: str) -> None:
-        marked = 0
-        for row, mark, values in _rows(connection, table):
-            marked += mark is not None
-            if mark != mark_of(table, *values):
-                self.setdefault(table, {})[row] = name_of(table, values)
-        (marks,) = connection.execute('SELECT count(*) FROM mark WHERE "table" = ?', (table,)).fetchone()
-        if marks > marked:
-            self.gone[table] = marks - marked
-
-    def lines(self) -> Iterator[str]:
-        """Each of them in words."""
-        for table, rows in self.items():
-            yield from (f"{word_for(table)} {name}" for name in rows.values())
-        for table, count in self.gone.items():
-            yield f"{count} × {word_for(table)} that {'is' if count == 1 else 'are'} gone"
+def remove_unmarked(execute: Execute) -> list[str]:
+    """Remove rows that are not as Mutabot wrote them, and marks of rows that are gone; says which."""
+    found = []
+    for table in COLUMNS:
+        strange = {
+            row: name_of(table, values)
+            for row, mark, values in _rows(execute(_QUESTIONS[table]))
+            if mark != mark_of(table, *values)
+        }
+        gone = f'FROM mark WHERE "table" = ? AND row NOT IN (SELECT rowid FROM {table})'
+        (count,) = execute(f"SELECT count(*) {gone}", table).fetchone()
+        for row in strange:
+            execute(f"DELETE FROM {table} WHERE rowid = ?", row)
+        execute(f"DELETE {gone}", table)
+        found += [f"{word_for(table)} {name}" for name in strange.values()]
+        if count:
+            found.append(f"{count} × {word_for(table)} that {'is' if count == 1 else 'are'} gone")
+    return found
 
 
-def leave_out(connection: sqlite3.Connection) -> list[str]:
-    """Have questions of a connection that reads see marked rows alone; returns the others in words."""
-    with _as_of_now(connection):
-        found = Unmarked(connection)
-        for table, rows in found.items():
-            # a temporary table goes before the journal's own of that name
-            connection.execute("CREATE TEMP TABLE IF NOT EXISTS unmarked (row INTEGER PRIMARY KEY)")
-            connection.execute("DELETE FROM temp.unmarked")
-            connection.executemany("INSERT INTO temp.unmarked VALUES (?)", [(row,) for row in rows])
-            connection.execute(
-                f"CREATE TEMP TABLE {table} AS SELECT * FROM main.{table} "
-                "WHERE rowid NOT IN (SELECT row FROM temp.unmarked) ORDER BY rowid"
-            )
-    return list(found.lines())
+def differences(file: sqlite3.Connection, known: sqlite3.Connection) -> list[str]:
+    """Rows that were changed, added or removed, and whatever else is in the file, in words."""
+    question = "SELECT type, name, sql FROM main.sqlite_master"
+    theirs, ours = (set(one.execute(question)) for one in (file, known))
+    if theirs != ours:
+        strange = sorted(f"{kind} {name}" for kind, name, _ in theirs - ours)
+        return [f"the tables are others than were made ({', '.join(strange[:_SHOWN]) or 'some are gone'})"]
+    found = [line for table in COLUMNS for line in _differences_in(table, file, known)]
+    question = "SELECT count(*) FROM main.mark"
+    if not found and file.execute(question).fetchone() != known.execute(question).fetchone():
+        found.append("the marks of rows")
+    return [*found[:_SHOWN], f"and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else found
 
 
-@contextmanager
-def _as_of_now(connection: sqlite3.Connection) -> Iterator[None]:
-    """All questions see the same rows, also of a journal that is being written."""
-    connection.execute("BEGIN")
-    try:
-        yield
-    finally:
-        connection.execute("COMMIT")
-
-
-def remove(connection: Connection, found: Unmarked) -> None:
-    """Remove rows that are not marked, and marks of rows that are gone."""
-    for table, rows in found.items():
-        for row in rows:
-            connection.execute(f"DELETE FROM {table} WHERE rowid = ?", (row,))
-    for table in found.gone:
-        connection.execute(
-            f'DELETE FROM mark WHERE "table" = ? AND row NOT IN (SELECT rowid FROM {table})', (table,)
-        )
-
-
-def _rows(connection: Connection, table: str) -> Iterator[tuple[int, Any, tuple[Any, ...]]]:
-    columns = ", ".join(f't."{column}"' for column in COLUMNS[table])
-    question = (
-        f"SELECT t.rowid, m.digest, {columns} FROM main.{table} AS t "
-        f"LEFT JOIN main.mark AS m ON m.\"table\" = '{table}' AND m.row = t.rowid"
+def _differences_in(table: str, *connections: sqlite3.Connection) -> Iterator[str]:
+    theirs, ours = (
+        {
+            row: (name_of(table, values), mark, mark_of(*map(repr, values)))
+            for row, mark, values in _rows(one.execute(_QUESTIONS[table]))
+        }
+        for one in connections
     )
-    for row, mark, *values in connection.execute(question):
+    for row in sorted(theirs.keys() | ours.keys()):
+        if theirs.get(row) != ours.get(row):
+            what = "added" if row not in ours else "removed" if row not in theirs else "changed"
+            yield f"{word_for(table)} {(ours.get(row) or theirs[row])[0]} was {what}"
+
+
+def _rows(cursor: sqlite3.Cursor) -> Iterator[tuple[int, Any, tuple[Any, ...]]]:
+    for row, mark, *values in cursor:
         yield row, mark, tuple(values)
 
 
@@ -144,8 +126,8 @@ def word_for(table: str) -> str:
 
 
 def name_of(table: str, values: tuple[Any, ...]) -> str:
-    """What people know a row by, not longer than a line."""
-    known = dict(zip(COLUMNS[table], values, strict=True))
+    """What people know a row by, not longer than a line; of the values, the first may do."""
+    known = dict(zip(COLUMNS[table], values, strict=False))
     if "round" in known and "mutant" in known:
         round = known["round"]
         where = f" in round {round + 1}" if is_round(round) else ""

@@ -4,32 +4,35 @@ from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 from mutabot.border.codec import from_data
-from mutabot.border.test_end import TestEnd
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
 
 from .fitting import (
     UNFIT,
-    agreed,
+    baseline_test_in,
+    control_in,
     fact,
     inflated,
-    is_round,
+    known_in,
+    left_out_in,
     load,
-    mutant_in,
     outcome_in,
+    planned_in,
     round_in,
     text_in,
 )
-from .marks import named, word_for
+from .marks import name_of, word_for
 from .records import BaselineTest, ControlEnd, Kept, Row
 from .schema import ATTEMPT_KEY, FINISHED_KEY, LAST
 from .store import Store
+
+T = TypeVar("T")
 
 
 class JournalReader:
@@ -110,44 +113,19 @@ class JournalReader:
 
     def tests(self) -> list[BaselineTest]:
         """The tests of the baseline in the order they were added."""
-        found = []
-        for round, repetition, name, text in self._store.rows(
-            "SELECT round, repetition, test, data FROM test ORDER BY rowid"
-        ):
-            with self._checked("test", name):
-                one = BaselineTest(round_in(round), round_in(repetition), from_data(TestEnd, load(text)))
-                found.append(agreed(one, (one.test.test, name)))
-        return found
+        return self._all("test", baseline_test_in)
 
     def controls(self) -> list[ControlEnd]:
         """The controls in the order they were added."""
-        found = []
-        for row in self._store.rows("SELECT test_file, control, ok, detail FROM control ORDER BY rowid"):
-            with self._checked("control", row[0]):
-                file, control, ok, detail = row
-                texts = [text_in(one) for one in (file, control, detail)]
-                found.append(ControlEnd(texts[0], texts[1], ok == 1, texts[2]))
-        return found
+        return self._all("control", control_in)
 
     def mutants(self) -> list[Mutant]:
         """The planned mutants by number."""
-        found = []
-        for number, name, text in self._store.rows(
-            "SELECT number, id, data FROM mutant ORDER BY number, rowid"
-        ):
-            with self._checked("mutant", name):
-                one = mutant_in(text)
-                found.append(agreed(one, (one.number, number), (one.id, name)))
-        return found
+        return self._all("mutant", planned_in, "ORDER BY number, rowid")
 
     def left_out(self) -> list[LeftOut]:
         """What the plan leaves out, in its order."""
-        found = []
-        for name, text in self._store.rows("SELECT id, data FROM left_out ORDER BY rowid"):
-            with self._checked("left_out", name):
-                one = from_data(LeftOut, load(text))
-                found.append(agreed(one, (one.id, name)))
-        return found
+        return self._all("left_out", left_out_in)
 
     def source(self, file: str) -> str | None:
         """The text of a mutated file at the time of the campaign, or None if it was not written down."""
@@ -160,15 +138,7 @@ class JournalReader:
 
     def outcomes(self) -> list[Outcome]:
         """The last outcome of each (mutant, round), in the order they came."""
-        return self._outcomes("outcome", f"WHERE rowid IN ({LAST}) ORDER BY rowid")
-
-    def _outcomes(self, table: str, condition: str = "") -> list[Outcome]:
-        found = []
-        rows = self._store.rows(f'SELECT mutant, round, verdict, "by", data FROM {table} {condition}')
-        for mutant, round, verdict, by, text in rows:
-            with self._checked(table, mutant, round):
-                found.append(outcome_in(text, mutant, round, verdict, by))
-        return found
+        return self._all("outcome", outcome_in, f"WHERE rowid IN ({LAST}) ORDER BY rowid")
 
     def rounds_known(self) -> dict[str, int]:
         """In how many rounds each mutant has an outcome; those without any are missing."""
@@ -201,7 +171,7 @@ class JournalReader:
             )  # fmt: skip
             for verdict, by, text, key in rows:
                 with self._checked(table, mutant, round):
-                    outcome_in(text, mutant, round, verdict, by)
+                    outcome_in(mutant, round, verdict, by, text)
                     return Row(mutant, round, verdict, by, text, key)
                 return None
         raise KeyError((mutant, round))
@@ -220,16 +190,11 @@ class JournalReader:
 
     def kept_outcomes(self) -> list[Outcome]:
         """All that earlier campaigns found, also what cannot be reused."""
-        return self._outcomes("kept")
+        return self._all("kept", outcome_in)
 
     def known(self) -> list[tuple[Mutant, bool]]:
         """Mutants of earlier campaigns, and whether something has changed since that they depend on."""
-        found = []
-        for name, text, outdated in self._store.rows("SELECT id, data, outdated FROM known ORDER BY rowid"):
-            with self._checked("known", name):
-                one = mutant_in(text)
-                found.append((agreed(one, (one.id, name)), outdated != 0))
-        return found
+        return self._all("known", known_in)
 
     def parts(self, digest: str) -> dict[str, str] | None:
         """What a digest in a key stands for, or None if that is not known any more."""
@@ -245,11 +210,18 @@ class JournalReader:
             return inflated(rows[0][0]) if rows else None
         return None
 
+    def _all(self, table: str, read: Callable[..., T], which: str = "ORDER BY rowid") -> list[T]:
+        """What the rows of a table hold, from all their columns."""
+        found = []
+        for row in self._store.rows(f"SELECT * FROM {table} {which}"):
+            with self._checked(table, *row):
+                found.append(read(*row))
+        return found
+
     @contextmanager
-    def _checked(self, table: str, name: Any, round: Any = None) -> Iterator[None]:
-        """Leave a row that holds what cannot be, and go on with the next."""
+    def _checked(self, table: str, *values: Any) -> Iterator[None]:
+        """Leave a row that holds what cannot be, and go on with the next; the first values name it."""
         try:
             yield
         except UNFIT:
-            where = f" in round {round + 1}" if is_round(round) else ""
-            self._unfit[f"{word_for(table)} {named(name)}{where}"] = None
+            self._unfit[f"{word_for(table)} {name_of(table, values)}"] = None

@@ -7,12 +7,13 @@ room, and reports read one without the others. Of a mutant only what differs fro
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Iterable
 from enum import IntEnum
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from .database import connect, connect_to_read, guarded
+from .database import connect, connect_to_read, guarded, loaded
 
 _TABLE = """
 CREATE TABLE IF NOT EXISTS recording (
@@ -47,7 +48,6 @@ class Recordings:
 
     def __init__(self, path: Path, connection: sqlite3.Connection, limit: int = 0) -> None:
         self.path, self._connection, self._limit = path, connection, limit
-        self._copy: object = None
         self._used = 0
         self.dropped = 0
 
@@ -67,16 +67,14 @@ class Recordings:
         return found
 
     @classmethod
-    def to_read(cls, journal: Path) -> Recordings | None:
-        """Those of this journal; None if there are none."""
+    def to_read(cls, journal: Path, *, copied: bool = False) -> Recordings | None:
+        """Those of this journal; None if there are none. ``copied``: as they are now, whatever comes."""
         path = recordings_path(journal)
         if not path.is_file():
             return None
         with guarded(path):
-            connection, copy = connect_to_read(path)
-            found = cls(path, connection)
-            found._copy = copy
-        return found
+            found = connect_to_read(path)
+            return cls(path, loaded(found) if copied else found)
 
     def __enter__(self) -> Self:
         return self
@@ -137,6 +135,18 @@ class Recordings:
             "SELECT test, rank, data FROM recording WHERE mutant = ? AND round = ?", mutant, round
         )
         return [(str(test), Rank(rank), bytes(data)) for test, rank, data in rows]
+
+    def take(self, others: Iterable[Recordings], mutants: set[str]) -> None:
+        """Take over those of several journals, of equal ones the first; all but of these mutants make way."""
+        self.keep_only(mutants)
+        done: set[tuple[str, int]] = set()
+        for other in others:
+            own = [pair for pair in other.pairs() if pair not in done]
+            for mutant, round in own:
+                self.forget(mutant, round)
+                for test, rank, data in other.of(mutant, round):
+                    self.add(mutant, round, test, rank, data)
+            done.update(own)
 
     def keep_only(self, mutants: set[str]) -> None:
         """Drop those of all other mutants."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from mutabot.border.test_end import TestEnd
 from mutabot.model import Outcome, Verdict
@@ -37,10 +37,9 @@ class Reaching:
     tests: tuple[str, ...] = ()
     sites: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
-    def at(self, sites: Iterable[str]) -> tuple[str, ...]:
-        """The tests that reach all of these sites."""
-        reached = [set(self.sites.get(site, ())) for site in sites]
-        return tuple(self.tests[index] for index in sorted(set.intersection(*reached))) if reached else ()
+    def at(self, site: str) -> tuple[str, ...]:
+        """The tests that reach a site."""
+        return tuple(self.tests[index] for index in sorted(set(self.sites.get(site, ()))))
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,14 +88,6 @@ class Row:
     by: str | None
     data: str
     key: str
-
-    def with_data(self, data: str) -> Row:
-        """The same with other data."""
-        return replace(self, data=data)
-
-    def with_key(self, key: str) -> Row:
-        """The same with another key."""
-        return replace(self, key=key)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-SCHEMA_VERSION = 4
+SCHEMA_VERSION = 5
 
 TABLES = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -60,6 +60,19 @@ DELETE FROM source;
 DELETE FROM outcome;
 DELETE FROM control
 """
+_OUTCOMES = f'SELECT mutant, round, verdict, "by", data, key, reused FROM outcome WHERE rowid IN ({LAST})'
+#: from one journal to another: what is asked there, and what is done with each row here; the first counts
+TAKE = {
+    f"{_OUTCOMES} ORDER BY rowid":
+        "INSERT INTO outcome SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7 "
+        "WHERE NOT EXISTS (SELECT 1 FROM outcome WHERE mutant = ?1 AND round = ?2)",
+    "SELECT test_file, control, ok, detail FROM control ORDER BY rowid":
+        "INSERT INTO control SELECT ?1, ?2, ?3, ?4 WHERE NOT EXISTS "
+        "(SELECT 1 FROM control WHERE test_file = ?1 AND control = ?2 AND ok = ?3)",
+    "SELECT * FROM parts": "INSERT OR IGNORE INTO parts VALUES (?, ?)",
+    "SELECT * FROM text": "INSERT OR IGNORE INTO text VALUES (?, ?)",
+    "SELECT * FROM kept": "INSERT OR IGNORE INTO kept VALUES (?, ?, ?, ?, ?, ?)",
+}  # fmt: skip
 # Keys of meta that are the journal's own; the others are the campaign's.
 VERSION_KEY, FINISHED_KEY = "journal:version", "journal:finished"
 #: of a campaign that has not begun yet: why it ended, null as long as it has not

@@ -7,87 +7,73 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, closing, contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any, Protocol, Self, TypeVar
+from typing import Any, Self
 
 from mutabot.border.codec import to_data
-from mutabot.border.storable import printable, storable
+from mutabot.border.storable import storable
 
-from .database import Batch, Connection, connect_to_read, guarded
+from .database import OF_ONE_ROW, Execute, connect_to_read, guarded, loaded, stored
 from .fitting import load
 from .lock import WriterLock
-from .marks import leave_out
+from .marks import remove_unmarked
 from .mirrored import Mirrored
 from .sound import check_schema, no_journal
 from .tracked import refuse_tracked
 
-T = TypeVar("T")
-
-
-class Execute(Protocol):
-    """Runs one statement with its values."""
-
-    def __call__(self, statement: str, *values: Any) -> sqlite3.Cursor: ...
+#: characters of a value that are shown
+_SHOWN = 100
 
 
 class Store:
-    """A connection to the file of a journal, with the lock of its writer or the copy that a reader needs.
+    """What is in a journal, in a database that nobody else can write; with the file of its writer.
 
     Every method raises JournalError when the file cannot be read or written.
 
     Attributes:
         path: the file.
-        connection: SQLite's own; whoever uses it beside the methods calls ``flush`` before.
-        unmarked: rows that something else than Mutabot has written, in words: questions leave them out.
+        connection: to read with.
+        unmarked: rows that something else than Mutabot has written, in words; they are left out.
+        unstored: why rows could not be stored, one line each: all others are.
+        is_new: whether there was nothing in the file.
+        lost, altered: as in ``Mirrored``.
     """
 
-    def __init__(
-        self,
-        path: Path,
-        connection: Connection,
-        *,
-        lock: WriterLock | None = None,
-        copy: TemporaryDirectory[str] | None = None,
-    ) -> None:
-        self.path, self.connection = path, connection
-        self._lock, self._copy = lock, copy
-        self._batch, self._is_whole = Batch(connection), False
+    def __init__(self, path: Path, connection: sqlite3.Connection, file: Mirrored | None = None) -> None:
+        self.path, self.connection, self._file = path, connection, file
+        self._execute: Execute | None = None  # within a transaction
         self.unmarked: list[str] = []
+        self.unstored: list[str] = []
+        self.is_new = file is not None and file.is_new
+        self.lost, self.altered = (file.lost, file.altered) if file is not None else ([], [])
 
     @classmethod
     def to_read(cls, path: Path) -> Self:
-        """Open an existing journal of this version to read it."""
+        """What is now in an existing journal of this version."""
         if not path.is_file():
             raise no_journal(path)
         refuse_tracked(path)
         with guarded(path):
-            connection, copy = connect_to_read(path)
-            store = cls(path, connection, copy=copy)
+            with closing(connect_to_read(path)) as file:
+                store = cls(path, loaded(file))
             with store.closed_on_error():
-                check_schema(path, connection)
-                store.unmarked = leave_out(connection)
-                connection.execute("PRAGMA query_only = ON")
+                check_schema(path, store.connection)
+                store.unmarked = remove_unmarked(lambda text, *values: store.connection.execute(text, values))
+                store.connection.execute("PRAGMA query_only = ON")
         return store
 
     @classmethod
     def to_write(cls, path: Path, lock: WriterLock) -> Self:
         """Open a journal to write it, whatever is in it; the file is made if there is none."""
         with guarded(path):
-            return cls(path, Mirrored(path, lock), lock=lock)
+            file = Mirrored(path, lock)
+        return cls(path, file.copy, file)
 
     def close(self) -> None:
         """Close the file; the lock of a writer is given back."""
-        try:
-            self.flush()
-        finally:
-            self.connection.close()
-            if self._lock is not None:
-                self._lock.release()
-            if self._copy is not None:
-                self._copy.cleanup()
+        (self._file or self.connection).close()
 
     @contextmanager
     def closed_on_error(self) -> Iterator[None]:
@@ -98,40 +84,24 @@ class Store:
             self.close()
             raise
 
-    def mark_rows(self) -> None:
-        """Have all rows marked that are written from now on."""
-        assert isinstance(self.connection, Mirrored)
-        with guarded(self.path):
-            self.connection.mark_rows()
+    def _begin(self, *, whole: bool = False) -> AbstractContextManager[Execute]:
+        assert self._file is not None
+        return self._file.transaction(whole=whole)
 
     def check(self) -> None:
         """Compare the file with what was written, and write again what is not so."""
-        assert isinstance(self.connection, Mirrored)
-        self.flush()
-        with guarded(self.path), self._batch.lock:
-            self.connection.check()
+        with guarded(self.path), self._begin(whole=True):
+            pass
 
-    @property
-    def lost(self) -> list[str]:
-        """How often the file was deleted or replaced, and written again, in words."""
-        return self.connection.lost if isinstance(self.connection, Mirrored) else []
-
-    @property
-    def altered(self) -> list[str]:
-        """What somebody else changed in the file, and was written again."""
-        return self.connection.altered if isinstance(self.connection, Mirrored) else []
+    def remove_unmarked(self) -> None:
+        """Drop what something else than Mutabot has written; within ``transaction``."""
+        assert self._execute is not None
+        self.unmarked = remove_unmarked(self._execute)
 
     def rows(self, statement: str, *values: Any) -> list[Any]:
         """What a question is answered with."""
-        with guarded(self.path), self._batch.lock:
-            if not self._is_whole:
-                self._batch.commit()
-            return self.connection.execute(statement, stored(values)).fetchall()
-
-    def each(self, statement: str) -> Iterator[Any]:
-        """What a question is answered with, one row after the other."""
         with guarded(self.path):
-            yield from self.connection.execute(statement)
+            return self.connection.execute(statement, stored(values)).fetchall()
 
     def fact(self, key: str) -> Any:
         """The value of a key of meta; None if it is not there."""
@@ -143,50 +113,33 @@ class Store:
         self.write("INSERT OR REPLACE INTO meta VALUES (?, ?)", key, dump(value))
 
     def write(self, statement: str, *values: Any) -> None:
-        """Carry out one statement, at once with all that waits; within ``transaction``, as a part of it."""
+        """Carry out one statement; within ``transaction``, as a part of it."""
         with guarded(self.path):
-            if self._is_whole:
-                self.connection.execute(statement, stored(values))
+            if self._execute is not None:
+                self._execute(statement, *values)
                 return
-            self._batch.add(statement, *stored(values))
-            self._batch.commit()
+            with self._begin() as execute:
+                execute(statement, *values)
 
     def add(self, statement: str, *values: Any) -> None:
-        """Carry out one statement; it is committed within a second, or with the next that is at once."""
+        """Add a row; one that cannot be stored takes no other with it."""
         with guarded(self.path):
-            self._batch.add(statement, *stored(values))
-
-    @property
-    def unstored(self) -> tuple[str, ...]:
-        """Why rows could not be stored, one line each: all others are."""
-        return tuple(self._batch.unstored)
-
-    def flush(self) -> None:
-        """Commit all that waits."""
-        with guarded(self.path):
-            self._batch.commit()
+            try:
+                with self._begin() as execute:
+                    execute(statement, *values)
+            except OF_ONE_ROW as error:
+                what = ", ".join(str(value)[:_SHOWN] for value in values[:2])
+                self.unstored.append(f"{what}: {type(error).__name__}: {error}")
 
     @contextmanager
     def transaction(self) -> Iterator[Execute]:
         """Several statements that take effect together or not at all."""
-        with guarded(self.path), self._batch.lock:
-            self._batch.commit()
-            self.connection.execute("BEGIN IMMEDIATE")
-            self._is_whole = True
+        with guarded(self.path):
             try:
-                yield lambda statement, *values: self.connection.execute(statement, stored(values))
-            except BaseException:
-                if self.connection.in_transaction:  # SQLite itself rolls back when the disk is full
-                    self.connection.execute("ROLLBACK")
-                raise
+                with self._begin() as self._execute:
+                    yield self._execute
             finally:
-                self._is_whole = False
-            self.connection.execute("COMMIT")
-
-
-def stored(values: Iterable[Any]) -> tuple[Any, ...]:
-    """Values of a row, with texts that can be stored."""
-    return tuple(printable(value) if isinstance(value, str) else value for value in values)
+                self._execute = None
 
 
 def dump(value: Any) -> str:

@@ -4,41 +4,28 @@ from __future__ import annotations
 
 import sqlite3
 from contextlib import closing, suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 from mutabot.errors import JournalError
 
-from .database import connect, guarded
+from .database import SUFFIXES, connect, guarded, write_anew
 from .files import previous_of
 from .sound import check_schema
 from .store import Store
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
-    """What lay where a journal is to be written.
-
-    Attributes:
-        is_journal: whether that was a journal of this version.
-        moved: where anything else was moved to; None if there was nothing.
-    """
-
-    is_journal: bool
-    moved: Path | None = None
-
-
-def make_way(path: Path) -> Found:
-    """Take what lies there over if it is a journal of this version; move anything else aside.
+def make_way(path: Path) -> Path | None:
+    """Move aside what lies there and is no journal of this version; returns where to.
 
     A journal of another version gets that as part of its name, so that no later campaign overwrites it;
     a damaged one takes the place of the previous one.
 
     Raises JournalError for a file that is not ours.
     """
-    _remove(_half_a_copy_of(path))
+    for half in (path, previous_of(path)):  # of a campaign that was killed meanwhile
+        half.with_name(f"{half.name}.new").unlink(missing_ok=True)
     if not path.exists():
-        return Found(is_journal=False)
+        return None
     with path.open("rb") as file:
         start = file.read(16)
     if start and not start.startswith(b"SQLite format 3"):
@@ -46,37 +33,25 @@ def make_way(path: Path) -> Found:
     kept = previous_of(path)
     try:
         if _is_journal(path):
-            return Found(is_journal=True)
+            return None
     except JournalError as error:
         if error.version is None:
             raise
         kept = path.with_name(f"{path.stem}.version-{error.version}{path.suffix}")
     if _is_empty(path):  # of a campaign that was killed before it had begun
-        return Found(is_journal=False)
-    _remove(kept)
-    for suffix in ("", "-wal", "-shm"):
-        old = path.with_name(path.name + suffix)
+        return None
+    for suffix in SUFFIXES:
+        old, new = path.with_name(path.name + suffix), kept.with_name(kept.name + suffix)
+        new.unlink(missing_ok=True)
         if old.exists():
-            old.replace(kept.with_name(kept.name + suffix))
-    return Found(is_journal=False, moved=kept)
+            old.replace(new)
+    return kept
 
 
 def keep_copy(store: Store) -> None:
     """Keep the campaign of an opened journal as it is, as ``previous_of`` its path."""
-    kept, new = previous_of(store.path), _half_a_copy_of(store.path)
-    store.flush()
     with guarded(store.path):
-        try:
-            with closing(sqlite3.connect(new)) as target:
-                store.connection.backup(target)
-            _remove(kept)
-            new.replace(kept)
-        finally:
-            new.unlink(missing_ok=True)
-
-
-def _half_a_copy_of(path: Path) -> Path:
-    return path.with_name(f"{previous_of(path).name}.new")
+        write_anew(store.connection, previous_of(store.path))
 
 
 def _is_empty(path: Path) -> bool:
@@ -99,8 +74,3 @@ def _is_journal(path: Path) -> bool:
             raise
         return False
     return bool(sound == "ok")
-
-
-def _remove(path: Path) -> None:
-    for suffix in ("", "-wal", "-shm"):
-        path.with_name(path.name + suffix).unlink(missing_ok=True)

@@ -28,7 +28,6 @@ class Mutant:
         description: one line that an engineer recognises.
         idle: for operators that ask, what the operation answers while the robot does nothing: a plain value,
             or the data of ``idle.Idle``.
-        parts: the mutants that this one is at once; empty for a mutant of the first order.
         magnitude: how big its fault is, in ``unit``; None for a fault without a size.
         unit: the unit of the magnitude; None where it has none.
         has_sizes: whether the same fault is planted in several magnitudes, of which a threshold is sought.
@@ -47,7 +46,6 @@ class Mutant:
     variant: str
     description: str
     idle: Any = None
-    parts: tuple[Mutant, ...] = ()
     magnitude: float | None = None
     unit: str | None = None
     direction: str = ""
@@ -58,8 +56,6 @@ class Mutant:
     @property
     def id(self) -> str:
         """Stable under edits elsewhere: file, function, text, occurrence, quantity, operator."""
-        if self.parts:
-            return "+".join(part.id for part in self.parts)
         from_pattern = f"{self.pattern_name}" if self.pattern is not None else ""
         subject = "/".join(part for part in (from_pattern, self.quantity) if part) or "call"
         variant = f"={self.variant}" if self.variant else ""
@@ -75,11 +71,6 @@ class Mutant:
         if not self.has_sizes:
             return ""
         return replace(self, variant=self.direction).id
-
-    @property
-    def singles(self) -> tuple[Mutant, ...]:
-        """The mutants of the first order that it consists of: itself, or its parts."""
-        return self.parts or (self,)
 
     @property
     def pattern_name(self) -> str:

@@ -16,7 +16,7 @@ def fits(pattern: str, mutant: Mutant) -> bool:
     if means_numbers(pattern):
         return any(mutant.number in _range(part) for part in pattern.split(","))
     line = line_of(pattern)
-    if line is not None and any(_is_at(single, *line) for single in mutant.singles):
+    if line is not None and _is_at(mutant, *line):
         return True
     names = (mutant.operator, mutant.family, mutant.site.role.value)
     file = mutant.site.span.file

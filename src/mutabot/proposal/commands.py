@@ -1,11 +1,15 @@
-"""Text commands: patterns from the texts that a program sends."""
+"""Commands that a text, or a node, register or name, tells apart: patterns, and what stands beside them."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
-from .guess import Guess
+from mutabot.proposal.compared import with_compared
+from mutabot.proposal.guess import Guess, Setting, guess_argument, guess_reading
+from mutabot.proposal.observed import Part, SeenCall, SeenCommand
 
 #: names of arguments that hold a text command
 MESSAGES = frozenset({"message", "command", "cmd", "msg", "text", "line", "order"})
@@ -79,3 +83,96 @@ def _opposite(notation: str, known: Sequence[str]) -> str | None:
             if swapped != notation and swapped in known:
                 return swapped
     return None
+
+
+_READS = re.compile(r"(?:^|_)(?:read|get)", re.IGNORECASE)
+#: arguments that say how to write rather than what
+_HOW = frozenset({"timeout", "wait", "device_id", "slave", "unit", "no_response_expected", "count", "qos"})
+#: more different numbers than these are no settings, but a scale
+_MOST_VALUES = 5
+
+
+def tells_commands(call: SeenCall) -> bool:
+    """Whether there are commands, and their texts look like names of something."""
+    if not call.commands:
+        return False
+    return call.told_by != "self" or len(call.commands) > 1 or "=" in call.commands[0].text
+
+
+def is_read(call: SeenCall) -> bool:
+    """Whether its commands read."""
+    return _READS.search(call.name) is not None
+
+
+def commands_of(call: SeenCall, groups: Sequence[Sequence[Any]] = ()) -> list[tuple[str, Guess]]:
+    """Each command as a notation, with what is written beside it or read.
+
+    ``groups``: constants that the program compares one and the same thing with.
+    """
+    found = []
+    for command in call.commands:
+        table = _read(command, groups) if is_read(call) else _written(command)
+        notation = command.text.replace("{", "{{").replace("}", "}}")
+        found.append((notation, Guess(table, [], _seen(command, is_read(call)))))
+    return found
+
+
+def _written(command: SeenCommand) -> dict[str, Any]:
+    tables = {}
+    for name, parts in command.arguments.items():
+        for part in parts:
+            if name not in _HOW and part.path == name and part.always:
+                table = _value(command, name, part)
+                if table:
+                    tables[name] = table
+    return {"arguments": tables} if tables else {}
+
+
+def _value(command: SeenCommand, name: str, part: Part) -> dict[str, Any]:
+    """What a written value means: as the node is called, else as its values look."""
+    values = list(part.values)
+    if part.length is not None or not values or any(isinstance(value, str) for value in values):
+        return {}
+    if all(isinstance(value, bool) for value in values):
+        return {"kind": "output", "values": [False, True]}
+    guess = guess_argument(_last_word(command.text), _setting(command, part))
+    if guess.table.get("kind") in ("translation", "rotation", "duration"):
+        return guess.table
+    if 2 <= len(values) <= _MOST_VALUES:
+        return {"kind": "output", "values": values}
+    if len(values) > _MOST_VALUES:
+        return {"kind": "output", "range": [float(min(values)), float(max(values))]}
+    return {}
+
+
+def _read(command: SeenCommand, groups: Sequence[Sequence[Any]]) -> dict[str, Any]:
+    part = next((part for part in command.result if part.path == "" and part.always), None)
+    if part is None or part.length is not None or not part.values:
+        return {}
+    if part.type == "bool":
+        return {"result": {"kind": "flag"}}
+    setting = replace(_setting(command, part), constants=with_compared(part.values, groups))
+    guess = guess_reading(_last_word(command.text), setting)
+    is_complete = guess.table.get("kind") != "label" or "values" in guess.table
+    return {"result": guess.table} if guess.table and is_complete else {}
+
+
+def _setting(command: SeenCommand, part: Part) -> Setting:
+    annotation = "str" if part.type == "str" else ""
+    return Setting("_".join(_words(command.text)), "", annotation, part.values)
+
+
+def _last_word(text: str) -> str:
+    """The name at the end of a node's id: ``speed`` of ``ns=2;s=Belt.Speed``."""
+    return (_words(text) or [""])[-1]
+
+
+def _words(text: str) -> Sequence[str]:
+    parts = re.split(r"[^A-Za-z0-9]+", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", text))
+    return [part.lower() for part in parts if part]
+
+
+def _seen(command: SeenCommand, reads: bool) -> str:
+    parts = command.result if reads else [part for parts in command.arguments.values() for part in parts]
+    shown = [str(value) for part in parts for value in part.values]
+    return ", ".join(shown[:4]) + (", …" if len(shown) > 4 else "")

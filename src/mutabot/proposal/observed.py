@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import math
 import os
 import re
 import signal
@@ -20,7 +19,7 @@ from mutabot.campaign.workers.processes import command, kill_group
 from mutabot.extensions import libraries, told_to_processes
 
 from .layout import Layout
-from .named.seen import Use, uses
+from .named.seen import Use, is_finite, uses
 
 #: seconds that the tests may take; what was seen by then counts
 LIMIT = 180.0
@@ -237,16 +236,11 @@ def _parts(leaves: Sequence[Mapping[str, Any]], times: int) -> tuple[Part, ...]:
 
 def part_of(leaf: Mapping[str, Any], times: int = 0) -> Part:
     """A part as the watching plug-in writes it; ``times``: in how many calls it could have been."""
-    values = tuple(value for value in leaf["values"] if _is_finite(value))
+    values = tuple(value for value in leaf["values"] if is_finite(value))
     return Part(
         leaf["path"], leaf["name"], leaf["doc"], values, leaf["length"], leaf["type"],
         always=leaf["count"] >= times,
     )  # fmt: skip
-
-
-def _is_finite(value: Any) -> bool:
-    numbers = value if isinstance(value, list) else [value]
-    return all(math.isfinite(one) for one in numbers if isinstance(one, float))
 
 
 def _is_own(layout: Layout, text: str) -> bool:

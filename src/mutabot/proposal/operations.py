@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from .commands import MESSAGES, patterns_of
+from mutabot.proposal.commands import MESSAGES, commands_of, is_read, patterns_of, tells_commands
+
 from .compared import with_compared
 from .guess import Guess, Setting, guess_argument, guess_reading, is_complete
-from .nodes import commands_of, is_read, tells_commands
 from .observed import Part, SeenCall, part_of
 from .sequences import guess_elements
 

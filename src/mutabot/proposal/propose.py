@@ -8,16 +8,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mutabot.errors import ConfigurationError, UsageError
+from mutabot.proposal.commands import commands_of, tells_commands
+from mutabot.proposal.vocabulary_text import vocabulary_text
 from mutabot.vocabulary import load
 
 from .compared import Unreached, compared_with, unreached
 from .known import Known, known_vocabularies
 from .layout import look
 from .named.entries import Entry, entries, unused
-from .nodes import commands_of, tells_commands
 from .observed import LIMIT, Observed, SeenCall, observe
 from .operations import proposals
-from .vocabulary_text import vocabulary_text
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
 

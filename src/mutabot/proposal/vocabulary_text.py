@@ -1,17 +1,59 @@
-"""Proposed operations as the text of a vocabulary file."""
+"""Proposed operations as the text of a vocabulary file, with what is to be looked at."""
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from .compared import Unreached
-from .named.entries import Entry
-from .named.text import entry_text
-from .observed import Part, SeenCall
-from .operations import Proposal
-from .toml import key_text, quantity_line, short, value_text
+from mutabot.proposal.compared import Unreached
+from mutabot.proposal.guess import Guess, is_complete
+from mutabot.proposal.named.entries import Described, Entry
+from mutabot.proposal.observed import Part, SeenCall
+from mutabot.proposal.operations import Proposal
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+#: the longest text that is shown as an example
+_LONGEST = 60
+
+
+def key_text(path: str) -> str:
+    """A key, in quotes if it needs any."""
+    return path if _BARE.fullmatch(path) else value_text(path)
+
+
+def value_text(value: Any) -> str:
+    """A value."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key_text(key)} = {value_text(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(value_text(item) for item in value) + "]"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    return json.dumps(value)
+
+
+def short(value: Any) -> str:
+    """A value as an example."""
+    if isinstance(value, list):
+        shown = ", ".join(short(one) for one in value[:8])
+        return f"[{shown}{', …' if len(value) > 8 else ''}]"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    text = value_text(value)
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
+
+
+def quantity_line(key: str, guess: Guess, seen: str) -> str:
+    """A quantity, marked as a guess; a comment if a vocabulary would not take it."""
+    shown = f"; seen: {seen}" if seen and seen != "nothing" else ""
+    if not is_complete(guess):
+        table = value_text({**guess.table, "values": ["…", "…"]})
+        return f"# {key} = {table}  # guess: give all values it can have{shown}"
+    checks = f"; check the {' and the '.join(guess.checks)}" if guess.checks else ""
+    return f"{key} = {value_text(guess.table)}  # guess{checks}{shown}"
+
 
 #: values shown as an example
 _EXAMPLES = 4
@@ -155,3 +197,66 @@ def _pattern_lines(proposal: Proposal) -> list[str]:
         )
         lines = ["command = false  # guess: it only reads", f"# give each pattern {hint}", *lines]
     return lines
+
+
+#: parts without a meaning that are shown, and values of each
+_MOST_UNTOLD, _FEW = 16, 3
+_DONE = {
+    "topic": "messages", "service": "calls", "action": "goals, feedback and results", "parameter": "readings",
+    "timer": "ticks", "rate": "turns", "tf": "readings",
+}  # fmt: skip
+
+
+def entry_text(entry: Entry) -> str:
+    """One ``[[operation]]``, with what nothing tells as a comment."""
+    name = entry.name.replace(" → ", " -> ")
+    lines = [f"[[operation]]  # {_where_named(entry)}", f"{entry.key} = {value_text(name)}"]
+    if entry.direction:
+        lines.append(f"direction = {value_text(entry.direction)}")
+    if entry.type:
+        lines.append(f"type = {value_text(entry.type)}")
+    told = [part for part in entry.parts if part.guess is not None]
+    lines += [quantity_line(_key(part), part.guess, _seen(part)) for part in told if part.guess is not None]
+    lines += _refused(entry)
+    lines += _untold([part for part in entry.parts if part.guess is None and not _says_no(part)])
+    return "\n".join(lines)
+
+
+def _where_named(entry: Entry) -> str:
+    count = sum(use.count for use in entry.uses)
+    file, line, _ = entry.uses[0].sites[0]
+    what = _DONE[entry.key]
+    return f"seen: {count} {what.removesuffix('s') if count == 1 else what}, first at {file}:{line}"
+
+
+def _refused(entry: Entry) -> Iterator[str]:
+    """How it may say no, by the conventions of ROS: that is for the user to decide."""
+    if any(_says_no(part) for part in entry.parts):
+        yield '# refused = { path = "success", values = [false] }  # if that is how it refuses a command'
+    if entry.key == "action":
+        yield '# refused = ["ABORTED", "REJECTED"]  # if goals that end so were refused'
+
+
+def _says_no(part: Described) -> bool:
+    return part.table == "response" and part.path == "success" and part.part.type in ("bool", "boolean")
+
+
+def _untold(parts: list[Described]) -> Iterator[str]:
+    if not parts:
+        return
+    shown = [f"{_key(part)} ({'; '.join(filter(None, (part.part.type, _seen(part))))})" for part in parts]
+    more = f", and {len(shown) - _MOST_UNTOLD} more" if len(shown) > _MOST_UNTOLD else ""
+    yield f"# nothing tells what this means: {', '.join(shown[:_MOST_UNTOLD])}{more}"
+
+
+def _key(part: Described) -> str:
+    return f"{part.table}.{key_text(part.path)}" if part.path else part.table
+
+
+def _seen(part: Described) -> str:
+    values = part.part.values
+    elements = re.search(r"\[(\d+):(\d+)\]$", part.path)
+    if elements is not None and part.path != part.part.path:
+        values = tuple(value[int(elements[1]) : int(elements[2])] for value in values)
+    texts = [short(value) for value in values[: 1 if part.part.length is not None else _FEW]]
+    return ", ".join(texts) + (", …" if len(values) > len(texts) else "")

@@ -9,7 +9,7 @@ from typing import Any
 
 from mutabot.analysis.chance import Estimate, false_kills, false_survivors
 from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.score import KillRate, RoundScores, Score
+from mutabot.analysis.score import RoundScores, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.border.codec import to_data
 from mutabot.journal.records import (
@@ -25,13 +25,11 @@ from mutabot.journal.records import (
     SINCE,
     VERIFICATION,
     Drawing,
-    Repeated,
     Repeats,
     Replayed,
-    ShardOf,
     Verification,
 )
-from mutabot.model import Mutant, Outcome, Quantity, Verdict
+from mutabot.model import Mutant, Outcome, Verdict
 
 #: raised when a key changes its meaning or goes away; new keys do not raise it
 FORMAT = 1
@@ -47,6 +45,11 @@ def dumps(data: Any) -> str:
     return json.dumps(_finite(data), indent=2, ensure_ascii=False, default=str)
 
 
+def facts(one: object, names: str) -> dict[str, Any]:
+    """These attributes of something, in this order, as JSON-like data."""
+    return {name: to_data(getattr(one, name)) for name in names.split()}
+
+
 def results_data(results: Results) -> dict[str, Any]:
     """Everything about a campaign, as JSON-like data."""
     return {
@@ -55,37 +58,21 @@ def results_data(results: Results) -> dict[str, Any]:
         "finished": results.state == "complete",
         "attempt": results.attempt,
         "meta": {key: value for key, value in results.meta.items() if key not in _ELSEWHERE},
-        "rounds": [
-            {"round": number, **score_data(score)} for number, score in enumerate(results.all.rounds, start=1)
-        ],
+        "rounds": _score_rounds(results.all),
         "groups": [
-            {
-                "family": group.family,
-                "role": group.role,
-                "mutants": group.mutants,
-                "population": group.population,
-                **scores_data(group.scores),
-            }
+            {**facts(group, "family role mutants population"), **scores_data(group.scores)}
             for group in results.groups
         ],
         "mutants": [result_data(result) for result in results.mutants],
         "graded": [result_data(result) for result in results.graded],
-        "left_out": [
-            {"id": item.id, "description": item.description, "reason": item.reason}
-            for item in results.left_out
-        ],
-        "controls": [
-            {"test_file": one.test_file, "control": one.control, "ok": one.ok, "detail": one.detail}
-            for one in results.controls
-        ],
+        "left_out": [facts(item, "id description reason") for item in results.left_out],
+        "controls": [facts(one, "test_file control ok detail") for one in results.controls],
         "baseline": [
             {
                 "test": one.test.test,
                 "round": one.round + 1,
                 "repetition": one.repetition + 1,
-                "outcome": one.test.outcome,
-                "wall": one.test.wall,
-                "simulated": one.test.simulated,
+                **facts(one.test, "outcome wall simulated"),
             }
             for one in results.tests
         ],
@@ -95,9 +82,8 @@ def results_data(results: Results) -> dict[str, Any]:
         "flaky": list(results.flaky.tests),
         "verification": _verification(results.verification),
         "repeats": repeats_data(results.repeats),
-        "shard": _shard(results.shard),
-        "set_aside": list(results.set_aside),
-        "altered": list(results.altered),
+        "shard": facts(results.shard, "number of mutants") if results.shard is not None else None,
+        **facts(results, "set_aside altered"),
     }
 
 
@@ -105,11 +91,7 @@ def mutant_data(mutant: Mutant) -> dict[str, Any]:
     """One mutant as planned."""
     span = mutant.site.span
     return {
-        "id": mutant.id,
-        "number": mutant.number,
-        "operator": mutant.operator,
-        "variant": mutant.variant,
-        "family": mutant.family,
+        **facts(mutant, "id number operator variant family"),
         "role": mutant.site.role.value,
         "file": span.file,
         "span": {
@@ -120,12 +102,7 @@ def mutant_data(mutant: Mutant) -> dict[str, Any]:
         },
         "function": span.function,
         "call": mutant.site.text,
-        "operation": mutant.operation,
-        "pattern": mutant.pattern,
-        "quantity": mutant.quantity,
-        "description": mutant.description,
-        "magnitude": mutant.magnitude,
-        "unit": mutant.unit,
+        **facts(mutant, "operation pattern quantity description magnitude unit"),
         "direction": mutant.direction or None,
         "ladder": mutant.ladder or None,
         "moment": mutant.moment.text if mutant.moment is not None else None,
@@ -134,30 +111,24 @@ def mutant_data(mutant: Mutant) -> dict[str, Any]:
 
 def result_data(result: MutantResult) -> dict[str, Any]:
     """One mutant with what became of it."""
+    rate, meaning = result.kill_rate, result.quantity
     return {
         **mutant_data(result.mutant),
-        "meaning": _meaning(result.quantity),
+        "meaning": facts(meaning, "kind axis unit frame mode") if meaning is not None else None,
         "rounds": [_round_data(number, one) for number, one in enumerate(result.rounds, start=1)],
-        "kill_rate": _kill_rate(result.kill_rate),
+        "kill_rate": {**facts(rate, "killed valid rate"), "interval": interval_data(rate.interval)},
         "survivor": result.is_survivor,
         "indistinguishable": result.indistinguishable,
         "distance": result.distance if result.is_survivor else None,
         "worst": result.worst if result.is_survivor else None,
-        "why": result.why,
-        "earlier": result.earlier,
-        "outdated": result.outdated,
+        **facts(result, "why earlier outdated"),
     }
 
 
 def score_data(score: Score) -> dict[str, Any]:
     """A score with its counts."""
     return {
-        "score": score.score,
-        "check_score": score.check_score,
-        "killed": score.killed,
-        "valid": score.valid,
-        "by_check": score.by_check,
-        "timeouts": score.timeouts,
+        **facts(score, "score check_score killed valid by_check timeouts"),
         "counts": {verdict.value: score.counts.get(verdict, 0) for verdict in Verdict},
     }
 
@@ -172,17 +143,18 @@ def scores_data(scores: RoundScores) -> dict[str, Any]:
         "check_interval": interval_data(scores.check_interval),
         "sample_interval": interval_data(scores.sample_interval),
         "sample_check_interval": interval_data(scores.sample_check_interval),
-        "rounds": [
-            {"round": number, **score_data(score)} for number, score in enumerate(scores.rounds, start=1)
-        ],
+        "rounds": _score_rounds(scores),
     }
+
+
+def _score_rounds(scores: RoundScores) -> list[dict[str, Any]]:
+    return [{"round": number, **score_data(one)} for number, one in enumerate(scores.rounds, start=1)]
 
 
 def replayed_data(mutant: Mutant, rounds: Iterable[Replayed]) -> dict[str, Any]:
     """One mutant that was run again, beside its outcomes in the journal."""
     return {
-        "id": mutant.id,
-        "number": mutant.number,
+        **facts(mutant, "id number"),
         "rounds": [
             {
                 "round": one.round + 1,
@@ -195,27 +167,13 @@ def replayed_data(mutant: Mutant, rounds: Iterable[Replayed]) -> dict[str, Any]:
     }
 
 
-def _shard(shard: ShardOf | None) -> dict[str, Any] | None:
-    if shard is None:
-        return None
-    return {"number": shard.number, "of": shard.of, "mutants": list(shard.mutants)}
-
-
 def _verification(found: Verification | None) -> dict[str, Any] | None:
     if found is None:
         return None
     return {
-        "wanted": found.wanted,
-        "checked": found.checked,
-        "agreed": found.agreed,
+        **facts(found, "wanted checked agreed"),
         "disagreements": [
-            {
-                "id": one.mutant,
-                "number": one.number,
-                "round": one.round + 1,
-                "first": one.first,
-                "second": one.second,
-            }
+            {"id": one.mutant, "number": one.number, "round": one.round + 1, **facts(one, "first second")}
             for one in found.disagreements
         ],
     }
@@ -223,31 +181,19 @@ def _verification(found: Verification | None) -> dict[str, Any] | None:
 
 def repeats_data(repeats: Repeats) -> dict[str, Any]:
     """What was run once more, and what that says about the others."""
+    stratum = "outcomes repeated changed"
     return {
-        "doubted": _stratum(repeats.doubted),
-        "others": _stratum(repeats.others),
+        "doubted": facts(repeats.doubted, stratum),
+        "others": facts(repeats.others, stratum),
         "certain": repeats.certain,
-        "survivors": _stratum(repeats.survivors),
+        "survivors": facts(repeats.survivors, stratum),
         "false_kills": _estimate(false_kills(repeats)),
         "false_survivors": _estimate(false_survivors(repeats)),
     }
 
 
-def _stratum(stratum: Repeated) -> dict[str, int]:
-    return {"outcomes": stratum.outcomes, "repeated": stratum.repeated, "changed": stratum.changed}
-
-
 def _estimate(found: Estimate | None) -> dict[str, Any] | None:
-    if found is None:
-        return None
-    return {
-        "expected": found.expected,
-        "low": found.low,
-        "high": found.high,
-        "level": found.level,
-        "known": found.known,
-        "unknown": found.unknown,
-    }
+    return facts(found, "expected low high level known unknown") if found is not None else None
 
 
 def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
@@ -255,68 +201,24 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         return {"round": number, "verdict": None}
     return {
         "round": number,
-        "verdict": outcome.verdict.value,
-        "by": outcome.by.value if outcome.by is not None else None,
-        "test": outcome.test,
-        "exception": outcome.exception,
-        "message": outcome.message,
-        "place": outcome.place,
-        "hits": outcome.hits,
-        "acted": outcome.acted,
-        "away": dict(outcome.away),
+        **facts(outcome, "verdict by test exception message place hits acted away"),
         "example": list(outcome.example) if outcome.example is not None else None,
-        "tests": outcome.tests,
-        "wall": outcome.wall,
-        "simulated": outcome.simulated,
-        "indistinguishable": outcome.indistinguishable,
-        "distance": outcome.distance,
-        "divergence": list(outcome.divergence),
-        "way": outcome.way,
-        "gaps": list(outcome.gaps),
-        "compared": to_data(outcome.compared) if outcome.compared is not None else None,
-        "engine": outcome.engine,
-        "stuck": outcome.stuck,
-        "repeats": outcome.repeats,
-        "beside": outcome.beside,
+        **facts(outcome, "tests wall simulated indistinguishable distance divergence way gaps compared"),
+        **facts(outcome, "engine stuck repeats beside"),
         "figures": [{**to_data(one), "is_better": one.is_better} for one in outcome.figures],
         "looked": [to_data(one) for one in outcome.looked],
         "diverged": [{**to_data(one), "worst": one.worst} for one in outcome.diverged],
     }
 
 
-def _kill_rate(rate: KillRate) -> dict[str, Any]:
-    return {
-        "killed": rate.killed,
-        "valid": rate.valid,
-        "rate": rate.rate,
-        "interval": interval_data(rate.interval),
-    }
-
-
 def drawing_data(drawing: Drawing | None) -> dict[str, Any] | None:
     """How the mutants were drawn, or None if all of them were run."""
-    if drawing is None:
-        return None
-    return {"size": drawing.sample, "selected": drawing.selected}
+    return {"size": drawing.sample, "selected": drawing.selected} if drawing is not None else None
 
 
-def interval_data(interval: Interval | None) -> dict[str, float] | None:
+def interval_data(interval: Interval | None) -> dict[str, Any] | None:
     """An interval with its level, or None."""
-    if interval is None:
-        return None
-    return {"low": interval.low, "high": interval.high, "level": interval.level}
-
-
-def _meaning(quantity: Quantity | None) -> dict[str, Any] | None:
-    if quantity is None:
-        return None
-    return {
-        "kind": quantity.kind.value,
-        "axis": quantity.axis,
-        "unit": quantity.unit,
-        "frame": quantity.frame,
-        "mode": quantity.mode.value if quantity.mode is not None else None,
-    }
+    return facts(interval, "low high level") if interval is not None else None
 
 
 def _finite(value: Any) -> Any:

@@ -2,7 +2,7 @@
 
 A format is one file in ``report/formats``, which sets ``FORMAT``; it has the file's name, with hyphens. It is
 found there, and nothing else has to be edited. Packages bring others (``extensions.Extension``). What it is
-given has no absolute path and no character that no format could hold (``report.shaping.portable``); what is
+given has no absolute path and no character that no format could hold (``report.texts.portable``); what is
 special in the format it escapes itself.
 """
 
@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.changes import Changes
 from mutabot.model import Span
-from mutabot.report.shaping.places import Place, place_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +39,18 @@ class Material:
         """Where a span is. ``length`` counts the characters of a part of a line."""
         return place_of(span, self.campaign.source(span.file), length)
 
+    def scores(self) -> list[dict[str, Any]]:
+        """The scores of each family and role."""
+        return [
+            {
+                "family": one.family,
+                "role": one.role,
+                "score": one.scores.mean,
+                "checkScore": one.scores.mean_check,
+            }
+            for one in self.campaign.scores
+        ]
+
 
 @dataclass(frozen=True, slots=True)
 class Format:
@@ -53,3 +65,47 @@ class Format:
     name: str
     make: Callable[[Material], str]
     tells_changes: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place in a file.
+
+    Attributes:
+        line, end_line: from 1.
+        column: from 1; 1 if the text is not known.
+        end_column: from 1, of the first character behind it; None if the text is not known.
+        text: what stands there; None if it is not known.
+    """
+
+    line: int
+    column: int
+    end_line: int
+    end_column: int | None
+    text: str | None
+
+
+def utf16(text: str) -> int:
+    """Length in UTF-16 code units, as programs in JavaScript and SARIF count."""
+    return len(text.encode("utf-16-le", errors="replace")) // 2
+
+
+def place_of(span: Span, source: str | None, length: Callable[[str], int] = len) -> Place:
+    """The place of a span. ``length`` counts the characters of a part of a line.
+
+    Other tools know no place without a line: what does not stand in the text is told at the first one.
+    """
+    lines = source.split("\n") if source is not None else []
+    if not 1 <= span.line <= span.end_line <= len(lines):
+        line = max(span.line, 1)
+        return Place(line, 1, max(line, span.end_line), None, None)
+    before = _prefix(lines[span.line - 1], span.column)
+    whole = _prefix(lines[span.end_line - 1], span.end_column)
+    shown = [*lines[span.line - 1 : span.end_line - 1], whole]
+    shown[0] = shown[0][len(before) :]
+    return Place(span.line, length(before) + 1, span.end_line, length(whole) + 1, "\n".join(shown))
+
+
+def _prefix(line: str, column: int) -> str:
+    """What stands before a column in UTF-8 bytes, from 0."""
+    return line.encode(errors="replace")[:column].decode(errors="ignore")

@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError
@@ -244,17 +244,6 @@ class Settings(Table):
     `text` in the program's text. `--family` goes before it.
 
         families = ["robot", "classical"]
-    """
-    order: Literal[1, 2] = 1
-    """How many mutants are planted at once.
-
-        order = 2
-    """
-    pairs: Annotated[int, Field(ge=1, le=limits.PAIRS)] = 200
-    """How many pairs are planted where `order` is 2, chosen by
-    the seed.
-
-        pairs = 1000
     """
     baseline_repetitions: Annotated[int, Field(ge=1, le=limits.BASELINES)] | None = None
     """How often the original is run per round; without it, as often as the engine

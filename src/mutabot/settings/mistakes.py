@@ -50,6 +50,8 @@ ALSO_KNOWN_AS: Mapping[str, Mapping[str, str]] = {
     "axis": {"roll": "x", "pitch": "y", "yaw": "z"},
 }
 
+#: keys of the configuration that there were, and why there are none any more
+_GONE = dict.fromkeys(("order", "pairs"), "a mutant is one fault, no pair of them")
 _EXPECTED = {
     "string_type": "text",
     "bool_type": "true or false",
@@ -136,7 +138,9 @@ class Check:
         for detail in details:
             where = place + detail["loc"]
             name = str(where[-1]) if where else ""
-            if detail["type"] == "extra_forbidden":
+            if detail["type"] == "extra_forbidden" and name in _GONE and "program" in keys:
+                self.error(where, f"the key {name!r} is gone: {_GONE[name]}")
+            elif detail["type"] == "extra_forbidden":
                 self.unknown(where, "key", name, keys)
             elif detail["type"] == "enum":
                 self._explain_enum(where, name, detail, model)

@@ -1,5 +1,5 @@
 """Suggesting checks that kill survivors, proven by running them."""
 
-from .suggest import suggest
+from mutabot.suggestion.suggest import suggest
 
 __all__ = ["suggest"]

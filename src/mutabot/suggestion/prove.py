@@ -14,11 +14,11 @@ from mutabot.campaign.workers.task import Task, death
 from mutabot.errors import MutabotError
 from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Verdict
-from mutabot.suggestion.choosing.checks import Check
-from mutabot.suggestion.sources.workspace import copy_of
-from mutabot.suggestion.styles.style import Place
-
-from .forms import Form
+from mutabot.suggestion.checks import Check
+from mutabot.suggestion.project import Project, changed_texts
+from mutabot.suggestion.style import Place
+from mutabot.suggestion.styles.choice import insertions_of
+from mutabot.suggestion.workspace import copy_of
 
 
 @dataclass(slots=True)
@@ -27,14 +27,14 @@ class Proof:
 
     Attributes:
         request: for the rounds of the campaign.
-        form: how checks are put into the project.
+        project: into whose tests checks are put.
         progress: is told.
         failed: checks that failed, with the reason.
         kills: of each check that was run on the survivors: mutant id to the rounds in which it killed.
     """
 
     request: Request
-    form: Form
+    project: Project
     progress: Progress
     failed: dict[Check, str] = field(default_factory=dict)
     kills: dict[Check, dict[str, tuple[int, ...]]] = field(default_factory=dict)
@@ -51,10 +51,10 @@ class Proof:
         return []
 
     def _alarms(self, checks: Sequence[Check], rounds: Sequence[int]) -> dict[Check, str]:
-        texts = self.form.texts(checks)
+        texts = texts_with(self.project, checks)
         found: dict[Check, str] = {}
         with copy_of(self.request, texts) as copied:
-            these = _only(copied, self.form.tests(checks))
+            these = _only(copied, checks)
             self.progress.stage("proof on the original", len(rounds))
             with open_executor(these, self.progress) as opened:
                 share = first_engine(these).may_share
@@ -92,8 +92,8 @@ class Proof:
 
     def _run(self, checks: Sequence[Check], mutants: Mapping[Place, Iterable[str]]) -> None:
         only = tuple(dict.fromkeys(mutant for one in checks for mutant in mutants[one.place]))
-        with copy_of(self.request, self.form.texts(checks)) as copied:
-            these = _only(copied, self.form.tests(checks))
+        with copy_of(self.request, texts_with(self.project, checks)) as copied:
+            these = _only(copied, checks)
             path = run_campaign(replace(these, only=only, every_test=True, repeats=False), self.progress)
             with JournalReader.open(path) as journal:
                 outcomes = journal.outcomes()
@@ -111,11 +111,17 @@ class Proof:
 
 
 def _own_name(node: str) -> str:
-    """The name of a test within its file or class, without parameters: the same in whichever file it is."""
+    """The name of a test within its file or class, without parameters."""
     return node.partition("[")[0].rpartition("::")[2]
 
 
-def _only(request: Request, tests: tuple[str, ...]) -> Request:
+def texts_with(project: Project, checks: Sequence[Check]) -> dict[str, str]:
+    """The texts of the files that change when checks stand at the ends of their tests, by path."""
+    return changed_texts(project.root, insertions_of(project, [one.addition() for one in checks]))
+
+
+def _only(request: Request, checks: Sequence[Check]) -> Request:
+    tests = tuple(dict.fromkeys(one.place.node for one in checks))
     return replace(request, configuration=request.configuration.model_copy(update={"tests": tests}))
 
 

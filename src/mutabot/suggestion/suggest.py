@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
+from math import comb
+from typing import TypeVar
 
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.suggested import Dropped, Suggestion, Suggestions
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import NothingToDoError
-from mutabot.suggestion.choosing.bands import unseen
-from mutabot.suggestion.choosing.candidates import candidates
-from mutabot.suggestion.choosing.checks import Check
-from mutabot.suggestion.choosing.cover import smallest_cover
-from mutabot.suggestion.measuring.measure import Measured, measure
-from mutabot.suggestion.measuring.readings import WAY
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import diff_of
-
-from .forms import Form, InFile, InPlace
-from .prove import Proof
-from .styles.choice import place_of
-from .styles.style import Place
-from .survivors import survivors_of
-from .unsolved import why_unsolved
+from mutabot.suggestion.candidates import candidates
+from mutabot.suggestion.checks import Check, unseen
+from mutabot.suggestion.measure import Measured, measure
+from mutabot.suggestion.project import Project, diff_of
+from mutabot.suggestion.prove import Proof, texts_with
+from mutabot.suggestion.readings import WAY
+from mutabot.suggestion.style import Place
+from mutabot.suggestion.styles.choice import place_of
+from mutabot.suggestion.survivors import survivors_of, why_unsolved
 
 #: how often the smallest set is looked for anew because a check of it failed its proof
 _ATTEMPTS = 5
@@ -55,7 +52,6 @@ def suggest(
     progress: Progress,
     *,
     seeds: int,
-    write: str | None = None,
 ) -> Suggestions:
     """Checks that kill these survivors of a finished campaign.
 
@@ -65,7 +61,6 @@ def suggest(
         chosen: the survivors that are to be killed.
         progress: is told.
         seeds: how many fresh seeds are run for the bands, and as many others for the proof.
-        write: the new test file, relative to the project; None for changes of the tests there are.
 
     Raises NothingToDoError if there is nothing to kill or nothing to look at, and what a campaign raises.
     """
@@ -94,19 +89,16 @@ def suggest(
         [(one.mutant, rounds) for one, rounds in survivors.to_kill], quiet,
     )  # fmt: skip
     found = candidates(project, measured)
-    form: Form = InFile(project, write) if write is not None else InPlace(project)
-    proof = Proof(request, form, quiet)
+    proof = Proof(request, project, quiet)
     fresh = range(calibrated, calibrated + seeds)
     chosen_checks = _proven(proof, found, measured, [*range(request.rounds), *fresh])
-    texts = form.texts(chosen_checks) if chosen_checks else {}
+    texts = texts_with(project, chosen_checks)
     suggestions = tuple(_suggestion(one, proof.kills[one], seeds) for one in chosen_checks)
     killed = {mutant for one in suggestions for mutant in one.kills}
     left = [one.mutant for one, _ in survivors.to_kill if one.mutant.id not in killed]
     unsolved = [*(why_unsolved(one, measured, found, proof) for one in left), *survivors.never]
     dropped = tuple(Dropped(one.place.node, one.statement, why) for one, why in proof.failed.items())
-    whole = Suggestions(
-        suggestions, diff_of(request.root, texts), texts if write else {}, tuple(unsolved), dropped
-    )
+    whole = Suggestions(suggestions, diff_of(request.root, texts), tuple(unsolved), dropped)
     return _told(whole, chosen, request, seeds)
 
 
@@ -182,3 +174,59 @@ def _suggestion(check: Check, kills: Mapping[str, tuple[int, ...]], seeds: int) 
         unseen=unseen(seeds),
         kills=kills,
     )
+
+
+C = TypeVar("C")
+#: sets of checks that are looked through one by one; above it, the best is taken again and again
+_SETS = 50_000
+
+
+def smallest_cover(
+    checks: Sequence[C], noticed: Callable[[C], frozenset[Hashable]], worth: Callable[[C], float]
+) -> list[C]:
+    """As few checks as possible that notice what all notice; of equal sets the one worth most.
+
+    The fewest where that many sets can be looked through, else those that a greedy choice finds.
+    """
+    useful = _undominated([one for one in checks if noticed(one)], noticed, worth)
+    whole: frozenset[Hashable] = frozenset().union(*map(noticed, useful)) if useful else frozenset()
+    greedy = _greedy(useful, noticed, worth, whole)
+    for size in range(1, len(greedy) + 1):
+        if comb(len(useful), size) > _SETS:
+            break
+        fitting = [
+            some for some in combinations(useful, size) if frozenset().union(*map(noticed, some)) == whole
+        ]
+        if fitting:
+            return list(max(fitting, key=lambda some: sum(map(worth, some))))
+    return greedy
+
+
+def _undominated(
+    checks: Sequence[C], noticed: Callable[[C], frozenset[Hashable]], worth: Callable[[C], float]
+) -> list[C]:
+    """Without those that another one can stand for: it notices more, or the same and is worth more."""
+    ordered = sorted(checks, key=lambda one: (-len(noticed(one)), -worth(one)))
+    kept: list[C] = []
+    for one in ordered:
+        if not any(noticed(one) <= noticed(other) for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _greedy(
+    checks: Sequence[C],
+    noticed: Callable[[C], frozenset[Hashable]],
+    worth: Callable[[C], float],
+    whole: frozenset[Hashable],
+) -> list[C]:
+    left, found = set(whole), []
+    while left:
+        best = max(checks, key=lambda one: (len(noticed(one) & left), worth(one)))
+        found.append(best)
+        left -= noticed(best)
+    for one in list(found):
+        others = [other for other in found if other is not one]
+        if frozenset().union(*map(noticed, others)) == whole:
+            found = others
+    return found

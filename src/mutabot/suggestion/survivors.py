@@ -1,4 +1,4 @@
-"""Which survivors an observation can kill, which none can, and why."""
+"""Which survivors an observation can kill, which none can, and why no check kills one that differs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,11 @@ from dataclasses import dataclass
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.suggested import Unsolved
-from mutabot.model import Verdict
+from mutabot.model import Mutant, Verdict
+from mutabot.suggestion.candidates import part_of_way, tolerance_of
+from mutabot.suggestion.checks import Check, decimal, is_number
+from mutabot.suggestion.measure import Measured
+from mutabot.suggestion.prove import Proof
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,3 +48,59 @@ def survivors_of(chosen: Sequence[MutantResult]) -> Survivors:
             reason = "no test reaches it: it needs a test that does, not a check"
             never.append(Unsolved(one.mutant.id, reason, never=True))
     return Survivors(tuple(to_kill), tuple(never), tuple(tests))
+
+
+@dataclass(frozen=True, slots=True)
+class _Nearest:
+    """What differs most on a mutant: the expression, by how much, and what is no difference in it."""
+
+    text: str
+    apart: float
+    spread: float
+    tolerance: float
+
+    @property
+    def rank(self) -> float:
+        """How far it is, in what the original does by itself."""
+        return self.apart / max(self.spread, self.tolerance)
+
+    @property
+    def words(self) -> str:
+        """``box.x differs by 0.003, the original itself spreads 0.005``."""
+        part = part_of_way(self.text)
+        where = self.text if part is None else f"on the way, the {part[0]} of {part[1]}"
+        own = f"the original itself spreads {_short(self.spread)}"
+        if self.tolerance >= self.spread:
+            own = f"its tolerance is {_short(self.tolerance)}"
+        return f"{where} differs by {_short(self.apart)}, {own}"
+
+
+def why_unsolved(mutant: Mutant, measured: Measured, found: Sequence[Check], proof: Proof) -> Unsolved:
+    """The reason, with what differs most and how far the original itself spreads."""
+    failed = [one for one in found if one in proof.failed and mutant.id in one.margins]
+    if failed:
+        return Unsolved(mutant.id, f"what would notice it failed its proof: {failed[0].statement}")
+    nearest = max(_differences(mutant, measured), key=lambda one: one.rank, default=None)
+    if nearest is None:
+        return Unsolved(mutant.id, "nothing differs that its tests can read at their ends or after a command")
+    return Unsolved(mutant.id, nearest.words)
+
+
+def _differences(mutant: Mutant, measured: Measured) -> list[_Nearest]:
+    found = []
+    for place, by_mutant in measured.mutants.items():
+        originals = measured.originals.get(place, {})
+        for key, read in by_mutant.get(mutant.id, {}).items():
+            same = originals.get(key, {})
+            for text, value in read.items():
+                before = same.get(text)
+                if is_number(value) and is_number(before) and abs(value - before) > 0:
+                    values = [one[text] for one in originals.values() if is_number(one.get(text))]
+                    spread = max(values) - min(values)
+                    tolerance = tolerance_of(measured, place, text)
+                    found.append(_Nearest(text, abs(value - before), spread, tolerance))
+    return found
+
+
+def _short(value: float) -> str:
+    return decimal(float(f"{value:.3g}"))

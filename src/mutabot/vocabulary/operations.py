@@ -10,18 +10,16 @@ from mutabot.model.values.signature import parse_signature
 from mutabot.model.values.units import UNITS, Dimension, dimension_of
 from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
+from mutabot.vocabulary.cases.when import Undecided, in_cases
+from mutabot.vocabulary.named.names import read_current, read_refused
 
-from .cases.modes import Undecided, in_cases
 from .cases.when import in_case, read_when
-from .idle import read_idle
-from .named.current import read_current
 from .named.entries import is_named, read_named
 from .named.names import NAMING
-from .named.refused import read_refused
 from .patterns import read_patterns
 from .quantities import read_arguments, read_result
 from .schema import ClockTable, OperationTable, ProbeTable, WaitTable
-from .targets import is_name, target_fault
+from .targets import is_name, read_idle, target_fault
 
 
 def read_operations(check: Check, raw: Any, place: KeyPath) -> list[Operation]:

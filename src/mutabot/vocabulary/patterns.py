@@ -11,11 +11,11 @@ from mutabot.model import Path, Pattern, Quantity
 from mutabot.model.values.notation import Field, Notation
 from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
+from mutabot.vocabulary.cases.when import cases_of, name_of
 
-from .cases.modes import cases_of, name_of
-from .idle import read_idle
 from .quantities import read_arguments, read_quantity, read_result
 from .schema import PatternTable, QuantityTable
+from .targets import read_idle
 
 
 def read_patterns(

@@ -12,7 +12,7 @@ from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
 
 from .axes import slice_of, split_axes, spread
-from .cases.modes import ModeChoice, Undecided, read_mode_choice
+from .cases.when import ModeChoice, Undecided, read_mode_choice
 from .rules import SIDES, default_unit, default_values, faults, steps_of
 from .schema import QuantityTable
 

@@ -1,4 +1,4 @@
-"""Videos that browsers play: H.264 in MP4. Needs PyAV and Pillow: ``mutabot[video]``.
+"""Videos that browsers play: H.264 in MP4, filmed or drawn. Needs PyAV and Pillow: ``mutabot[video]``.
 
 PyAV rather than a program beside Python: it encodes in this process, so nothing is left running, and it is
 a quarter of the size.
@@ -15,21 +15,15 @@ import av
 from mutabot.errors import UsageError
 from mutabot.evidence.film import Film
 from mutabot_motion.shown import Shown
-from mutabot_motion.target import check, written_whole
+from mutabot_motion.sights import written_whole
 
 from .drawn import Drawn
-from .frame import Frames
-from .shots import Filmed, Shots
+from .frame import Filmed, Frames, Shots
 
 #: frames per second, at which simulated seconds become those of the video
 RATE = 25
 #: how long the last frame stays, s
 _HELD = 1.5
-
-
-def check_video(file: Path) -> None:
-    """Raise UsageError if a video cannot be written there."""
-    check(file, "video", ".mp4", b"ftyp", at=4)
 
 
 def show(file: Path, shown: Shown, films: tuple[Film, Film], problems: Sequence[str]) -> list[str]:

@@ -10,9 +10,8 @@ from types import CodeType
 from typing import Any
 
 from mutabot.inside.processes.member import note_node
-from mutabot.inside.targets.means import Means
 from mutabot.inside.targets.middleware import Names
-from mutabot.inside.targets.target import Where
+from mutabot.inside.targets.target import Means, Where
 from mutabot_ros._patches import Patches
 
 from . import _clock

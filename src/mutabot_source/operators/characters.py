@@ -14,7 +14,7 @@ from typing import ClassVar
 
 import libcst as cst
 
-from mutabot_source.families import TEXT
+from mutabot_source.extension import TEXT
 from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings
 
 #: alternatives per text and operator

@@ -8,8 +8,8 @@ from pathlib import Path
 from analysis import samples
 from analysis.thresholds import journals
 from analysis.thresholds.journals import Rungs
-from mutabot.analysis.thresholds.floor import Floor, floors_of
 from mutabot.analysis.thresholds.ladders import ladders_of
+from mutabot.analysis.thresholds.thresholds import Floor, floors_of
 from mutabot.model import Operation, Vocabulary
 
 #: a reading whose sensor has a noise of 2 mm

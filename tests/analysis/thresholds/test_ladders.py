@@ -16,11 +16,9 @@ from mutabot.analysis.thresholds.ladders import Ladder, ladders_of
 from mutabot.analysis.thresholds.thresholds import thresholds_of
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.report.as_json import dumps
-from mutabot.report.picture import svg
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds.data import thresholds_data
-from mutabot.report.thresholds.demands import suggested_toml
-from mutabot.report.thresholds.picture import picture_of
+from mutabot.report.thresholds.data import suggested_toml, thresholds_data
+from mutabot.report.thresholds.picture import picture_of, svg
 from mutabot.report.thresholds.text import print_thresholds
 
 ROUND = st.text("".join(LETTERS) + ".CCCSSS", min_size=len(SIZES), max_size=len(SIZES))

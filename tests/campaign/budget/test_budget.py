@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 from mutabot.analysis.results import read_results
-from mutabot.campaign.budget.batches import Batches, run_in_batches
-from mutabot.campaign.budget.order import in_order
+from mutabot.campaign.budget.budget import Batches, in_order, run_in_batches
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers.interruption import (
     OutOfTimeError,

@@ -50,7 +50,7 @@ def both_engines(folder: Path, **changes: Any) -> dict[tuple[str, int], Outcome]
     assert found["auto"].keys() == found["replay"].keys()
     for key, outcome in found["auto"].items():
         assert facts(outcome) == facts(found["replay"][key]), key
-    assert {outcome.engine for outcome in found["auto"].values()} <= {"branch", "replay", "warm"}
+    assert {outcome.engine for outcome in found["auto"].values()} <= {"branch", "replay"}
     return found["auto"]
 
 

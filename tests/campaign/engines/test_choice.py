@@ -65,7 +65,7 @@ def test_the_command_line_knows_each_engine_by_its_file() -> None:
 
 def test_an_engine_is_a_file(more: Path, tmp_path: Path) -> None:
     (more / "idle.py").write_text(dedent(IDLE))
-    assert [engine.name for engine in all_engines()] == ["branch", "idle", "warm", "replay"]
+    assert [engine.name for engine in all_engines()] == ["branch", "idle", "replay"]
     ends = run(write_project(tmp_path / "project", MISSION, TESTS), engine="idle", rounds=1)
     found = {mutant.rpartition(":")[2]: (one.verdict, one.engine) for mutant, one in ends.items()}
     assert len(found) > 1

@@ -10,8 +10,7 @@ import pytest
 
 from mutabot.campaign.baseline.answers import RecordedAnswers
 from mutabot.campaign.baseline.baseline import Baseline, Hit
-from mutabot.campaign.plan.plan import make_plan
-from mutabot.campaign.plan.planned import Plan
+from mutabot.campaign.plan.plan import Plan, make_plan
 from mutabot.families import CATALOGUE, GRADED, MIDDLEWARE, ROBOT
 from mutabot.faults import Project
 from mutabot.model import Kind, Mode, Operation, Path, Quantity, Role, Site, Span, Vocabulary

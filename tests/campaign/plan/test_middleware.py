@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from mutabot.campaign.baseline.baseline import Baseline, Hit
-from mutabot.campaign.plan.plan import make_plan
-from mutabot.campaign.plan.planned import Plan
+from mutabot.campaign.plan.plan import Plan, make_plan
 from mutabot.families import MIDDLEWARE, ROBOT
 from mutabot.faults import Project
 from mutabot.model import Operation, Role, Site, Span, Vocabulary

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from analysis import samples
 from mutabot.border.codec import from_data
-from mutabot.campaign.plan.sampling import draw
+from mutabot.campaign.plan.plan import draw
 from mutabot.campaign.run import run_campaign
 from mutabot.errors import UsageError
 from mutabot.journal.journal import Journal

@@ -99,7 +99,7 @@ def project(folder: Path, mission: str, tests: str, heartbeat: Path) -> Path:
     return write_project(folder, mission, tests, more={"daemons.py": start})
 
 
-@pytest.mark.parametrize("engine", ["warm", REPLAY, pytest.param("auto", marks=pytest.mark.whole)])
+@pytest.mark.parametrize("engine", [REPLAY, pytest.param("auto", marks=pytest.mark.whole)])
 def test_a_daemon_that_a_mutant_starts_is_gone_and_told(engine: str, tmp_path: Path, heartbeat: Path) -> None:
     # the original starts one as well where its runs are copies of one process
     mission = MISSION.replace("if arm.x", "if True or arm.x") if engine == "auto" else MISSION
@@ -151,8 +151,7 @@ def test_a_test_that_ends_its_parent_ends_itself(tmp_path: Path, heartbeat: Path
 
 
 @pytest.mark.whole
-@pytest.mark.parametrize("engine", ["warm", REPLAY])
-def test_the_tests_see_no_orphans_of_theirs(tmp_path: Path, heartbeat: Path, engine: str) -> None:
+def test_the_tests_see_no_orphans_of_theirs(tmp_path: Path, heartbeat: Path) -> None:
     """What they wait for are their own children, and a daemon that has ended is gone at once."""
     tests = """
         import os, subprocess, sys, time, pytest
@@ -176,7 +175,7 @@ def test_the_tests_see_no_orphans_of_theirs(tmp_path: Path, heartbeat: Path, eng
             assert arm.x == 0.5
         """
     folder = project(tmp_path, MISSION.replace("start_daemon()", "pass"), tests, heartbeat)
-    found = outcomes(run_campaign(request_for(folder, engine=engine, rounds=1), Quiet()))
+    found = outcomes(run_campaign(request_for(folder, engine=REPLAY, rounds=1), Quiet()))
     assert {one.verdict.value for one in found} == {"killed"}
 
 

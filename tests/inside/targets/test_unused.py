@@ -6,8 +6,7 @@ import pytest
 
 from mutabot import extensions
 from mutabot.extensions import Extension
-from mutabot.inside.targets.messages import Messages
-from mutabot.inside.targets.unused import unheard, unused
+from mutabot.inside.targets.messages import Messages, unheard, unused
 from mutabot.model.named import Form, Named, Refused
 
 

@@ -18,7 +18,7 @@ from mutabot.border.codec import to_data
 from mutabot.border.events import (
     Acted,
     BranchEnd,
-    CalledAtImport,
+    Called,
     ForkEnded,
     SessionEnd,
     SiteSeen,
@@ -33,12 +33,11 @@ from mutabot.campaign.workers.task import Result, Task
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
 from mutabot.model.place import Place
 from mutabot_dask.bundle import Bundle
-from mutabot_dask.checked import MOST_BYTES, Misfit
 from mutabot_dask.dispatch import Dispatch
+from mutabot_dask.far import Session
 from mutabot_dask.link import News
 from mutabot_dask.roster import Roster
-from mutabot_dask.session import Session
-from mutabot_dask.unit import Answer, Ground, Introduction, Unit
+from mutabot_dask.unit import MOST_BYTES, Answer, Ground, Introduction, Misfit, Unit
 
 from .hostile import ODD
 
@@ -77,7 +76,7 @@ def good(ticket: str = "ticket") -> dict[str, Any]:
     """The data of an answer that fits."""
     lines = (
         SiteSeen(0, SPAN, "robot:Arm.move_by", None, False),
-        CalledAtImport(([0, [0.25], None, None],)),
+        Called(0, [0.25], None),
         Acted(""),
         TestStart(TEST),
         END,

@@ -13,8 +13,8 @@ import pytest
 
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.environment import apply, decided, differences, module_folders
+from mutabot_dask.far import Store
 from mutabot_dask.shipping import Shipment
-from mutabot_dask.store import Store
 
 
 def project(folder: Path) -> Path:
@@ -92,7 +92,7 @@ def test_what_a_killed_worker_used_is_removed_by_the_next(tmp_path: Path) -> Non
     code = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from mutabot_dask.store import Store\n"
+        "from mutabot_dask.far import Store\n"
         "store = Store(Path(sys.argv[1]))\n"
         "store.hold(sys.argv[2])\n"
         "store.take(sys.argv[2], 0, 1, Path(sys.argv[3]).read_bytes())\n"

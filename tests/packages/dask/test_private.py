@@ -18,7 +18,7 @@ import pytest
 
 from mutabot.errors import ClusterError
 from mutabot_dask import cluster as of_cluster
-from mutabot_dask.certificates import Certificates
+from mutabot_dask.local import Certificates
 from mutabot_dask.settings import ClusterSettings
 from tests.campaign.project import Quiet, request_for
 

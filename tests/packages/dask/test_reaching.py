@@ -84,7 +84,7 @@ def test_nobody_at_an_address(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 NO_ROOM = """
-from mutabot_dask.store import Store
+from mutabot_dask.far import Store
 def take(*given):
     raise OSError(28, "No space left on device")
 Store.take = take

@@ -7,7 +7,7 @@ from pathlib import Path
 from mutabot.border.job import Job
 from mutabot.campaign.workers.task import Task
 from mutabot.model import Vocabulary
-from mutabot_dask.session import Session
+from mutabot_dask.far import Session
 from mutabot_dask.unit import Answer, Ground, Unit
 
 

@@ -12,11 +12,9 @@ import pytest
 
 from mutabot.errors import ClusterError, ConfigurationError
 from mutabot.settings.configuration import load_configuration
-from mutabot_dask.bundle import Bundle
+from mutabot_dask.bundle import Bundle, explained, warnings
 from mutabot_dask.environment import decided
-from mutabot_dask.private import may_be_secret
-from mutabot_dask.shipping import Shipment
-from mutabot_dask.telling import explained, warnings
+from mutabot_dask.shipping import Shipment, may_be_secret
 from tests.campaign.project import write_project
 
 #: stands in each file that nobody may see

@@ -19,9 +19,8 @@ import pytest
 from mutabot.exit_codes import ExitCode
 from mutabot.journal.reader import JournalReader
 from mutabot_live import server as serving
-from mutabot_live.feed import Feed
 from mutabot_live.pages import Pages
-from mutabot_live.server import MOST, Server
+from mutabot_live.server import MOST, Feed, Server
 from packages.live.visits import PATIENCE, ask
 from report.html import reports
 from tests.campaign.project import write_project

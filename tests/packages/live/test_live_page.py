@@ -12,9 +12,8 @@ import pytest
 
 from analysis import samples
 from mutabot.journal.journal import Journal
-from mutabot_live.feed import Feed
 from mutabot_live.pages import Pages
-from mutabot_live.server import Server
+from mutabot_live.server import Feed, Server
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="requirements-reports.lock is not installed")
 
@@ -51,6 +50,41 @@ def _use_buttons(page: Any, feed: Feed) -> None:
         page.get_by_role("button", name="Stop …").click()
         page.get_by_role("button", name=answer).click()
         page.wait_for_selector("dialog", state="detached")
+
+
+def _wait_for_version(page: Any, version: int) -> None:
+    """Until the page has these data; its policy allows no script that polls."""
+    drawn = "typeof mutabot === 'object' && mutabot.campaign && mutabot.campaign.version"
+    for _ in range(600):
+        if page.evaluate(drawn) == version:
+            return
+        page.wait_for_timeout(50)
+    pytest.fail(f"the page never had version {version} of the data")
+
+
+def test_a_click_during_which_newer_data_come_is_not_lost(page: Any, tmp_path: Path) -> None:
+    path = tmp_path / "journal.sqlite"
+    version = [1]
+    feed, pages = Feed(), Pages(path, "cell", lambda: version[0])
+    server = Server(pages, feed, {})
+    try:
+        with Journal.create(path, meta=samples.meta()) as journal:
+            journal.set_plan(samples.MUTANTS, samples.LEFT_OUT, sources={"mission.py": samples.PROGRAM})
+            feed.put(state(1))
+            page.goto(server.address)
+            _wait_for_version(page, 1)
+
+            page.get_by_role("link", name="Mutants", exact=True).hover()
+            page.mouse.down()
+            version[0] = 2
+            feed.put(state(2))
+            _wait_for_version(page, 2)
+            page.mouse.up()
+            page.get_by_label("Search").wait_for()
+    finally:
+        page.close()
+        feed.close()
+        server.close()
 
 
 def test_it_fills_is_paused_and_says_how_it_ended(page: Any, tmp_path: Path) -> None:

@@ -14,7 +14,8 @@ from packages.motion.sample import STEPS, shown
 pytest.importorskip("foxglove")
 pytest.importorskip("mcap")
 
-from mutabot_motion.mcap import Mcap
+from mutabot_motion import mcap
+from mutabot_motion.sights import written
 
 
 class Found:
@@ -40,7 +41,7 @@ class Found:
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> Found:
     file = tmp_path_factory.mktemp("mcap") / "a.mcap"
-    said = Mcap(file).show(shown())
+    said = written(mcap, file, shown())
     assert said.startswith(f"{file}: ")
     return Found(file)
 
@@ -101,6 +102,6 @@ def test_messages_lie_in_the_order_of_their_times(found: Found) -> None:
 def test_an_earlier_file_is_written_over(tmp_path: Path) -> None:
     file = tmp_path / "a.mcap"
     for _ in range(2):
-        Mcap(file).show(shown(mutant=None))
+        written(mcap, file, shown(mutant=None))
     assert "/mutant/log" not in Found(file).messages
     assert [one.name for one in tmp_path.iterdir()] == ["a.mcap"]

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from mutabot_motion.sights import sights_of
 from packages.motion.sample import STEPS, recording, shown
 
 pytest.importorskip("rerun")
@@ -31,7 +32,7 @@ def column(found: list[Any], entity: str, name: str) -> list[Any]:
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> list[Any]:
     file = tmp_path_factory.mktemp("rrd") / "a.rrd"
-    rrd.write_rrd(file, shown())
+    rrd.write(file, shown())
     return chunks(file)
 
 
@@ -65,14 +66,14 @@ def test_the_log_tells_commands_contacts_and_the_fault(written: list[Any]) -> No
 
 
 def test_without_a_mutants_recording_the_original_is_there_alone(tmp_path: Path) -> None:
-    rrd.write_rrd(tmp_path / "a.rrd", shown(mutant=None))
+    rrd.write(tmp_path / "a.rrd", shown(mutant=None))
     entities = {one.entity_path for one in chunks(tmp_path / "a.rrd")}
     assert "/original/things/tool" in entities
     assert not any(name.startswith("/mutant") for name in entities)
 
 
 def test_times_of_the_wall_clock_are_called_so(tmp_path: Path) -> None:
-    rrd.write_rrd(tmp_path / "a.rrd", shown(original=recording(is_simulated=False), mutant=None))
+    rrd.write(tmp_path / "a.rrd", shown(original=recording(is_simulated=False), mutant=None))
     assert {name for one in chunks(tmp_path / "a.rrd") for name in one.timeline_names} == {"wall clock"}
 
 
@@ -82,6 +83,7 @@ def test_without_a_screen_the_viewer_is_not_opened_and_that_is_said(
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("sys.platform", "linux")
-    said = rrd.Rrd(tmp_path, None, opens=True).show(shown())
+    (sight,) = sights_of(tmp_path, view=False, rerun=True, rrd=None, mcap=None)
+    said = sight(shown())
     assert (tmp_path / "mutant-7-round-2.rrd").read_bytes().startswith(b"RRF2")
     assert "there is no screen to open its viewer on" in said

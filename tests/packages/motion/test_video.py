@@ -17,9 +17,9 @@ pytest.importorskip("PIL")
 
 from mutabot_motion.pictures import video  # noqa: E402
 from mutabot_motion.pictures.drawn import Drawn  # noqa: E402
-from mutabot_motion.pictures.frame import Frames  # noqa: E402
-from mutabot_motion.pictures.shots import Filmed  # noqa: E402
-from mutabot_motion.pictures.video import check_video, show, write_video  # noqa: E402
+from mutabot_motion.pictures.frame import Filmed, Frames  # noqa: E402
+from mutabot_motion.pictures.video import show, write_video  # noqa: E402
+from mutabot_motion.sights import check  # noqa: E402
 
 RATE = 5
 
@@ -161,7 +161,7 @@ def test_a_file_that_cannot_be_a_video_is_refused_beforehand(name: str, told: st
     (tmp_path / "folder.mp4").mkdir()
     (tmp_path / "text.mp4").write_text("my notes")
     with pytest.raises(UsageError, match=told):
-        check_video(tmp_path / name)
+        check(tmp_path / name, ".mp4")
     assert (tmp_path / "text.mp4").read_text() == "my notes"
 
 

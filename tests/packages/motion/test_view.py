@@ -9,7 +9,7 @@ from packages.motion.sample import recording, shown
 
 pytest.importorskip("mujoco")
 
-from mutabot_motion.view import Stage, Viewer
+from mutabot_motion.view import Stage, need_screen, show
 
 
 def test_both_sides_stand_where_they_were_at_a_time() -> None:
@@ -44,10 +44,10 @@ def test_without_a_screen_it_is_refused_with_what_does_without(monkeypatch: pyte
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("sys.platform", "linux")
     with pytest.raises(UsageError, match=r"needs a screen.*--video FILE\.mp4"):
-        Viewer()
+        need_screen()
 
 
 def test_with_nothing_to_show_no_window_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("DISPLAY", ":99")
     with pytest.raises(UsageError, match="nothing to show"):
-        Viewer().show(shown(original=recording(tracks={}), mutant=None))
+        show(shown(original=recording(tracks={}), mutant=None))

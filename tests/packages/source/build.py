@@ -14,10 +14,10 @@ from typing import Any
 
 from mutabot.inside.text.import_hook import ImportHook
 from mutabot.model import Alternative, Choice, Instrumentation, ProgramText, Sighting, TextPlace
+from mutabot_source.nodes import same_program
 from mutabot_source.operator import Example
 from mutabot_source.refine import refine
 from mutabot_source.registry import names
-from mutabot_source.rendering import same_program
 from mutabot_source.texts import find_texts
 
 

@@ -8,8 +8,7 @@ import pytest
 
 from mutabot.errors import OperatorError
 from mutabot.model import Choice, Sighting
-from mutabot_source.mutants import plant
-from mutabot_source.refine import merge, refine
+from mutabot_source.refine import merge, plant, refine
 from mutabot_source.registry import names
 from mutabot_source.texts import find_texts
 from tests.packages.source.build import choices, text_of

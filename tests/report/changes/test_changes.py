@@ -14,11 +14,9 @@ from analysis import samples
 from mutabot.analysis.stored.changes import Changes, changes
 from mutabot.model import By, Outcome, Verdict
 from mutabot.report.as_json import dumps
-from mutabot.report.changes.data import changes_data
-from mutabot.report.changes.markdown import change_lines
-from mutabot.report.changes.text import print_changes
-from mutabot.report.shaping.portable import portable
+from mutabot.report.changes import change_lines, changes_data, print_changes
 from mutabot.report.terminal.console import make_console
+from mutabot.report.texts import portable
 from report.formats.test_markdown import cells
 from report.material import HOSTILE, made, shown, stored, with_text
 

@@ -12,7 +12,7 @@ import pytest
 import mutabot
 from analysis import samples
 from mutabot.model import By, Outcome, Verdict
-from mutabot.report.shaping.portable import portable
+from mutabot.report.texts import portable
 from report.material import HOSTILE, made, stored, with_text
 
 _COMMAND = re.compile(r"::(warning|notice) ([^:]*)::(.*)")

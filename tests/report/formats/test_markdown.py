@@ -11,7 +11,7 @@ from markdown_it import MarkdownIt
 
 from analysis import samples
 from mutabot.model import LeftOut, Outcome, Verdict
-from mutabot.report.shaping.portable import portable
+from mutabot.report.texts import portable
 from report.material import HOSTILE, made, shown, stored, with_text
 
 

@@ -106,14 +106,3 @@ def test_an_interrupted_campaign_is_no_success(tmp_path: Path) -> None:
     assert found["executionSuccessful"] is False
     (note,) = found["toolExecutionNotifications"]
     assert note["message"]["text"] == "interrupted: 3 of 10 outcomes are known"
-
-
-def test_a_pair_names_the_place_of_its_second_mutant_too(tmp_path: Path) -> None:
-    both = replace(
-        samples.SKIP, operator="skip+reverse", operation="", parts=(samples.SKIP, samples.REVERSE),
-    )  # fmt: skip
-    end = Outcome(both.id, 0, Verdict.SURVIVED)
-    found = run(stored(tmp_path, mutants=(both,), outcomes=(end,)))
-    (related,) = found["results"][0]["relatedLocations"]
-    assert related["physicalLocation"]["region"]["startLine"] == 3
-    assert found["tool"]["driver"]["rules"][0]["id"] == "skip+reverse"

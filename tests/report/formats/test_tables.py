@@ -10,7 +10,7 @@ import pytest
 
 from analysis import samples
 from mutabot.analysis.stored.table import COLUMNS, rows
-from mutabot.report.shaping.portable import portable
+from mutabot.report.texts import portable
 from report.material import HOSTILE, made, stored, with_text
 
 

@@ -15,8 +15,7 @@ from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Tra
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model.seen.diverged import Apart, Diverged, Near
 from mutabot.report.html.folder import Contents, Written, write_folder
-from mutabot.report.shaping.portable import portable
-from mutabot.report.shaping.texts import Cleaner
+from mutabot.report.texts import Cleaner, portable
 from report.material import with_text
 
 #: what a source file, a message or a name may hold to harm whoever opens the report

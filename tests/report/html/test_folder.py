@@ -12,14 +12,14 @@ from hatchling.builders.wheel import WheelBuilder
 import mutabot
 from analysis import samples
 from mutabot import operators
-from mutabot.analysis.results import MutantResult
+from mutabot.analysis.suggested import Suggestions
 from mutabot.errors import UsageError
 from mutabot.journal.files import REPORT_MARK
 from mutabot.report.html import folder as folders
 from mutabot.report.html.folder import check_folder
-from mutabot.report.html.rows import Rows
-from mutabot.report.html.suggestion import SuggestedCheck
+from mutabot.report.html.overview import Rows
 from report.html import reports
+from report.terminal.test_suggested import CHECK
 
 ROOT = Path(__file__).parents[3]
 
@@ -82,13 +82,10 @@ def test_recordings_that_have_no_room_are_counted_and_pages_say_so(tmp_path: Pat
 
 def test_a_check_is_suggested_where_there_is_one(tmp_path: Path) -> None:
     journal, stored = reports.campaign(tmp_path)
-    check = SuggestedCheck("assert box.x < 0.5", samples.TEST, ("passes in all rounds",))
-
-    def suggest(result: MutantResult) -> SuggestedCheck | None:
-        return check if result.mutant.number == 2 else None
-
-    folder = tmp_path / "report"
-    reports.write(folder, journal, stored, lambda contents: replace(contents, suggest=suggest))
+    (second,) = (one.mutant.id for one in stored.mutants if one.mutant.number == 2)
+    check = replace(CHECK, statement="assert box.x < 0.5", test=samples.TEST, kills={second: (0,)})
+    found = Suggestions((check,))
+    reports.write(tmp_path / "report", journal, stored, lambda made: replace(made, suggestions=found))
     assert "box.x \\x3c 0.5" in (tmp_path / "report" / "data" / "mutants" / "2.js").read_text()
     assert '"suggestion":null' in (tmp_path / "report" / "data" / "mutants" / "1.js").read_text()
 

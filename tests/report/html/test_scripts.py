@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.report.html.scripts import script_of
+from mutabot.report.html.folder import script_of
 from report.html.reports import EVIL
 from report.material import HOSTILE
 

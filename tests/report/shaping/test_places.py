@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mutabot.model import Span
-from mutabot.report.shaping.places import Place, place_of, utf16
+from mutabot.report.format import Place, place_of, utf16
 
 SOURCE = 'x = "größe"; go(\n    1,\n)\n"😀", go()\n'
 

@@ -9,7 +9,7 @@ import pytest
 
 from analysis import samples
 from mutabot.journal.records import Reaching
-from mutabot.report.shaping.portable import portable
+from mutabot.report.texts import portable
 from report.material import HOSTILE, stored, with_text
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.report.shaping.markup import escaped
-from mutabot.report.shaping.texts import Cleaner, legible
+from mutabot.report.texts import Cleaner, escaped, legible
 
 
 @pytest.mark.parametrize(

@@ -18,9 +18,8 @@ from mutabot.errors import SelectionError
 from mutabot.journal.journal import Journal
 from mutabot.model import By, Outcome, Verdict
 from mutabot.report.terminal.campaign import print_results
-from mutabot.report.terminal.console import make_console, plain, short_place
+from mutabot.report.terminal.console import make_console, mark_of, plain, short_place
 from mutabot.report.terminal.listing import print_plan
-from mutabot.report.terminal.marks import mark_of
 from mutabot.report.terminal.mutant.detail import print_mutant
 from mutabot.report.terminal.summary import print_summary
 

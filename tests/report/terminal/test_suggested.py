@@ -9,11 +9,10 @@ import pytest
 
 from analysis import samples
 from mutabot.analysis.results import MutantResult, find_mutant, read_results
-from mutabot.analysis.stored.suggested import keep_suggestions, kept_suggestions
-from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
+from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved, keep_suggestions, kept_suggestions
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
-from mutabot.report.html.suggestion import suggest_from
+from mutabot.report.suggested import check_on_page
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant.detail import print_mutant
 
@@ -77,10 +76,8 @@ def test_a_file_of_another_kind_is_left_alone(tmp_path: Path, text: str) -> None
 
 
 def test_pages_get_the_check_of_each_survivor(tmp_path: Path) -> None:
-    assert suggest_from(None) is None
-    suggest = suggest_from(FOUND)
-    assert suggest is not None
-    found = suggest(result_of(tmp_path, samples.NEGATE))
+    assert check_on_page(result_of(tmp_path, samples.NEGATE), None) is None
+    found = check_on_page(result_of(tmp_path, samples.NEGATE), FOUND)
     assert found is not None
-    assert (found.code, found.test) == (CHECK.statement, CHECK.test)
-    assert suggest(result_of(tmp_path, samples.SKIP)) is None
+    assert (found["code"], found["test"]) == (CHECK.statement, CHECK.test)
+    assert check_on_page(result_of(tmp_path, samples.SKIP), FOUND) is None

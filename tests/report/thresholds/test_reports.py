@@ -21,13 +21,10 @@ from mutabot.cli.thresholds import _SORTS
 from mutabot.model import Operation, Role, Vocabulary
 from mutabot.model.seen.figure import Figure
 from mutabot.report.as_json import dumps
-from mutabot.report.picture import svg
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds.compared import print_compared
-from mutabot.report.thresholds.data import compared_data, thresholds_data
-from mutabot.report.thresholds.demands import suggested_toml
-from mutabot.report.thresholds.picture import picture_of
-from mutabot.report.thresholds.text import print_thresholds
+from mutabot.report.thresholds.data import compared_data, suggested_toml, thresholds_data
+from mutabot.report.thresholds.picture import picture_of, svg
+from mutabot.report.thresholds.text import print_compared, print_thresholds
 
 FIVE = 5
 NOISY = Vocabulary(

@@ -11,7 +11,6 @@ from mutabot.analysis.results import MutantResult, Results, find_mutant, read_re
 from mutabot.analysis.score import Group
 from mutabot.analysis.thresholds.thresholds import Thresholds, thresholds_of
 from mutabot.border.codec import from_data
-from mutabot.journal.database import WITHIN
 from mutabot.journal.files import find_journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import DRAWS, OPERATORS, REACHING, Reaching
@@ -21,9 +20,6 @@ from .table import frame_of
 
 if TYPE_CHECKING:
     import pandas
-
-#: seconds by which the journal of a running campaign may be behind it
-BEHIND = WITHIN
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +99,7 @@ class StoredCampaign:
 
     def reached_by(self, mutant: Mutant) -> tuple[str, ...]:
         """Node ids of the tests that reach a mutant in any round, as far as the journal says."""
-        return self.reaching.at(single.site.id for single in mutant.singles)
+        return self.reaching.at(mutant.site.id)
 
     def frame(self) -> pandas.DataFrame:
         """One row per outcome; docs/reports.md has the columns. Needs pandas: ``mutabot[notebook]``.
@@ -127,7 +123,7 @@ def open(path: str | Path = ".") -> StoredCampaign:
     """
     with JournalReader.open(journal_at(Path(path))) as journal:
         results = read_results(journal)
-        files = {single.site.span.file for one in results.everything for single in one.mutant.singles}
+        files = {one.mutant.site.span.file for one in results.everything}
         found = {file: journal.source(file) for file in sorted(files)}
     meta = results.meta
     return StoredCampaign(

@@ -91,7 +91,7 @@ def changes(old: Results, new: Results) -> Changes:
 def _asked_for(results: Results, mutants: Iterable[MutantResult]) -> list[MutantResult]:
     """The mutants of families that a campaign had; all of them if it does not say which."""
     families = results.meta.get("families")
-    return [one for one in mutants if families is None or set(one.mutant.family.split("+")) <= {*families}]
+    return [one for one in mutants if families is None or one.mutant.family in families]
 
 
 def _notes(name: str, results: Results, other: Results) -> Iterator[str]:

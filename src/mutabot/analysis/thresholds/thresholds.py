@@ -1,18 +1,155 @@
-"""The thresholds of a campaign: its ladders, and what they cost."""
+"""The thresholds of a campaign: its ladders, what they cost, and how wide the checks are.
+
+A check |reading| ≤ T on a reading that is off by ε in a round notices faults above T − ε in one direction and
+above T + ε in the other. So the half of the sum of both thresholds is T, however the rounds fell, and half of
+their difference is the bias of the round.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from statistics import NormalDist
 from typing import Any
 
 from mutabot.analysis.results import Results
+from mutabot.analysis.thresholds.ladders import Ladder, ladders_of, looseness
+from mutabot.analysis.thresholds.rounds import LadderRound
+from mutabot.analysis.thresholds.words import amount
+from mutabot.model import Quantity
+from mutabot.model.graded.demand import OFFSET
 from mutabot.model.graded.ladder import seen
+from mutabot.model.values.units import UNITS, convert_difference
 
-from .floor import Floor, floors_of
-from .ladders import Ladder, ladders_of, looseness
-from .rounds import LadderRound
+#: a check that is not wider than so many standard deviations fails now and then without a fault
+_DEVIATIONS = 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Both directions of an offset in one round.
+
+    Attributes:
+        round: 0-based.
+        half_width: between which values T lies; the upper end is infinite where one side is never noticed.
+        bias: between which values the bias lies; infinite likewise.
+    """
+
+    round: int
+    half_width: tuple[float, float]
+    bias: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Floor:
+    """Both directions of an offset.
+
+    Attributes:
+        up, down: the ladders.
+        pairs: one per round in which both count.
+        noise: standard deviation of the reading, in the ladders' unit; None if the vocabulary does not say.
+    """
+
+    up: Ladder
+    down: Ladder
+    pairs: tuple[Pair, ...]
+    noise: float | None
+
+    @property
+    def blind(self) -> tuple[float, float]:
+        """From the largest fault down to the largest up that some round may miss."""
+        return -self.down.all_from, self.up.all_from
+
+    @property
+    def half_width(self) -> tuple[float, float]:
+        """Between which values T lies, which is the same in all rounds."""
+        low = max(one.half_width[0] for one in self.pairs)
+        high = min(one.half_width[1] for one in self.pairs)
+        return (low, high) if low < high else (min(one.half_width[0] for one in self.pairs), high)
+
+    @property
+    def is_below_noise(self) -> bool:
+        """Whether the check is so narrow that its sensor's noise alone makes it fail now and then."""
+        return self.noise is not None and self.half_width[1] < _DEVIATIONS * self.noise
+
+    @property
+    def false_alarms(self) -> float | None:
+        """Share of readings that fail without a fault, at least; None if the noise is not known."""
+        high = self.half_width[1]
+        if self.noise is None or not math.isfinite(high):
+            return None
+        return 2.0 * (1.0 - NormalDist().cdf(high / self.noise))
+
+    @property
+    def blind_text(self) -> str:
+        """``blind between −10 mm and +20 mm``."""
+        low, high = self.blind
+        return f"blind between {_end(low, self.up.unit, self.down)} and {_end(high, self.up.unit, self.up)}"
+
+    @property
+    def text(self) -> str:
+        """``notices 1 mm, sensor noise 2 mm; passes only by its seed``."""
+        notices = amount(min(self.up.highs[0], self.down.highs[0]), self.up.unit)
+        noise = amount(self.noise or 0.0, self.up.unit)
+        return f"notices {notices}, sensor noise {noise}; passes only by its seed"
+
+
+def floors_of(ladders: Iterable[Ladder]) -> Iterator[Floor]:
+    """The offsets that are known in both directions, in the order of the first of them."""
+    found: dict[str, dict[str, Ladder]] = {}
+    for one in ladders:
+        if one.mutant.operator == OFFSET and one.mutant.direction and one.counted:
+            found.setdefault(_both(one), {})[one.mutant.direction[-1]] = one
+    for both in found.values():
+        if both.keys() == {"+", "-"}:
+            up, down = both["+"], both["-"]
+            pairs = tuple(_pairs(up, down))
+            if pairs:
+                yield Floor(up, down, pairs, noise_of(up.quantity, up.unit))
+
+
+def noise_of(quantity: Quantity | None, unit: str | None) -> float | None:
+    """The standard deviation of a reading, in this unit; None if nothing says."""
+    if quantity is None or quantity.repeatability is None or quantity.path.root is not None:
+        return None
+    if unit == quantity.unit or unit not in UNITS or quantity.unit not in UNITS:
+        return quantity.repeatability if unit == quantity.unit else None
+    try:
+        return float(f"{convert_difference(quantity.repeatability, quantity.unit, unit):.12g}")
+    except ValueError:  # a magnitude of another kind, such as a delay
+        return None
+
+
+def _both(ladder: Ladder) -> str:
+    mutant = ladder.mutant
+    moment = mutant.moment.text if mutant.moment is not None else ""
+    axis = mutant.direction[:-1]
+    names = (mutant.site.id, mutant.pattern, mutant.quantity, moment, mutant.unit, axis, mutant.operation)
+    return "|".join(name or "" for name in names)
+
+
+def _pairs(up: Ladder, down: Ladder) -> Iterator[Pair]:
+    for one, other in zip(up.rounds, down.rounds, strict=True):
+        if one.counts and other.counts:
+            (low, high), (low_down, high_down) = _ends(one), _ends(other)
+            width = (low + low_down) / 2.0, (high + high_down) / 2.0
+            yield Pair(one.number, width, ((low - high_down) / 2.0, (high - low_down) / 2.0))
+
+
+def _ends(one: LadderRound) -> tuple[float, float]:
+    high = one.bracket.high
+    return one.bracket.low or 0.0, math.inf if high is None else high
+
+
+def _end(value: float, unit: str | None, ladder: Ladder) -> str:
+    if math.isfinite(value):
+        sign = "−" if value < 0 else "+"
+        return f"{sign}{amount(abs(value), unit)}"
+    sign = "−" if value < 0 else "+"
+    return f"beyond {sign}{amount(max(ladder.lows), unit)}"
+
 
 _Key = Callable[[Ladder], Any]
 #: orders of the table; the first is the usual one

@@ -114,18 +114,9 @@ class Baseline(Original):
         return self._together(round, tuple(self.reaching.get((round, place), ())))
 
     def judges(self, round: int, mutant: Mutant) -> tuple[str, ...]:
-        """The tests that judge a mutant: those that reach all it consists of, and what goes with them."""
-        tests = self._reaching_all(round, mutant)
-        if tests and (mutant.id, round) in self.widened:
-            return tuple(self.tests[round])
-        selections = [self.selection(round, Place.of(single)) for single in mutant.singles]
-        if tests and len(selections) > 1 and tuple(self.tests[round]) in selections:
-            return tuple(self.tests[round])
-        return self._together(round, tests)
-
-    def _reaching_all(self, round: int, mutant: Mutant) -> tuple[str, ...]:
-        first, *others = (self.reaching.get((round, Place.of(single)), ()) for single in mutant.singles)
-        return tuple(test for test in first if all(test in other for other in others))
+        """The tests that judge a mutant: those that reach it, and what goes with them."""
+        tests = self.selection(round, Place.of(mutant))
+        return tuple(self.tests[round]) if tests and (mutant.id, round) in self.widened else tests
 
     def _together(self, round: int, tests: tuple[str, ...]) -> tuple[str, ...]:
         if tests in self.dependent:
@@ -141,7 +132,7 @@ class Baseline(Original):
 
     def is_early(self, mutant: Mutant) -> bool:
         """Whether a mutant may act before any test begins."""
-        return any(Place.of(one) in self.early for one in mutant.singles)
+        return Place.of(mutant) in self.early
 
     def why_apart(self, mutant: Mutant) -> str | None:
         """Why a mutant needs a process of its own from the start, whatever its tests; None if it does not."""
@@ -236,10 +227,10 @@ class Baseline(Original):
         A test that fails may stop short of a place that it reaches in other rounds.
         """
         aside = [test for where, test in self.unstable if where == round]
-        return [test for test in aside if all(self._reaches(test, single) for single in mutant.singles)]
+        return [test for test in aside if self._reaches(test, mutant)]
 
-    def _reaches(self, test: str, single: Mutant) -> bool:
-        place = Place.of(single)
+    def _reaches(self, test: str, mutant: Mutant) -> bool:
+        place = Place.of(mutant)
         return any(
             test in found.get((other, place), ())
             for other in range(len(self.tests))

@@ -56,13 +56,13 @@ class PlantedFaults:
 
     def choices(self, mutant: Mutant) -> tuple[Choice, ...]:
         """The alternatives in the program text that a mutant is."""
-        found = (self._choice(single) for single in mutant.singles)
-        return tuple(choice for choice in found if choice is not None)
+        choice = self._choice(mutant)
+        return () if choice is None else (choice,)
 
     def in_process(self, mutant: Mutant) -> dict[str, InProcess]:
-        """What puts those parts of a mutant in place that providers do by themselves, by the part's id."""
-        found = {single.id: self._in_process(single) for single in mutant.singles}
-        return {part: how for part, how in found.items() if how is not None}
+        """What puts a mutant in place that its provider does by itself, by the mutant's id."""
+        how = self._in_process(mutant)
+        return {} if how is None else {mutant.id: how}
 
     def instrumentation(self, mutants: Iterable[Mutant], *, active: bool = False) -> Instrumentation | None:
         """The program text with the places of these mutants, or None if they have none there.

@@ -298,10 +298,10 @@ def _add_hits(baseline: Baseline, sources: Sources, round: int, result: Result, 
             tests = reaching.setdefault(place, [])
             if end.test not in tests:
                 tests.append(end.test)
-    for index, written, read, answer in result.called_at_import:
-        place = places[index]
-        baseline.hits.setdefault(place, []).append(Hit(written, read, (round, "")))
-        baseline.answers.setdefault(place, RecordedAnswers()).add(round, "", answer)
+    for call in result.called_at_import:
+        place = places[call.site]
+        baseline.hits.setdefault(place, []).append(Hit(call.written, call.read, (round, "")))
+        baseline.answers.setdefault(place, RecordedAnswers()).add(round, "", call.answer)
         baseline.early.add(place)
         reaching[place] = list(good)
     for place, tests in reaching.items():

@@ -95,12 +95,8 @@ class Control:
         )
 
 
-def run_controls(
-    campaign: Campaign, mutants: Iterable[Mutant], *, warm: bool = False
-) -> Iterator[ControlEnd]:
+def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[ControlEnd]:
     """Run by replay the controls for these mutants; tells the baseline which tests need the whole suite.
-
-    ``warm``: whether their processes may begin warm.
 
     Raises ControlError for a control that ends wrongly, after it was yielded.
     """
@@ -112,7 +108,7 @@ def run_controls(
         return
     progress.stage("controls", len(identities) + len(fatals))
     together: list[Control] = []
-    for control, outcome in _replayed(campaign, identities, warm=warm):
+    for control, outcome in _replayed(campaign, identities):
         end = end_of(campaign, control, outcome)
         ended = "survives, as it must" if end.ok else end.detail
         progress.advance(f"{control.name}, {control.subject}: {ended}")
@@ -129,7 +125,7 @@ def run_controls(
     # only now is it known which selections pass by themselves
     campaign.proven.update(fatals)  # one that ends wrongly stops the campaign
     fatals = [replace(fatal, tests=baseline.selection(fatal.round, fatal.place)) for fatal in fatals]
-    for control, outcome in _replayed(campaign, [*together, *fatals], warm=warm):
+    for control, outcome in _replayed(campaign, [*together, *fatals]):
         end = end_of(campaign, control, outcome)
         progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")
         yield end
@@ -177,11 +173,8 @@ def end_of(campaign: Campaign, control: Control, outcome: Outcome) -> ControlEnd
     return second
 
 
-def _replayed(
-    campaign: Campaign, controls: Iterable[Control], *, warm: bool = False
-) -> Iterator[tuple[Control, Outcome]]:
-    tasks = (replace(control.task(campaign), begins_warm=warm) for control in controls)
-    for result in campaign.executor.run(tasks):
+def _replayed(campaign: Campaign, controls: Iterable[Control]) -> Iterator[tuple[Control, Outcome]]:
+    for result in campaign.executor.run(control.task(campaign) for control in controls):
         control: Control = result.task.key
         yield control, judge(campaign, run_of(result, campaign.sources))
 
@@ -191,7 +184,7 @@ def _identities_by_selection(baseline: Baseline, mutants: list[Mutant]) -> list[
     chosen: dict[tuple[str, tuple[str, ...], int], Control] = {}
     for round in range(len(baseline.tests)):
         for mutant in mutants:
-            place = Place.of(mutant.singles[0])
+            place = Place.of(mutant)
             tests = baseline.judges(round, mutant)
             if tests:
                 way = baseline.faults.provider_at(place)
@@ -202,7 +195,7 @@ def _identities_by_selection(baseline: Baseline, mutants: list[Mutant]) -> list[
 
 def _places(mutants: Iterable[Mutant]) -> set[Place]:
     """All places at which these mutants act."""
-    return {Place.of(single) for mutant in mutants for single in mutant.singles}
+    return set(map(Place.of, mutants))
 
 
 def _subject(tests: tuple[str, ...]) -> str:

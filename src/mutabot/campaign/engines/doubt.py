@@ -65,7 +65,7 @@ class Doubts:
         ]
 
     def _is_raced(self, mutant: Mutant) -> bool:
-        return any(provider(one.provider).is_raced(one.operator) for one in mutant.singles)
+        return provider(mutant.provider).is_raced(mutant.operator)
 
     def is_certain(self, key: Key) -> bool:
         """Whether a kill was repeated before, or is one by a test that is taken to be deterministic."""

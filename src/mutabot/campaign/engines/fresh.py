@@ -36,22 +36,22 @@ class Hindered:
         self.ends[mutant.id, outcome.round] = outcome, why
 
 
-def replay(campaign: Campaign, trials: Iterable[Trial], engine: str = REPLAY) -> Iterator[Outcome]:
-    """Outcomes of mutants in rounds, as they come; any ``engine`` but replay begins its processes warm.
+def replay(campaign: Campaign, trials: Iterable[Trial]) -> Iterator[Outcome]:
+    """Outcomes of mutants in rounds, as they come.
 
     What a limit of wall clock ended on a busy machine is run once more alone, see ``replay_alone``.
     """
     hindered = Hindered()
-    yield from _replayed(campaign, trials, engine, hindered)
-    yield from replay_alone(campaign, hindered, engine)
+    yield from _replayed(campaign, trials, hindered)
+    yield from replay_alone(campaign, hindered)
 
 
-def replay_alone(campaign: Campaign, hindered: Hindered, engine: str = REPLAY) -> Iterator[Outcome]:
+def replay_alone(campaign: Campaign, hindered: Hindered) -> Iterator[Outcome]:
     """What was hindered, run once more with nothing of ours beside it: that counts, however it ends."""
     if not hindered.trials:
         return
     changed = 0
-    for outcome in _replayed(campaign, hindered.trials, engine, None):
+    for outcome in _replayed(campaign, hindered.trials, None):
         first, why = hindered.ends[outcome.mutant, outcome.round]
         changed += outcome.verdict is not first.verdict
         yield replace(outcome, beside=f"{in_words(first)}; {why}")
@@ -62,19 +62,18 @@ def replay_alone(campaign: Campaign, hindered: Hindered, engine: str = REPLAY) -
     )
 
 
-def _replayed(
-    campaign: Campaign, trials: Iterable[Trial], engine: str, hindered: Hindered | None
-) -> Iterator[Outcome]:
+def _replayed(campaign: Campaign, trials: Iterable[Trial], hindered: Hindered | None) -> Iterator[Outcome]:
     """The same; ``hindered`` takes those that are to be run alone. None: all are run alone."""
     baseline = campaign.baseline
     uncovered: list[Outcome] = []
     widened: list[Trial] = []
     tasks = _tasks(campaign, trials, uncovered)
-    tasks = (replace(one, begins_warm=engine != REPLAY, alone=one.alone or hindered is None) for one in tasks)
+    if hindered is None:
+        tasks = (replace(one, alone=True) for one in tasks)
     for result in campaign.executor.run(tasks):
         yield from _drain(uncovered)
         mutant, round = trial_of(result)
-        outcome, why = _outcome(campaign, result, engine)
+        outcome, why = _outcome(campaign, result)
         if hindered is not None and why is not None:
             hindered.add(mutant, outcome, why)
         elif outcome.verdict is Verdict.SURVIVED and baseline.must_widen(mutant, round, result.ends):
@@ -83,7 +82,7 @@ def _replayed(
             yield outcome
     yield from _drain(uncovered)
     if widened:
-        yield from _replayed(campaign, widened, engine, hindered)
+        yield from _replayed(campaign, widened, hindered)
 
 
 def trial_of(result: Result) -> Trial:
@@ -93,12 +92,12 @@ def trial_of(result: Result) -> Trial:
     return job.mutant, job.round
 
 
-def _outcome(campaign: Campaign, result: Result, engine: str) -> tuple[Outcome, str | None]:
+def _outcome(campaign: Campaign, result: Result) -> tuple[Outcome, str | None]:
     """The outcome, and why a limit of wall clock that ended the run says little."""
     try:
-        run = replace(run_of(result, campaign.sources), engine=engine)
+        run = run_of(result, campaign.sources)
     except Exception as error:
-        return not_judged(*trial_of(result), error, engine), None
+        return not_judged(*trial_of(result), error, REPLAY), None
     return judged(campaign, run), run.hindered
 
 

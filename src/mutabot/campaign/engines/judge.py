@@ -186,15 +186,12 @@ def _ruling(run: Run) -> Ruling:
         acted = acted or end.acted > 0
         if end.failure is not None:
             return Verdict.ERROR, end, end.failure
-        if end.partly and not acted and end.is_decided:
-            return Verdict.NO_EFFECT, end, "the test ended before more than one of the two had acted"
         if end.invalid:
             return Verdict.INVALID, end, end.message
         if end.timeout is not None:
             return (Verdict.TIMEOUT if acted else Verdict.UNSTABLE), end, end.timeout
         if end.refused is not None and not end.caught:
-            if acted or not end.partly:
-                refused = refused or end
+            refused = refused or end
         elif end.outcome == "failed":
             if acted:
                 return Verdict.KILLED, end, end.message
@@ -242,8 +239,6 @@ def _ruling_on_death(death: Death, acted: bool) -> Ruling:
 def _ruling_on_survivor(run: Run, acted: bool) -> Ruling:
     if acted:
         return Verdict.SURVIVED, None, None
-    if any(end.partly for end in run.ends):
-        return Verdict.NO_EFFECT, None, "only one of the two changed anything"
     if any(end.hits for end in run.ends):
         return Verdict.NO_EFFECT, None, "the site was reached, but no value changed"
     return Verdict.UNSTABLE, None, "the site was reached in the baseline, but not now"

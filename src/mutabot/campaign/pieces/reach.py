@@ -98,10 +98,6 @@ class Reach:
         """What stands where a mutant does, as a digest."""
         return _together(self._said(number) for number in self._at(file, function))
 
-    def pieces_at(self, file: str, function: str) -> list[Piece]:
-        """What stands where a mutant does."""
-        return [self.project.pieces[number] for number in self._at(file, function)]
-
     def only(self, reached: Reached, wanted: Callable[[str], bool]) -> Reached:
         """Those of these pieces that stand in certain files."""
         pieces = self.project.pieces

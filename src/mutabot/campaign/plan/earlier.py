@@ -21,34 +21,30 @@ def carry(
     """The mutants of earlier campaigns that the program still has and that are not planned now.
 
     ``whole``: all that the program has now, of the families of this campaign, with their numbers. Mutants of
-    other families and orders are kept, for of these nothing is known now. A number that is taken gives way.
+    other families are kept, for of these nothing is known now. A number that is taken gives way.
     """
     now = {mutant.id: mutant for mutant in whole}
     done = {mutant.id for mutant in planned}
     found = [
         now.get(mutant.id, mutant)
         for mutant in known
-        if mutant.id not in done and all(_may_be_there(single, now, request) for single in mutant.singles)
+        if mutant.id not in done and (mutant.id in now or mutant.family not in request.families)
     ]
     return renumbered(found, planned)
 
 
-def _may_be_there(single: Mutant, now: dict[str, Mutant], request: Request) -> bool:
-    return single.id in now or single.family not in request.families
-
-
 def renumbered(mutants: Sequence[Mutant], planned: Sequence[Mutant]) -> list[Mutant]:
     """Mutants beside a plan, by number; a number that is taken gives way."""
-    taken = {(len(mutant.singles), mutant.number) for mutant in planned}
+    taken = {mutant.number for mutant in planned}
     last = max((mutant.number for mutant in (*planned, *mutants)), default=0)
     found = []
     for mutant in sorted(mutants, key=lambda mutant: mutant.number):
-        if (len(mutant.singles), mutant.number) in taken:
+        if mutant.number in taken:
             last += 1
             found.append(replace(mutant, number=last))
         else:
             found.append(mutant)
-        taken.add((len(mutant.singles), found[-1].number))
+        taken.add(found[-1].number)
     return found
 
 
@@ -75,7 +71,7 @@ def _is_outdated(
         outcome = kept.get((mutant.id, round))
         if outcome is None:
             return True
-        if any(single.family not in request.families for single in mutant.singles):
+        if mutant.family not in request.families:
             if not dependencies.still_hold(outcome.key, journal.parts(outcome.key.split()[1]) or {}):
                 return True
         elif not dependencies.holds(outcome.key, mutant, round):

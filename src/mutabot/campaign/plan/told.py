@@ -13,16 +13,16 @@ from mutabot.model.place import Place
 
 def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
     """The summary of each operator that made one of the mutants, by its name."""
-    singles = [single for mutant in mutants for single in mutant.singles]
-    providers = {single.provider: provider(single.provider) for single in singles}
+    mutants = list(mutants)
+    providers = {one.provider: provider(one.provider) for one in mutants}
     known = {(name, rule.name): rule.summary for name, one in providers.items() for rule in one.rules()}
-    used = sorted({(single.family, single.operator, single.provider) for single in singles})
+    used = sorted({(one.family, one.operator, one.provider) for one in mutants})
     return {name: known[by, name] for _, name, by in used if (by, name) in known}
 
 
 def drawing(mutants: Iterable[Mutant]) -> list[str]:
     """The names of the operators among them that draw a number for each round."""
-    used = {(single.provider, single.operator) for mutant in mutants for single in mutant.singles}
+    used = {(mutant.provider, mutant.operator) for mutant in mutants}
     return sorted(name for by, name in used if provider(by).draws(name))
 
 
@@ -30,7 +30,7 @@ def reaching(baseline: Baseline, mutants: Iterable[Mutant]) -> Reaching:
     """Which tests reach the sites of the mutants in any round."""
     numbers: dict[str, int] = {}
     sites: dict[str, set[int]] = {}
-    for place in {Place.of(single): None for mutant in mutants for single in mutant.singles}:
+    for place in dict.fromkeys(map(Place.of, mutants)):
         reached = sites.setdefault(place.site.id, set())
         for round in range(len(baseline.tests)):
             tests = baseline.reaching.get((round, place), ())

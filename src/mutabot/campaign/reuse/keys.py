@@ -136,7 +136,7 @@ class Dependencies:
 
         The second is that of tests that had turned out to pass only together with all others.
         """
-        own = _digest([self._own(single, round) for single in mutant.singles])
+        own = _digest([self._own(mutant, round)])
         return tuple(
             f"{self._common} {self._of_place(mutant, round, tests)} {own} {self.tree}"
             for tests in self.judges(mutant, round)
@@ -198,14 +198,12 @@ class Dependencies:
     def reached(self, mutant: Mutant, tests: tuple[str, ...], reach: Reach | None = None) -> Reached:
         """All that these tests can run as this mutant; ``reach``: in another state of the files."""
         reach = reach or self.reach
-        places = tuple((one.site.span.file, one.site.span.function) for one in mutant.singles)
+        place = mutant.site.span.file, mutant.site.span.function
         operations = self._operations_of(mutant)
-        names = frozenset().union(*(self._names_of(single) for single in mutant.singles))
-        key = (id(reach), tests, places, operations, names)
+        names = self._names_of(mutant)
+        key = (id(reach), tests, place, operations, names)
         if key not in self._reached:
-            found = set(reach.of_tests(tests, self.file_of))
-            for file, function in places:
-                found |= reach.at(file, function)
+            found = {*reach.of_tests(tests, self.file_of), *reach.at(*place)}
             targets = {name for one in operations for name in self._operation_names(one)}
             found |= reach.closure((), {*names, *targets})
             self._reached[key] = frozenset(found)
@@ -225,8 +223,7 @@ class Dependencies:
 
     def _operations_of(self, mutant: Mutant) -> tuple[str, ...]:
         """The operations whose meaning counts: to a mutant that acts on none, any might refuse."""
-        named = tuple(single.operation for single in mutant.singles)
-        return named if all(named) else tuple(self._operations)
+        return (mutant.operation,) if mutant.operation else tuple(self._operations)
 
     def _of_place(self, mutant: Mutant, round: int, tests: tuple[str, ...]) -> str:
         aside = tuple(self._baseline.missing_judges(round, mutant)) if self._baseline.unstable else ()
@@ -270,7 +267,7 @@ class Dependencies:
 
 def _draws(mutant: Mutant) -> bool:
     """Whether a mutant draws numbers, which follow from its id."""
-    return any(one.moment is not None or provider(one.provider).draws(one.operator) for one in mutant.singles)
+    return mutant.moment is not None or provider(mutant.provider).draws(mutant.operator)
 
 
 def changes(old: Parts, new: Parts) -> list[str]:

@@ -6,7 +6,7 @@ from mutabot.journal.reader import JournalReader
 from mutabot.model import Mutant
 
 from .keys import ASIDE, JUDGES, REACHED, Dependencies, Parts, changes
-from .trees import Trees
+from .taken_over import Trees
 
 #: names that are given before it is said how many more there are
 _SHOWN = 3
@@ -29,15 +29,12 @@ class Reasons:
 
     def is_site_changed(self, old: str, mutant: Mutant) -> bool:
         """Whether what stands where a mutant acts says something else, or nobody knows."""
-        key = (old.rsplit(maxsplit=1)[-1], *(one.site.id for one in mutant.singles))
+        key = (old.rsplit(maxsplit=1)[-1], mutant.site.id)
         if key not in self._sites:
             then = self._trees.reach(self._journal, key[0])
             now = self._dependencies.reach
-            self._sites[key] = then is None or any(
-                then.standing(one.site.span.file, one.site.span.function)
-                != now.standing(one.site.span.file, one.site.span.function)
-                for one in mutant.singles
-            )
+            where = mutant.site.span.file, mutant.site.span.function
+            self._sites[key] = then is None or then.standing(*where) != now.standing(*where)
         return self._sites[key]
 
     def _changes(self, old: str, new: str, mutant: Mutant, round: int) -> list[str]:

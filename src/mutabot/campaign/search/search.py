@@ -1,12 +1,22 @@
-"""The search on all ladders of a campaign at once: in waves, so that one trunk serves the faults of a round.
+"""Finding detection thresholds with as few runs as they take.
 
-The first round comes first; the others, which begin with what it found, run side by side.
+The first round of a ladder is bisected. Each later one begins with both ends of its bracket; where they
+disagree with it, the search gallops outward by 1, 2, 4 … steps (Bentley and Yao 1976) and bisects inside.
+What bisection runs always fits some threshold, so it can never see a larger fault that is missed: one more
+run a round, the guard, looks elsewhere. It is the largest magnitude first, then whichever was run least
+often. At the first violation the whole ladder is run in all rounds.
+
+A magnitude that the robot refuses bounds the search like one that is noticed. One that says nothing is passed
+over. All ladders of a campaign are searched at once, in waves, so that one trunk serves the faults of a
+round. The first round comes first; the others, which begin with what it found, run side by side.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from random import Random
 
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.choice import run_trials
@@ -14,9 +24,127 @@ from mutabot.campaign.engines.engine import Trial
 from mutabot.campaign.faults.ladders import Ladder
 from mutabot.campaign.sink import Sink
 from mutabot.model import Outcome
-from mutabot.model.graded.ladder import seen
+from mutabot.model.graded.ladder import Seen, bracket_of, seen
 
-from .ladder import LadderSearch, Step, steps_run
+#: indices of a ladder's magnitudes, from the smallest
+Step = int
+
+
+@dataclass(slots=True)
+class LadderSearch:
+    """The search on one ladder.
+
+    Attributes:
+        size: how many magnitudes it has.
+        rounds: how many rounds there are.
+        seed: breaks ties among guards.
+        always: magnitudes that are run in every round, such as those that are demanded.
+        found: what was seen, by round and step.
+    """
+
+    size: int
+    rounds: int
+    seed: int = 0
+    always: frozenset[Step] = frozenset()
+    found: dict[int, dict[Step, Seen]] = field(default_factory=dict)
+    _guards: set[int] = field(default_factory=set)
+
+    def take(self, round: int, step: Step, seen: Seen) -> None:
+        """A magnitude was run in a round."""
+        self.found.setdefault(round, {})[step] = seen
+
+    @property
+    def is_violated(self) -> bool:
+        """Whether any round missed a larger fault where it noticed a smaller one."""
+        rows = ({float(step): one for step, one in row.items()} for row in self.found.values())
+        return any(bracket_of(row).is_violated for row in rows)
+
+    def due(self, round: int) -> set[Step]:
+        """The magnitudes to run next in a round; empty if nothing more is asked there."""
+        row = self.found.get(round, {})
+        left = set(range(self.size)) - row.keys()
+        if self.is_violated:
+            return left
+        always = self.always & left
+        if always:
+            return set(always)
+        guess = self._guess(round)
+        wanted = self._first(row) if guess is None else self._carried(row, guess)
+        if wanted:
+            return wanted & left
+        return self._guard(round, row, left)
+
+    def _guess(self, round: int) -> tuple[Step, Step] | None:
+        """The bracket of the first round; None in that round itself, and if it knows nothing."""
+        row = self.found.get(0, {})
+        if round == 0 or not any(one.is_valid for one in row.values()):
+            return None
+        return _ends(row, self.size)
+
+    def _first(self, row: Mapping[Step, Seen]) -> set[Step]:
+        low, high = _ends(row, self.size)
+        return _middle(row, low, high)
+
+    def _carried(self, row: Mapping[Step, Seen], guess: tuple[Step, Step]) -> set[Step]:
+        low, high = guess
+        ends = {step for step in guess if 0 <= step < self.size}
+        if not ends <= row.keys():
+            return ends
+        below, above = _ends(row, self.size)
+        further = None
+        if above <= low and below < 0:  # noticed where the other round missed it
+            further = _outward(row, low, -1, self.size)
+        elif below >= high and above >= self.size:  # missed where the other round noticed it
+            further = _outward(row, high, 1, self.size)
+        return {further} if further is not None else _middle(row, below, above)
+
+    def _guard(self, round: int, row: Mapping[Step, Seen], left: set[Step]) -> set[Step]:
+        """One magnitude more, the first time that nothing else is left to ask."""
+        if round in self._guards or not left:
+            return set()
+        self._guards.add(round)
+        runs = Counter(step for other in self.found.values() for step in other)
+        ties = Random(f"{self.seed}:{round}").random()
+        largest = self.size - 1
+        if largest in left and not runs[largest]:
+            return {largest}
+        least = min(runs[step] for step in left)
+        fewest = sorted(step for step in left if runs[step] == least)
+        return {fewest[int(ties * len(fewest))]}
+
+
+def _ends(row: Mapping[Step, Seen], size: int) -> tuple[Step, Step]:
+    """The largest step that was missed, and the smallest above it that was noticed or refused.
+
+    −1 and ``size`` where there is none.
+    """
+    low = max((step for step, one in row.items() if one is Seen.MISSED), default=-1)
+    bounds = (Seen.NOTICED, Seen.REFUSED)
+    high = min((step for step, one in row.items() if one in bounds and step > low), default=size)
+    return low, high
+
+
+def _middle(row: Mapping[Step, Seen], low: Step, high: Step) -> set[Step]:
+    """The step in the middle between two, of those that were not run; none if all were."""
+    between = [step for step in range(low + 1, high) if step not in row]
+    return {between[len(between) // 2]} if between else set()
+
+
+def _outward(row: Mapping[Step, Seen], start: Step, way: int, size: int) -> Step | None:
+    """The next step of a gallop: 1, 2, 4 … further than the last that was run; None if it is at its end."""
+    reach, at = 1, start
+    while True:
+        at = min(max(at + way * reach, 0), size - 1)
+        if at not in row:
+            return at
+        if at in (0, size - 1):
+            return None
+        reach *= 2
+
+
+def steps_run(searches: Iterable[LadderSearch]) -> int:
+    """How many runs were made in all."""
+    return sum(len(row) for search in searches for row in search.found.values())
 
 
 def run_ladders(

@@ -19,8 +19,6 @@ _FACTS = {
     "seed": "the seed",
     "rounds": "the number of rounds",
     "families": "the families",
-    "order": "--order",
-    "pairs": "--pairs",
     DRAWING: "the sample",
 }
 #: facts that are told; the rest is counted

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import sqlite3
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, closing
+from contextlib import ExitStack
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from mutabot.border.codec import from_data, to_data
@@ -15,9 +13,8 @@ from mutabot.errors import MergeError
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.journal.journal import Journal
 from mutabot.journal.lock import is_written
-from mutabot.journal.merging import take_recordings
 from mutabot.journal.reader import JournalReader
-from mutabot.journal.recordings import Recordings, recordings_path
+from mutabot.journal.recordings import Recordings
 from mutabot.journal.records import (
     ALTERED,
     FLAKY,
@@ -51,15 +48,14 @@ def merge(paths: Sequence[Path], target: Path, *, root: Path, room: int) -> list
     Raises MergeError if these are not shards of one plan, JournalError for a file that cannot be used.
     """
     with ExitStack() as stack:
-        parts = [_opened(stack, found_in(path), target) for path in paths]
+        parts = [_opened(stack, found_in(path)) for path in paths]
         if not parts:
             raise MergeError("there is nothing to merge: name the journals of the shards")
         parts.sort(key=lambda part: part.shard.number)
         refuse_strangers(parts)
         missing = list(_missing(parts))
         meta = {**_meta(parts), "root": str(root)}
-        with Journal.prepare(target, meta=meta) as journal:
-            journal.begin(meta)
+        with Journal.create(target, meta=meta) as journal:
             journal.take_plan(parts[0].journal)
             for part in parts:
                 journal.take_outcomes(part.journal)
@@ -79,27 +75,11 @@ def found_in(path: Path) -> Path:
     return found
 
 
-def _opened(stack: ExitStack, path: Path, target: Path) -> Part:
+def _opened(stack: ExitStack, path: Path) -> Part:
     refuse_tracked(path)
     if is_written(path):
         raise MergeError(f"{path} is being written by a `mutabot run`: merge it when that has ended")
-    opened = path
-    if target.exists() and path.samefile(target):
-        opened = _copied(Path(stack.enter_context(TemporaryDirectory(prefix="mutabot-merge-"))), path)
-    return Part.of(path, stack.enter_context(JournalReader.open(opened)))
-
-
-def _copied(folder: Path, path: Path) -> Path:
-    """A shard that lies where the whole is to lie."""
-    for file in (path, recordings_path(path)):
-        if file.is_file():
-            uri = f"{file.absolute().as_uri()}?mode=ro"
-            with (
-                closing(sqlite3.connect(uri, uri=True)) as connection,
-                closing(sqlite3.connect(folder / file.name)) as target,
-            ):
-                connection.backup(target)
-    return folder / path.name
+    return Part.of(path, stack.enter_context(JournalReader.open(path)))
 
 
 def _missing(parts: Sequence[Part]) -> Iterator[str]:
@@ -217,9 +197,14 @@ def _known(journal: Journal, parts: Sequence[Part]) -> list[tuple[Any, bool]]:
 def _merge_recordings(
     stack: ExitStack, parts: Sequence[Part], target: Path, room: int, known: set[str]
 ) -> None:
-    found = [Recordings.to_read(part.journal.path) for part in parts]
+    found = [Recordings.to_read(part.path, copied=_is_same(part.path, target)) for part in parts]
     opened = [stack.enter_context(one) for one in found if one is not None]
     if opened:
         mutants = known | {one.id for one in parts[0].mutants}
         with Recordings.to_write(target, room) as recordings:
-            take_recordings(recordings, opened, mutants)
+            recordings.take(opened, mutants)
+
+
+def _is_same(path: Path, target: Path) -> bool:
+    """Whether a shard lies where the whole is to lie."""
+    return target.exists() and path.samefile(target)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline, cost
-from mutabot.campaign.plan.planned import Plan
+from mutabot.campaign.plan.plan import Plan
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.sharding.assignment import Item, assign
 from mutabot.journal.journal import Journal

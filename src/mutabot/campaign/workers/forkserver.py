@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from mutabot.border.events import Copied, ForkEnded, Serving
+from mutabot.border.events import ForkEnded, Serving
 from mutabot.border.job import Job
 
 from .interruption import interruptible
@@ -136,11 +136,11 @@ class ForkServer:
         """Take in what it reports."""
         for event in self.events.own():
             match event:
+                case Serving(copy=int(pid)):
+                    self._copied = pid
+                    self._codes[pid] = None
                 case Serving():
                     self.serving = event
-                case Copied():
-                    self._copied = event.pid
-                    self._codes[event.pid] = None
                 case ForkEnded():
                     self._codes[event.fork] = event.exit_code
 

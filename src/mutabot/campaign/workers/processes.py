@@ -23,7 +23,6 @@ from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE, Job, job_file, write
 from mutabot.border.keeper import FILE as KEEPER
 from mutabot.border.keeper import LEFT
 from mutabot.border.processes import FOLDER, SESSION, SUFFIX
-from mutabot.border.starter import Starter
 
 from .removal import remove_folder
 
@@ -109,7 +108,7 @@ def refuse_full_disk(folder: Path) -> None:
 
 
 class Spawned:
-    """A fresh process, with a keeper above it that ends all it starts; ``starter``: what may begin it warm.
+    """A fresh process, with a keeper above it that ends all it starts.
 
     Attributes:
         pid: the keeper's number.
@@ -126,15 +125,12 @@ class Spawned:
         home: Home,
         writing: int,
         descriptors: tuple[int, ...] = (),
-        starter: Starter | None = None,
     ) -> None:
         self._left = home.folder / LEFT
         keeper = [sys.executable, "-I", "-S", KEEPER, str(os.getpid())]
-        warm = starter.at_work(keeper) if starter is not None else contextlib.nullcontext()
-        kept = keeper if starter is None else []
-        with home.log_file.open("wb") as log, warm:
+        with home.log_file.open("wb") as log:
             self._process = subprocess.Popen(
-                [*kept, *command(arguments, home.folder)],
+                [*keeper, *command(arguments, home.folder)],
                 cwd=root,
                 env=environment(home.job_file, writing),
                 stdin=subprocess.DEVNULL,

@@ -8,9 +8,8 @@ from typing import Any
 
 from mutabot.border.events import (
     Acted,
-    CalledAtImport,
+    Called,
     Event,
-    MutatedCall,
     NotInstrumented,
     PlacesReached,
     Problem,
@@ -44,7 +43,6 @@ class Task:
         startup: wall-clock seconds until the first test begins.
         is_trunk: whether it branches: it then runs on a token of the pool.
         may_share: whether it may begin as a copy of a fork server instead of in a fresh process.
-        begins_warm: whether it may begin as a fork of a process that has imported what workers import.
         alone: whether nothing may run beside it.
     """
 
@@ -55,7 +53,6 @@ class Task:
     startup: float = STARTUP_SECONDS
     is_trunk: bool = False
     may_share: bool = False
-    begins_warm: bool = False
     alone: bool = False
 
 
@@ -69,7 +66,7 @@ class Result:
         acted: tests in which its mutant did something; the empty one stands for before any test.
         reached: places of the program text by test, likewise.
         reached_elsewhere: the same in processes below the tests.
-        called_at_import: trace of the operations that were called before any test.
+        called_at_import: the calls of operations before any test.
         seen: what a recording saw of the program text.
         not_instrumented: files whose mutants cannot run, with the reason.
         in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
@@ -95,7 +92,7 @@ class Result:
     acted: list[str] = field(default_factory=list)
     reached: dict[str, tuple[int, ...]] = field(default_factory=dict)
     reached_elsewhere: dict[str, tuple[int, ...]] = field(default_factory=dict)
-    called_at_import: tuple[Any, ...] = ()
+    called_at_import: list[Called] = field(default_factory=list)
     seen: TextsSeen | None = None
     not_instrumented: dict[str, str] = field(default_factory=dict)
     in_mutated_call: bool = False
@@ -123,20 +120,20 @@ class Result:
                 self.watched.clear()
             case Watched():
                 self.watched.append(line)
-            case Acted():
+            case Acted(in_call=None):
                 self.acted.append(line.test)
+            case Acted(in_call=bool(in_call)):
+                self.in_mutated_call = in_call
             case PlacesReached() if line.elsewhere:
                 self.reached_elsewhere[line.test] = line.places
             case PlacesReached():
                 self.reached[line.test] = line.places
-            case CalledAtImport():
-                self.called_at_import = line.trace
+            case Called():
+                self.called_at_import.append(line)
             case TextsSeen():
                 self.seen = line
             case NotInstrumented():
                 self.not_instrumented[line.file] = line.reason
-            case MutatedCall():
-                self.in_mutated_call = line.began
             case TokensHeld():
                 self.held = line.held
             case TestEnd():

@@ -17,7 +17,6 @@ from types import TracebackType
 from mutabot.border import stack
 from mutabot.border.events import Acted, Event, TestStart, Untrusted
 from mutabot.border.fold import Children, acted_in
-from mutabot.border.starter import is_supported
 from mutabot.border.test_end import TestEnd
 from mutabot.border.time_used import MOST, TimeUsed
 from mutabot.errors import JournalError
@@ -25,13 +24,12 @@ from mutabot.errors import JournalError
 from .forkserver import LOOKS, Copy, ForkServer
 from .interruption import interruptible
 from .pause import Pause
-from .processes import EventStream, Home, Spawned, refuse_full_disk, usual_environment
+from .processes import EventStream, Home, Spawned, refuse_full_disk
 from .remains import claim, end_abandoned, end_left_over
 from .removal import remove_folder
 from .task import Result, Task
 from .token_pool import TokenPool
 from .waiting import PERIOD, Waiting
-from .warm import WarmServer
 
 #: said of a process whose own folder somebody deleted while it ran: what it kept there is lost
 _HOME_LOST = Untrusted("the folder in which the tests' process worked was deleted or closed while it ran")
@@ -44,8 +42,7 @@ class Workers:
         root: the project's root; workers start there.
         arguments: pytest arguments of the project.
         jobs: how many are at work side by side.
-        on_unshared: told why tasks that might begin as copies of a fork server, or warm, do not, once that is
-            known.
+        on_unshared: told why tasks that might begin as copies of a fork server do not, once that is known.
         pause: while it is on, no task begins, and no trunk branches; None if nobody can pause.
         on_left: told once what tests had left running, and was ended.
 
@@ -79,8 +76,6 @@ class Workers:
         self._pause = pause
         self._on_left, self._has_told_left = on_left, False
         self._may_share = True
-        self._warm: WarmServer | None = None
-        self._may_begin_warm = True
         self._remains: list[str] = []
         self.pool = TokenPool(self._jobs)
         self.look: Callable[[], None] | None = None
@@ -114,8 +109,6 @@ class Workers:
         self._workers.clear()
         for server in list(self._servers):
             self._end_server(server)
-        if self._warm is not None:
-            self._warm.close()
         self._selector.close()
         self.pool.close()
         self._note_remains(remove_folder(self._folder))
@@ -202,26 +195,7 @@ class Workers:
         if copy is not None:
             return copy
         descriptors = self._inherited if task.is_trunk else ()
-        warm = self._warm_server(task) if task.begins_warm else None
-        starter = warm.starter if warm is not None else None
-        process = Spawned(self._root, self._arguments, home, writing, descriptors, starter)
-        if warm is not None and self._may_begin_warm and (reason := warm.why_not()) is not None:
-            self._may_begin_warm = False
-            self._on_unshared(reason)
-        return process
-
-    def _warm_server(self, task: Task) -> WarmServer | None:
-        """What begins such a task warm; None if nothing can."""
-        if self._warm is None and self._may_begin_warm:
-            reason = is_supported()
-            if reason is not None:
-                self._may_begin_warm = False
-                self._on_unshared(reason)
-            else:
-                own = [str(self._root / path) for path in (*task.job.program, *task.job.oracle)]
-                folder = self._folder / "warm"
-                self._warm = WarmServer(folder, self._root, usual_environment(), own)
-        return self._warm if self._may_begin_warm else None
+        return Spawned(self._root, self._arguments, home, writing, descriptors)
 
     def _server_for(self, task: Task) -> ForkServer | None:
         """The fork server for such a task; None if there can be none."""

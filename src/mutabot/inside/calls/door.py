@@ -14,9 +14,9 @@ from functools import partial
 from typing import Any
 
 from mutabot.errors import PathError
-from mutabot.inside.readings.program_time import ProgramTime
-from mutabot.inside.targets.means import Means
+from mutabot.inside.readings.clock import ProgramTime
 from mutabot.inside.targets.names import resolve
+from mutabot.inside.targets.target import Means
 from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply
 from mutabot.model.named import Form
 from mutabot.model.values.answer import NotKeptError, keep, restore

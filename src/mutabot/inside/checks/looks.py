@@ -9,8 +9,7 @@ from typing import Any
 
 from mutabot.model.seen.check import Check
 
-from .helpers import margin_of_helper
-from .margins import in_words, margin, of_tolerance
+from .margins import in_words, margin, margin_of_helper, of_tolerance
 
 #: checks of a test that are told; of others only how many there are
 MOST = 40

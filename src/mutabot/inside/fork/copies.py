@@ -19,7 +19,7 @@ import weakref
 from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.border.events import Copied, ForkEnded, Serving
+from mutabot.border.events import ForkEnded, Serving
 from mutabot.inside.event_file import EventFile
 
 from .forkable import open_now, why_not
@@ -113,7 +113,7 @@ class CopyServer:
         pid = os.fork()
         if pid:
             self._copies[os.pidfd_open(pid)] = pid
-            self.pipe.send(Copied(pid))
+            self.pipe.send(Serving(copy=pid))
             return False
         os.setsid()
         die_with_parent(server)

@@ -21,7 +21,6 @@ from mutabot.border.time_used import MOST, TimeUsed
 from mutabot.inside.event_file import EventFile
 from mutabot.inside.watchdogs import alarm_held
 from mutabot.model import Call, Mutant, Span
-from mutabot.model.alternative import AT_ONCE
 
 from .bunch import Board, Bunch
 from .forkable import open_now, why_not
@@ -144,9 +143,9 @@ class Trunk:
                 self._live.setdefault(key, []).append(mutant)
 
     def _keys(self, mutant: Mutant) -> list[Key]:
-        """Where it is to be branched: wherever one of its parts is reached first."""
-        sites = [(one.site.span, one.operation, one.pattern) for one in mutant.singles]
-        return [*sites, *(choice.place for choice in self.branching.choices.get(mutant.id, ()))]
+        """Where it is to be branched."""
+        site = mutant.site.span, mutant.operation, mutant.pattern
+        return [site, *(choice.place for choice in self.branching.choices.get(mutant.id, ()))]
 
     def start_test(self, test: str) -> None:
         """A test begins."""
@@ -172,13 +171,13 @@ class Trunk:
         here = self._live.get(place, ())
         bunches: list[list[Mutant]] = []
         for indexes in alike:
-            found = [one for one in here if self._index(one, place) in indexes]
+            found = [one for one in here if self._index(one) in indexes]
             bunches += [found] if min(indexes) >= 0 else [[one] for one in found]
         self._fork(place, bunches)
 
     def places(self) -> dict[int, frozenset[int]]:
         """The alternatives of the program text that are live in the running test, by place."""
-        found = {place: [self._index(one, place) for one in self._judged_at(place)] for place in self._places}
+        found = {place: [self._index(one) for one in self._judged_at(place)] for place in self._places}
         return {place: frozenset(indexes) for place, indexes in found.items() if indexes}
 
     def tell_undiverged(self, hits: Mapping[int, int]) -> None:
@@ -194,7 +193,7 @@ class Trunk:
             for place in self._places
             if hits.get(place)
             for mutant in self._judged_at(place)
-            if self._index(mutant, place) >= 0 and self._is_due(mutant)
+            if self._index(mutant) >= 0 and self._is_due(mutant)
         }
         if same:
             self.pipe.send(Undiverged(self._test, same))
@@ -206,10 +205,9 @@ class Trunk:
     def _judged_at(self, place: int) -> Iterator[Mutant]:
         return (one for one in self._live[place] if self._test in self._tests.get(one.id, ()))
 
-    def _index(self, mutant: Mutant, place: int) -> int:
+    def _index(self, mutant: Mutant) -> int:
         """Which alternative the mutant is; negative if it cannot wait until that changes something."""
-        choices = self.branching.choices[mutant.id]
-        return AT_ONCE if mutant.parts else choices[0].index
+        return self.branching.choices[mutant.id][0].index
 
     def _fork(self, key: Key, bunches: Sequence[Sequence[Mutant]]) -> None:
         if not any(bunches) or os.getpid() != self._pid:  # a copy that the test has forked for itself

@@ -24,7 +24,6 @@ from mutabot.border.events import (
     Did,
     Event,
     Found,
-    MutatedCall,
     Noted,
     NotInstrumented,
     PlacesReached,
@@ -39,21 +38,19 @@ from mutabot.border.events import (
 )
 from mutabot.border.job import Job, read_job
 from mutabot.border.signals import ANYBODY
-from mutabot.errors import MutabotError
 from mutabot.inside import FOLDER as OURS
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.event_file import EventFile
 from mutabot.inside.evidence import Evidence
-from mutabot.inside.exception_groups import everything, is_due_to, leaves
+from mutabot.inside.exception_groups import failure_in, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
 from mutabot.inside.session import Session
-from mutabot.inside.targets.names import is_named
 from mutabot.inside.text.scripts import hook_script
 from mutabot.model import Call
 from mutabot.model.values.quantity import Value
 
-from .carried import carry
-from .killers import starts_a_killer
+from .environment import carry
+from .exits import starts_a_killer
 from .now import Now
 
 #: the member that this process is; None in all others
@@ -106,7 +103,6 @@ class Member:
             locator,
         )
         self._told = Evidence()
-        self._parts: frozenset[str] = frozenset()
         self._places: set[int] = set()
         self._found: set[str] = set()
         self._exceeded = False
@@ -153,17 +149,19 @@ class Member:
             self.poll()
             self._use()
             self._test = self._now.number
-            self._told, self._parts, self._exceeded = Evidence(), frozenset(), False
+            self._told, self._exceeded = Evidence(), False
             self._places.clear()
             self.session.start_test(self._now.name_of(self._test))
 
     def send(self, line: Event) -> None:
         """What the session tells: written down, as far as it is news."""
         match line:
-            case SiteSeen() | MutatedCall() | NotInstrumented() | Problem() | Remark() | TextsSeen():
+            case SiteSeen() | NotInstrumented() | Problem() | Remark() | TextsSeen():
                 self.file.send(line)
-            case Acted():
+            case Acted(in_call=None):
                 self.poll()
+            case Acted():
+                self.file.send(line)
             case PlacesReached():
                 self._reached(line.places)
             case _:  # the test process tells of its tests itself
@@ -173,18 +171,16 @@ class Member:
         """Tell what the mutant did since the last time, and what was found."""
         session = self.session
         now, before = session.evidence, self._told
-        parts = frozenset(session.parts)
-        if now.hits != before.hits or now != before or parts != self._parts:
+        if now.hits != before.hits or now != before:
             self._told = _copy_of(now)
-            self.file.send(self._did(before, now, parts - self._parts))
-            self._parts = parts
+            self.file.send(self._did(before, now))
         self._tell_found()
         meter = session.meter
         if meter is not None and meter.exceeded is not None and not self._exceeded:
             self._exceeded = True
             self._use()
 
-    def _did(self, before: Evidence, now: Evidence, parts: frozenset[str]) -> Did:
+    def _did(self, before: Evidence, now: Evidence) -> Did:
         away = {why: count - before.away.get(why, 0) for why, count in now.away.items()}
         is_refused = now.refusals != before.refusals or now.said != before.said
         return Did(
@@ -197,11 +193,10 @@ class Member:
             failure=now.failure if before.failure is None else None,
             refused=now.refusal if is_refused and not now.is_of_text else None,
             is_final=now.said is not None,
-            parts=tuple(sorted(parts)),
         )
 
     def _hit(self, site: int, written: Any, read: Any, answer: Any) -> None:
-        self.file.send(Called(time.monotonic(), site, written, read, answer))
+        self.file.send(Called(site, written, read, answer, time.monotonic()))
 
     def _refused(self, site: int, number: int) -> None:
         self.file.send(Noted(site, number))
@@ -303,8 +298,7 @@ class Member:
         if isinstance(error, KeyboardInterrupt | SystemExit) or _member is not self:
             return
         self.poll()
-        refusals = self.session.evidence.refusals
-        culprits = frozenset(id(leaf) for refusal in refusals for leaf in (refusal, *leaves(refusal)))
+        culprits = self.session.evidence.culprits
         first = leaves(error)[0]
         if isinstance(first, BudgetExceeded):
             return
@@ -312,19 +306,10 @@ class Member:
             Raised(
                 f"{type(first).__qualname__}: {str(first)[:2000].strip()}",
                 is_refusal=bool(culprits) and is_due_to(error, culprits),
-                failure=self._failure(error),
+                failure=failure_in(error, self.session.job.vocabulary.failures),
                 in_thread=in_thread,
             )
         )
-
-    def _failure(self, error: BaseException) -> str | None:
-        failures = self.session.job.vocabulary.failures
-        for link in everything(error):
-            if isinstance(link, MemoryError):
-                return "the memory limit was reached"
-            if isinstance(link, MutabotError) or is_named(link, failures):
-                return f"{type(link).__name__}: {link}"
-        return None
 
 
 def _copy_of(evidence: Evidence) -> Evidence:

@@ -1,7 +1,8 @@
-"""What the members of a campaign told during a test, put into the end of that test."""
+"""The test process's side: what it gives to processes below it, and what it makes of what they tell."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -16,36 +17,53 @@ from mutabot.border.events import (
     Signalled,
     TextsSeen,
 )
-from mutabot.border.fold import ChildRecord, Known, calls_of, fold, is_alive
+from mutabot.border.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
+from mutabot.border.job import Job
+from mutabot.border.processes import FOLDER
 from mutabot.border.test_end import TestEnd
+from mutabot.extensions import brought
 from mutabot.inside.session import Session
 
-from .host import Host
-from .unseen import Unseen
+from .environment import carry, write_wake
+from .exits import Exits, watch_unseen
+from .now import Now
+
+#: what processes of interest load
+_JOIN = "mutabot.inside.processes.member"
 
 
 class Members:
-    """The members below one test process.
+    """The processes below one test process; from now on, every Python that it starts finds its way here.
 
     Args:
-        host: where they write.
-        session: the session of the test process.
+        home: the home of the test process.
+        session: its session.
+
+    Attributes:
+        folder: where the members write.
     """
 
-    def __init__(self, host: Host, session: Session) -> None:
-        self._host, self._session = host, session
+    def __init__(self, home: str, session: Session) -> None:
+        self.folder = os.path.join(home, FOLDER)
+        os.makedirs(self.folder, exist_ok=True)
+        _write_wake(self.folder, session.job)
+        self._session = session
+        self._now = Now(self.folder, is_host=True)
+        self._children = Children(home, session.job.key)
+        self._exits = Exits()
         self._present: list[ChildRecord] = []
         self._texts: list[TextsSeen] = []
-        self._signalled: set[int] = set()
         self._unseen: set[str] = set()
         self._acted = False
+        carry(self.folder)
+        self._exits.watch()
         if session.job.inspect:
-            Unseen(self._say_unseen).watch()
+            watch_unseen(self._say_unseen)
 
     def start_test(self, test: str) -> None:
         """A test begins: some may be there from before."""
-        self._host.start_test(test)
-        self._present = [one for one in self._host.children.records.values() if is_alive(one.began.pid)]
+        self._now.begin(test)
+        self._present = [one for one in self._children.records.values() if is_alive(one.began.pid)]
 
     def merged(self, end: TestEnd) -> TestEnd:
         """The end of the running test with what members did in it; an error if that cannot be known."""
@@ -66,7 +84,7 @@ class Members:
     @property
     def doubt(self) -> str | None:
         """Why what members told cannot be relied on, or None."""
-        return self._host.children.doubt
+        return self._children.doubt
 
     def texts_seen(self) -> list[TextsSeen]:
         """What members saw of the program text, over all tests."""
@@ -76,25 +94,23 @@ class Members:
     def _here(self) -> Iterable[ChildRecord]:
         """Those that were there during the test."""
         present = {id(one) for one in self._present}
-        number = self._host.number
-        for one in self._host.children.records.values():
+        number = self._now.number
+        for one in self._children.records.values():
             if id(one) in present or one.began.test == number or one.called or one.did or one.places:
                 yield one
 
     def _known(self) -> Known:
-        session, exits = self._session, self._host.exits
+        session = self._session
         return Known(
             session.job,
             session.recorder.index_of,
-            session.parts,
-            session.part_names,
             self._acted,
-            exits.codes,
-            self._signalled | exits.signalled,
+            self._exits.codes,
+            self._exits.signalled,
         )
 
     def _take_all(self) -> None:
-        for event in self._host.children.read():
+        for event in self._children.read():
             self._take(event)
 
     def _take(self, event: Event) -> None:
@@ -105,7 +121,7 @@ class Members:
             case TextsSeen():
                 self._texts.append(event)
             case Signalled():
-                self._signalled.add(event.pid)
+                self._exits.signalled.add(event.pid)
             case Found():
                 self._session.interception.found_elsewhere(event.targets)
                 self._session.inspection.elsewhere.update(event.modules)
@@ -131,3 +147,20 @@ class Members:
         self._unseen.add(name)
         text = f"nothing in this process is seen or mutated: {why}"
         self._session.pipe.send(Remark("processes", name, text))
+
+
+def _write_wake(folder: str, job: Job) -> None:
+    names: set[str] = set()
+    nodes = {_top(module) for module in brought("middlewares")}  # what any node imports
+    for operation in job.vocabulary.operations:
+        names.update(nodes if operation.named is not None else [_top(operation.target)])
+    if job.vocabulary.clock is not None:
+        names.add(_top(job.vocabulary.clock.tick))
+    files = [os.path.realpath(os.path.join(job.root, path)) for path in (*job.program, *job.oracle)]
+    for path in (*job.program, *job.oracle):
+        names.update(part.removesuffix(".py") for part in path.split("/") if part not in (".", "..", ""))
+    write_wake(folder, _JOIN, names, files)
+
+
+def _top(target: str) -> str:
+    return target.partition(":")[0].partition(".")[0]

@@ -1,8 +1,12 @@
-"""Simulated time: read at every call that advances the simulation, or counted in fixed steps."""
+"""The program's time: read where it is simulated, and as mutants ask for it.
+
+Simulated time is read at every call that advances the simulation, or counted in fixed steps.
+"""
 
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import isfinite
@@ -11,8 +15,10 @@ from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.inside.limits import Meter
+from mutabot.inside.readings.instances import Instances
+from mutabot.inside.targets.names import resolve
 from mutabot.inside.targets.target import Handler
-from mutabot.model import Clock
+from mutabot.model import Clock, Vocabulary
 from mutabot.model.values.path import Path
 from mutabot.model.values.units import convert
 
@@ -139,3 +145,53 @@ def _shown(value: Any) -> str:
     except Exception:  # the user's object may fail to print itself in any way
         text = f"a {type(value).__name__}"
     return text if len(text) <= 60 else f"{text[:59]}…"
+
+
+@dataclass(slots=True)
+class ProgramTime:
+    """The time of the running test.
+
+    Attributes:
+        vocabulary: names the clock, and what lets time pass.
+        meter: the meter of the running test; None between tests.
+        instances: the objects that the program uses.
+    """
+
+    vocabulary: Vocabulary
+    meter: Callable[[], Meter | None]
+    instances: Instances
+
+    @property
+    def can_wait(self) -> bool:
+        """Whether something lets time pass."""
+        return self.vocabulary.wait is not None
+
+    def now(self) -> float:
+        """Simulated seconds since the test's first tick, 0 before. Raises LookupError without a clock."""
+        meter = self.meter()
+        if self.vocabulary.clock is None or meter is None:
+            raise LookupError("the vocabulary names no clock")
+        return meter.simulated or 0.0
+
+    def now_if_known(self) -> float | None:
+        """The same; None without a clock."""
+        return self.now() if self.vocabulary.clock is not None and self.meter() is not None else None
+
+    async def wait(self, seconds: float) -> None:
+        """Let so much time pass. Raises LookupError where the vocabulary does not say how."""
+        wait = self.vocabulary.wait
+        if wait is None:
+            raise LookupError("the vocabulary does not say what lets the program's time pass (wait = …)")
+        module, _, qualname = wait.target.partition(":")
+        found: Any
+        if module not in sys.modules:
+            raise LookupError(f"{module}, which lets the program's time pass, is not imported")
+        owner, name, found = resolve(sys.modules[module], qualname)
+        if isinstance(owner, type):
+            objects = self.instances.of(wait.owner)
+            if not objects:
+                raise LookupError(f"the program has no object of {wait.owner}, which lets its time pass")
+            found = getattr(objects[-1], name)
+        waited = found(convert(seconds, "s", wait.unit))
+        if inspect.isawaitable(waited):
+            await waited

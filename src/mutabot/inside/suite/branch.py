@@ -19,7 +19,7 @@ from mutabot.inside.fork.lifeline import die_with_parent
 from mutabot.inside.fork.trunk import ALIVE, DECIDED, FAILED, STOPPED
 from mutabot.inside.session import Session
 
-from . import outcomes
+from . import classify
 
 
 class BranchOfTest:
@@ -81,8 +81,8 @@ class BranchOfTest:
 
     def _report(self, bunch: Bunch, end: TestEnd) -> int:
         """Say how the test of this branch ended; returns the exit code that tells the trunk."""
-        sites = self._session.recorder.sites_of_trace() if end.outcome != outcomes.FAILED else ()
-        if end.outcome == outcomes.FAILED:  # only survivors are compared with the original
+        sites = self._session.recorder.sites_of_trace() if end.outcome != classify.FAILED else ()
+        if end.outcome == classify.FAILED:  # only survivors are compared with the original
             end = replace(end, trace=(), returned=(), moments=())
         code = DECIDED if end.is_decided else ALIVE
         mutants = bunch.end(code)

@@ -1,33 +1,35 @@
-"""What ended a test: a check, an exception, a limit, a refusal, or a failure of the tool."""
+"""How a test ends, and what ended it: a check, an exception, a limit, a refusal, or a failure of the tool."""
 
 from __future__ import annotations
 
 import os
 import re
+import sys
 from dataclasses import dataclass
 from types import FrameType
+from typing import Any
 
 import pytest
 
-from mutabot.errors import MutabotError
 from mutabot.extensions import packages
 from mutabot.inside import FOLDER
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.comparisons import FILE as AROUND_COMPARISONS
 from mutabot.inside.evidence import Evidence
-from mutabot.inside.exception_groups import everything, is_due_to, leaves
+from mutabot.inside.exception_groups import failure_in, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
 from mutabot.inside.targets.names import is_named
 from mutabot.model import By, Role, Vocabulary
 from mutabot.model.class_name import class_name
-
-from .doctests import mismatch, place_of_mismatch
 
 #: where an object lies in memory differs from run to run and says nothing
 _ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
 #: exceptions that are checks or time-outs wherever they were raised; their modules may not be loaded
 _CHECKS = ("doctest:DocTestFailure",)
 _TIMEOUTS = ("hypothesis.errors:DeadlineExceeded",)
+#: what lets the suite pass
+PASSED, SKIPPED, XFAILED, XPASSED = "passed", "skipped", "xfailed", "xpassed"
+FAILED = "failed"
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +74,7 @@ def classify(
         test_file: file of the test; its folder holds the test's own helpers.
     """
     found = leaves(error)
-    culprits = frozenset(id(leaf) for refusal in evidence.refusals for leaf in (refusal, *leaves(refusal)))
+    culprits = evidence.culprits
     is_refused = is_due_to(error, culprits)
     counting = [leaf for leaf in found if is_refused or not is_due_to(leaf, culprits)]
     no_checks = [leaf for leaf in counting if not _is_check(leaf, test_file, locator, vocabulary)]
@@ -86,10 +88,29 @@ def classify(
         message=_text(shown, len(found)),
         place=_place(shown, locator),
         timeout=_lines(shown)[0] if overdue is not None else None,
-        failure=_failure(error, vocabulary),
+        failure=failure_in(error, vocabulary.failures),
         refused=evidence.refusal if is_refused else None,
         is_syntax=all(isinstance(leaf, SyntaxError) for leaf in found),
     )
+
+
+def is_expected_failure(report: pytest.TestReport) -> bool:
+    """Whether something failed as the test said it would."""
+    return report.skipped and hasattr(report, "wasxfail")
+
+
+def outcome_so_far(report: pytest.TestReport, before: str) -> str:
+    """The outcome of a test with one more report that is no failure.
+
+    The report of the call comes after those of its subtests and says what they come to; set-up and
+    tear-down count where they did not simply pass.
+    """
+    is_expected = hasattr(report, "wasxfail")
+    if report.skipped:
+        return XFAILED if is_expected else SKIPPED
+    if report.when == "call":
+        return XPASSED if is_expected else PASSED
+    return before
 
 
 def unexpected_pass(reason: str) -> Ending:
@@ -106,21 +127,10 @@ def _text(error: BaseException, count: int) -> str:
 
 
 def _lines(error: BaseException) -> list[str]:
-    text = mismatch(error) or str(error)
+    text = _mismatch(error) or str(error)
     if isinstance(error, pytest.FixtureLookupError):
         text = error.msg or f"fixture {error.argname!r} not found"
     return _ADDRESS.sub("0x…", text).strip().splitlines() or [type(error).__name__]
-
-
-def _failure(error: BaseException, vocabulary: Vocabulary) -> str | None:
-    for link in everything(error):
-        if isinstance(link, MemoryError):
-            return "the memory limit was reached"
-        if isinstance(link, MutabotError):
-            return f"{type(link).__name__}: {link}"
-        if is_named(link, vocabulary.failures):
-            return f"{type(link).__name__}: {link}"
-    return None
 
 
 def _is_timeout(error: BaseException) -> bool:
@@ -172,8 +182,30 @@ def _from_the_raise(error: BaseException) -> list[tuple[FrameType, int]]:
 def _place(error: BaseException, locator: Locator) -> str | None:
     """The innermost line that is the user's own: the file lies under the root and is not installed."""
     lines = [(frame.f_code.co_filename, line) for frame, line in _from_the_raise(error)]
-    for filename, line in [*lines, *place_of_mismatch(error)]:
+    for filename, line in [*lines, *_place_of_mismatch(error)]:
         relative = locator.relative(filename)
         if not relative.startswith("..") and "site-packages" not in relative and not filename.startswith("<"):
             return f"{relative}:{line}"
     return None
+
+
+def _mismatch(error: BaseException) -> str | None:
+    """What a doctest expected and what it got, in one line; None for any other exception."""
+    if not _is_mismatch(error):
+        return None
+    failure: Any = error
+    source, want = failure.example.source.strip(), failure.example.want.strip()
+    return f"{source}: expected {want or 'nothing'}, got {failure.got.strip() or 'nothing'}"
+
+
+def _place_of_mismatch(error: BaseException) -> list[tuple[str, int]]:
+    """File and line of the example; empty for any other exception, and where doctest knows neither."""
+    failure: Any = error
+    if not _is_mismatch(error) or failure.test.filename is None or failure.test.lineno is None:
+        return []
+    return [(failure.test.filename, failure.test.lineno + failure.example.lineno + 1)]
+
+
+def _is_mismatch(error: BaseException) -> bool:
+    doctest = sys.modules.get("doctest")  # who raised it has imported it
+    return doctest is not None and isinstance(error, doctest.DocTestFailure)

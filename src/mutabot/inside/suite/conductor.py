@@ -27,11 +27,9 @@ from mutabot.inside.fork.trunk import FAILED as BRANCH_FAILED
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import limit_memory
 from mutabot.inside.node_ids import node_id
-from mutabot.inside.processes.host import Host
 from mutabot.inside.processes.member import watch_forks
 from mutabot.inside.processes.members import Members
 from mutabot.inside.session import Session
-from mutabot.inside.stacks import say_where_on_signal
 from mutabot.inside.targets.middleware import prepare
 from mutabot.inside.text.returns import Returns
 from mutabot.model import Role
@@ -42,6 +40,9 @@ from .running import Running, is_no_program
 
 if TYPE_CHECKING:
     from mutabot.inside.fork.copies import Commission, CopyServer
+
+
+import faulthandler
 
 #: where a process keeps what it prints, in its home
 LOG = "log.txt"
@@ -85,7 +86,7 @@ class Conductor:
         home = os.path.dirname(job_file)
         job = read_job(home)
         extensions.use(job.extensions)
-        say_where_on_signal(home)  # before anybody notes which files are open
+        _say_where_on_signal(home)  # before anybody notes which files are open
         if job.memory is not None:
             limit_memory(job.memory)
         # what the program draws while it is imported is the same in all rounds: a server imports it once
@@ -115,10 +116,8 @@ class Conductor:
 
     def _begin(self, home: str) -> None:
         prepare(self.job.root, home, self.job.vocabulary)
-        host = Host(home, self.job)
-        host.open()
-        self.running.members = Members(host, self.session)
-        watch_forks(host.folder, self.session)
+        self.running.members = Members(home, self.session)
+        watch_forks(self.running.members.folder, self.session)
         if self.job.branching is not None:
             preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
             self.grow(self.job.branching, os.path.join(home, LOG))
@@ -254,7 +253,7 @@ class Conductor:
         cache = getattr(session.config, "cache", None)
         if cache is not None:  # what one job keeps there, others must not find
             cache._cachedir = Path(commission.home, "cache")
-        say_where_on_signal(commission.home)
+        _say_where_on_signal(commission.home)
         self._begin(commission.home)
         self.session.look_ahead()
         seeds.seed_all(seeds.derive(job.seed, job.round, "session"))
@@ -290,3 +289,10 @@ def drop_idle_plugins(config: pytest.Config) -> None:
     plugin = config.pluginmanager.get_plugin("hypothesispytest")
     if plugin is not None and "hypothesis" not in sys.modules:
         config.pluginmanager.unregister(plugin)
+
+
+def _say_where_on_signal(home: str) -> None:
+    """Let this process, and its branches, write their stack into their home on ``stack.SIGNAL``."""
+    flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC
+    descriptor = os.open(os.path.join(home, stack.FILE), flags, 0o600)
+    faulthandler.register(stack.SIGNAL, file=descriptor, all_threads=True)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Generator
+from collections.abc import Generator, Iterator, Mapping
 from functools import partial
+from itertools import islice
 from time import perf_counter, process_time  # tests may replace those of the module
 from typing import Any
 
@@ -26,9 +27,18 @@ from mutabot.inside.session import Session
 from mutabot.inside.watchdogs import drop_idle_watchdog, watched, watched_by_faulthandler
 
 from .branch import BranchOfTest
-from .classify import Ending, classify, unexpected_pass
-from .fixtures import objects_of_fixtures
-from .outcomes import FAILED, PASSED, is_expected_failure, outcome_so_far
+from .classify import (
+    FAILED,
+    PASSED,
+    Ending,
+    classify,
+    is_expected_failure,
+    outcome_so_far,
+    unexpected_pass,
+)
+
+#: parts that are looked at in what a fixture gives
+_MOST = 1000
 
 
 class Running:
@@ -191,7 +201,6 @@ class Running:
             hits=evidence.hits,
             acted=evidence.acted,
             away=evidence.away,
-            partly=evidence.is_partial and not evidence.acted,
             example=evidence.example,
             operations=meter.operations,
             commands=session.commands,
@@ -226,3 +235,21 @@ def is_no_program(evidence: Evidence, ending: Ending | None) -> bool:
     if not evidence.is_of_text or ending is None:
         return False
     return ending.is_syntax or (evidence.is_unknown and ending.refused is not None)
+
+
+def objects_of_fixtures(item: pytest.Item) -> Iterator[Any]:
+    """What the test's fixtures gave and what lies right in that; the object of its class likewise."""
+    given = list(getattr(item, "funcargs", {}).values())
+    owner = getattr(getattr(item, "obj", None), "__self__", None)
+    for one in given if owner is None else [*given, type(owner), owner]:
+        yield one
+        yield from islice(_parts(one), _MOST)
+
+
+def _parts(value: Any) -> Iterator[Any]:
+    if isinstance(value, Mapping):
+        yield from value.values()
+    elif isinstance(value, list | tuple | set | frozenset):
+        yield from value
+    else:
+        yield from list(getattr(value, "__dict__", {}).values())

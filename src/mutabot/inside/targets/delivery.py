@@ -14,8 +14,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-from .means import Means
-from .target import Handler, Where
+from .target import Handler, Means, Where
 
 #: seconds of wall clock: a topic that keeps its last message gives it at once to who asks again and again
 _PAUSE = 0.01

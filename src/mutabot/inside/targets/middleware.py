@@ -9,9 +9,9 @@ of it is imported before it is needed: a ``Middleware`` when the program imports
 
 What hooks keep to, so that all operators mean the same in every middleware:
 
-- Each use gives the handler a ``Where`` with ``means`` (``means.Means``): how the node sleeps, does something
-  later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps. All of it by the
-  clock of the node, so that simulated time counts.
+- Each use gives the handler a ``Where`` with ``means`` (``target.Means``): how the node sleeps, does
+  something later, what a lost answer looks like, how what was begun is cancelled, how its clock jumps. All of
+  it by the clock of the node, so that simulated time counts.
 - What comes by itself (``COMING``: messages, feedback, ticks of a timer) goes through ``delivery``:
   ``deliver`` calls the program's callback, ``wait_for`` stands around a wait. A handler's own result
   may be a ``Delivery`` there and nowhere else.

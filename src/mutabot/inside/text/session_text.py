@@ -128,7 +128,6 @@ class SessionText:
         return Evidence(
             hits=min((hits for hits, _ in counts), default=0),
             acted=min((acted for _, acted in counts), default=0),
-            is_partial=any(acted for _, acted in counts),
             example=next(iter(examples.values()), self._early_example),
             refusals=self._refusals,
             is_of_text=True,

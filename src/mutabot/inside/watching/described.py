@@ -50,18 +50,23 @@ class Leaves:
     def see(self, value: Any, root: str = "") -> None:
         """One more value."""
         for leaf in _parts(value, Leaf(root), _DEPTH):
-            known = self.found.setdefault(leaf.path, leaf)
-            known.count += 1
-            if leaf.length is not None and known.length is not None:
-                known.length = min(leaf.length, known.length)
-            for one in leaf.values:
-                is_new = all(one != other or type(one) is not type(other) for other in known.values)
-                if is_new and len(known.values) < MOST_VALUES:
-                    known.values.append(one)
+            note(self.found, leaf)
 
     def data(self) -> list[dict[str, Any]]:
         """For JSON."""
         return [dataclasses.asdict(leaf) for leaf in self.found.values()]
+
+
+def note(found: dict[str, Any], part: Any) -> None:
+    """One more value has this part: add it to what was seen of the part before, by path."""
+    known = found.setdefault(part.path, part)
+    known.count += 1
+    if part.length is not None and known.length is not None:
+        known.length = min(part.length, known.length)
+    for one in part.values:
+        is_new = all(one != other or type(one) is not type(other) for other in known.values)
+        if is_new and len(known.values) < MOST_VALUES:
+            known.values.append(one)
 
 
 def of_type(hint: Any, depth: int = 2) -> list[Leaf]:

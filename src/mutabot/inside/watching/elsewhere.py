@@ -19,8 +19,7 @@ from typing import Any
 
 from mutabot import extensions
 from mutabot.border.processes import FOLDER
-from mutabot.inside.processes.carried import carry
-from mutabot.inside.processes.wake import write_wake
+from mutabot.inside.processes.environment import carry, write_wake
 from mutabot.inside.text.scripts import hook_script
 
 from .watch import Watch

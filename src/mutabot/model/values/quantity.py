@@ -1,17 +1,19 @@
-"""Quantities: what one argument, or one part of a result, means."""
+"""Quantities: what one argument, or one part of a result, means.
+
+An orientation's numbers may be attributes, as a message's quaternion has ``x``, ``y``, ``z`` and ``w``.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isclose
 from typing import Any
 
 from .members import is_member, member_of, written_of
-from .parts import numbers_of, with_numbers
-from .path import Path
+from .path import Path, Step
 from .rotation import Quaternion, to_quaternion, to_values
 from .stamp import seconds_of, with_seconds
 from .units import Dimension, convert
@@ -360,3 +362,22 @@ def same(one: Value, other: Value) -> bool:
         return bool(one == other) or bool(one != one and other != other)  # noqa: PLR0124  # NaN
     except Exception:  # a value of the user's may compare in any way; what cannot be compared differs
         return False
+
+
+def numbers_of(value: Any, names: Sequence[str]) -> Any:
+    """The numbers of an object that has them as attributes of these names; anything else as it is."""
+    if value is None or hasattr(value, "__len__") or not all(hasattr(value, name) for name in names):
+        return value
+    return [getattr(value, name) for name in names]
+
+
+def with_numbers(value: Any, names: Sequence[str], numbers: Any) -> Any:
+    """A copy of such an object with other numbers; in place of anything else, the numbers themselves.
+
+    Raises PathError if it cannot be copied and changed.
+    """
+    if numbers_of(value, names) is value:
+        return numbers
+    for name, number in zip(names, numbers, strict=True):
+        value = Path(None, (Step(attribute=name),)).put(value, number)
+    return value

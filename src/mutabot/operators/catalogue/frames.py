@@ -15,9 +15,9 @@ from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import Quaternion, from_euler, inverse, product
 from mutabot.model.values.units import convert
 from mutabot.operators.context import Context, Unchanged, quantity_of
-from mutabot.operators.evidence import FRAMES
 from mutabot.operators.examples import MOVE_TO, changed, unchanged
 from mutabot.operators.operator import Example, Need, Operator, Subject, is_number, map_numbers
+from mutabot.operators.rule import FRAMES
 from mutabot.operators.value import (
     NOT_GIVEN,
     ValueOperator,

@@ -12,9 +12,9 @@ from mutabot.model.values.rotation import from_euler
 from mutabot.model.values.sameness import is_same
 from mutabot.model.values.units import convert
 from mutabot.operators.context import Context, Unchanged
-from mutabot.operators.evidence import FRAMES, SIGNS
 from mutabot.operators.examples import changed, reading, unchanged, writing
 from mutabot.operators.operator import Example, map_numbers
+from mutabot.operators.rule import FRAMES, SIGNS
 from mutabot.operators.value import ValueOperator
 
 _RPY = writing("robot:Arm.orient", "rpy", Kind.EULER, unit="deg", order="xyz")

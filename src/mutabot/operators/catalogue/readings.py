@@ -14,9 +14,9 @@ from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantit
 from mutabot.model.values.quantity import MEASURED, WHOLE, Value
 from mutabot.operators.command import CommandOperator, comes_by_itself
 from mutabot.operators.context import Context, Unchanged, quantity_of
-from mutabot.operators.evidence import SENSORS, TIMING
 from mutabot.operators.examples import changed, reading, unchanged
 from mutabot.operators.operator import Example, Need, Subject, is_number, map_numbers
+from mutabot.operators.rule import SENSORS, TIMING
 from mutabot.operators.value import NOT_GIVEN, ValueOperator, label, like, middle_of, next_of, within
 
 from ._pairs import Exchange, is_alike

@@ -10,10 +10,10 @@ from mutabot.model.values.quantity import Value
 from mutabot.model.values.units import Dimension, convert
 from mutabot.operators.command import CommandOperator
 from mutabot.operators.context import Context
-from mutabot.operators.evidence import TIMING
 from mutabot.operators.examples import changed, reading, unchanged, writing
 from mutabot.operators.magnitudes import Ladder, ladder_in
 from mutabot.operators.operator import Example, Need, Subject
+from mutabot.operators.rule import TIMING
 
 from ._number import NumberOperator
 

@@ -9,10 +9,10 @@ from typing import ClassVar
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.units import Dimension, convert
 from mutabot.operators.context import Context, Draws
-from mutabot.operators.evidence import PARAMETERS, SENSORS
 from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, writing
 from mutabot.operators.magnitudes import Ladder, ladder_in, own_ladder, per_second
 from mutabot.operators.operator import Example, Need, Subject
+from mutabot.operators.rule import PARAMETERS, SENSORS
 
 from ._number import NumberOperator
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from mutabot.model.named import Form
 from mutabot.proposal.compared import Unreached
 from mutabot.proposal.guess import Guess
+from mutabot.proposal.named.meanings import Place, is_nothing, meaning
 
-from .meanings import Place, is_nothing, meaning
 from .seen import Part, Use
 
 #: which key names it, which tables speak of what is written and of what is read

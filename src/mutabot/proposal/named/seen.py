@@ -131,7 +131,7 @@ def _parts(several: Sequence[Mapping[str, Any]]) -> tuple[Part, ...]:
 def _part(parts: Sequence[Mapping[str, Any]], times: int) -> Part:
     first = parts[0]
     values: list[Any] = []
-    for value in (value for part in parts for value in part["values"] if _is_finite(value)):
+    for value in (value for part in parts for value in part["values"] if is_finite(value)):
         if all(value != other or type(value) is not type(other) for other in values):
             values.append(value)
     lengths = [part["length"] for part in parts if part["length"] is not None]
@@ -145,6 +145,7 @@ def _part(parts: Sequence[Mapping[str, Any]], times: int) -> Part:
     )
 
 
-def _is_finite(value: Any) -> bool:
+def is_finite(value: Any) -> bool:
+    """Whether no number in a value is infinite or none at all."""
     numbers = value if isinstance(value, list) else [value]
     return all(math.isfinite(one) for one in numbers if isinstance(one, float))

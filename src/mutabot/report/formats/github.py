@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from mutabot.analysis.results import MutantResult
 from mutabot.report.format import Format, Material
-from mutabot.report.shaping.status import survivor_text
+from mutabot.report.status import survivor_text
 
 #: annotations of each level; the tenth notice says what is not shown
 _LIMITS = {"warning": 10, "notice": 9}
@@ -41,7 +41,7 @@ def _lines(material: Material) -> Iterator[str]:
 
 def _annotation(level: str, result: MutantResult, material: Material) -> str:
     mutant = result.mutant
-    span = mutant.singles[0].site.span
+    span = mutant.site.span
     place = material.place(span)
     where = {"file": material.path(span.file), "line": str(place.line), "endLine": str(place.end_line)}
     if place.end_column is not None and place.line == place.end_line:  # columns are of one line only

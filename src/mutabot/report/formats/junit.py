@@ -10,8 +10,8 @@ from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group, groups_of
 from mutabot.model import Verdict
 from mutabot.report.format import Format, Material
-from mutabot.report.shaping.status import reason_of, rounds_text, short_reason, status_of, why_alone
-from mutabot.report.shaping.texts import one_line
+from mutabot.report.status import reason_of, rounds_text, short_reason, status_of, why_alone
+from mutabot.report.texts import one_line
 
 #: state to the element that says so; states that are not here passed
 _ELEMENT: Mapping[Verdict | None, str] = {

@@ -11,10 +11,10 @@ from mutabot.analysis.score import Group
 from mutabot.analysis.statistics import Interval
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.model import Verdict
-from mutabot.report.changes.markdown import change_lines
+from mutabot.report.changes import change_lines
 from mutabot.report.format import Format, Material
-from mutabot.report.shaping.markup import escaped, table
-from mutabot.report.shaping.status import rounds_text, short_reason, status_of, why_alone
+from mutabot.report.status import rounds_text, short_reason, status_of, why_alone
+from mutabot.report.texts import escaped, table
 
 #: rows of a table of mutants; GitHub takes no summary of more than a megabyte
 _ROWS = 100

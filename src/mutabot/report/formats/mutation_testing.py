@@ -13,9 +13,8 @@ from typing import Any
 from mutabot.analysis.results import MutantResult
 from mutabot.model import Mutant, Outcome, Span, Verdict
 from mutabot.report.as_json import dumps
-from mutabot.report.format import Format, Material
-from mutabot.report.shaping.places import utf16
-from mutabot.report.shaping.status import reason_of, status_of
+from mutabot.report.format import Format, Material, utf16
+from mutabot.report.status import reason_of, status_of
 
 _SCHEMA_VERSION = "2.0"
 #: in percent; what the page paints green and red. They are the schema's customary ones, and no limit of ours
@@ -61,15 +60,7 @@ def _config(material: Material) -> dict[str, Any]:
         **{key: results.meta.get(key) for key in ("families", "rounds", "seed", "engine", "order")},
         "state": results.state,
         "outcomes": {"known": results.done, "planned": results.planned},
-        "scores": [
-            {
-                "family": group.family,
-                "role": group.role,
-                "score": group.scores.mean,
-                "checkScore": group.scores.mean_check,
-            }
-            for group in results.groups
-        ],
+        "scores": material.scores(),
         "leftOut": dict(Counter(item.reason for item in results.left_out)),
     }
 
@@ -77,7 +68,7 @@ def _config(material: Material) -> dict[str, Any]:
 def _files(material: Material) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for result in material.campaign.mutants:
-        file = result.mutant.singles[0].site.span.file
+        file = result.mutant.site.span.file
         entry = found.setdefault(
             material.path(file),
             {"language": "python", "source": material.campaign.source(file) or "", "mutants": []},
@@ -95,7 +86,7 @@ def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
         "mutatorName": mutant.operator,
         "description": mutant.description,
         "replacement": _replacement(mutant, material),
-        "location": _location(mutant.singles[0].site.span, material),
+        "location": _location(mutant.site.span, material),
         "status": _STATUS[status_of(result)],
         "statusReason": reason_of(result),
         "coveredBy": covered_by,
@@ -109,7 +100,7 @@ def _replacement(mutant: Mutant, material: Material) -> str:
     """What would stand there: the new text if that is what the mutant is, else what it does, in words."""
     text = material.place(mutant.site.span).text
     before, arrow, after = mutant.description.partition(" → ")
-    is_text = not mutant.parts and arrow and before == text
+    is_text = arrow and before == text
     return after if is_text else mutant.description
 
 

@@ -9,9 +9,8 @@ from urllib.parse import quote
 from mutabot.analysis.results import MutantResult
 from mutabot.model import Mutant, Span
 from mutabot.report.as_json import dumps
-from mutabot.report.format import Format, Material
-from mutabot.report.shaping.places import utf16
-from mutabot.report.shaping.status import is_divergent, status_of, survivor_text
+from mutabot.report.format import Format, Material, utf16
+from mutabot.report.status import is_divergent, status_of, survivor_text
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 #: paths are relative to this; whoever reads the file knows where it is
@@ -40,7 +39,7 @@ def make(material: Material) -> str:
                     "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
                     "invocations": [_invocation(material)],
                     "results": [_result(one, material, rules) for one in survivors],
-                    "properties": _scores(material),
+                    "properties": {"state": material.campaign.state, "scores": material.scores()},
                 }
             ],
         }
@@ -58,8 +57,7 @@ def _driver(material: Material, rules: Mapping[str, int]) -> dict[str, Any]:
 
 
 def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
-    told = dict.fromkeys(material.campaign.operators.get(one) or "" for one in name.split("+"))
-    summary = " ".join(filter(None, told)) or f"Operator {name} of family {mutant.family}."
+    summary = material.campaign.operators.get(name) or f"Operator {name} of family {mutant.family}."
     return {
         "id": name,
         "shortDescription": {"text": f"The tests let a mutant of {name} through"},
@@ -80,13 +78,12 @@ def _invocation(material: Material) -> dict[str, Any]:
 
 def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) -> dict[str, Any]:
     mutant = result.mutant
-    first, *others = mutant.singles
-    found = {
+    return {
         "ruleId": mutant.operator,
         "ruleIndex": rules[mutant.operator],
         "level": _level(result),
         "message": {"text": _message(survivor_text(result))},
-        "locations": [_location(first.site.span, material)],
+        "locations": [_location(mutant.site.span, material)],
         "partialFingerprints": {_FINGERPRINT: mutant.id},
         "properties": {
             "mutant": mutant.id,
@@ -100,8 +97,6 @@ def _result(result: MutantResult, material: Material, rules: Mapping[str, int]) 
             "indistinguishable": result.indistinguishable,
         },
     }
-    related = [{"id": number, **_location(one.site.span, material)} for number, one in enumerate(others, 1)]
-    return {**found, "relatedLocations": related} if related else found
 
 
 def _level(result: MutantResult) -> str:
@@ -130,22 +125,6 @@ def _location(span: Span, material: Material) -> dict[str, Any]:
 def _message(text: str) -> str:
     """Plain text for ``message.text``, in which braces stand for arguments and ``[…](…)`` for a link."""
     return text.replace("{", "{{").replace("}", "}}").replace("](", "] (")
-
-
-def _scores(material: Material) -> dict[str, Any]:
-    groups = material.campaign.scores
-    return {
-        "state": material.campaign.state,
-        "scores": [
-            {
-                "family": one.family,
-                "role": one.role,
-                "score": one.scores.mean,
-                "checkScore": one.scores.mean_check,
-            }
-            for one in groups
-        ],
-    }
 
 
 FORMAT = Format("sarif", make)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
 import shutil
 from collections.abc import Callable, Iterable, Mapping
@@ -13,15 +15,12 @@ from typing import Any
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.evidence import StoredEvidence
-from mutabot.border.codec import to_data
+from mutabot.analysis.suggested import Suggestions
 from mutabot.errors import UsageError
 from mutabot.journal.files import REPORT_MARK
-
-from .mutant import mutant_page
-from .overview import campaign_data
-from .recorded import Recorded
-from .scripts import script_of
-from .suggestion import Suggest
+from mutabot.report.html.mutant import Recorded, mutant_page
+from mutabot.report.html.overview import campaign_data
+from mutabot.report.suggested import check_on_page
 
 _MARK_TEXT = (
     "A report of mutabot: open index.html. `mutabot report --html` replaces it, and leaves clips/ alone.\n"
@@ -58,14 +57,14 @@ class Contents:
         name: what the project is called.
         evidence: its recordings.
         clean: makes texts of recordings fit to leave the machine.
-        suggest: what suggests a check for a survivor, if anything does.
+        suggestions: the checks that were suggested for its survivors; None if none were looked for.
     """
 
     campaign: StoredCampaign
     name: str
     evidence: StoredEvidence
     clean: Callable[[str], str]
-    suggest: Suggest | None = None
+    suggestions: Suggestions | None = None
 
 
 def check_folder(folder: Path) -> None:
@@ -120,7 +119,7 @@ def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]]
         number = result.mutant.number
         page = {
             **mutant_page(result),
-            "suggestion": _suggestion(contents, result),
+            "suggestion": check_on_page(result, contents.suggestions),
             "media": clips.get(number, []),
         }
         used += _write(folder / "mutants" / f"{number}.js", f"mutant {number}", page)
@@ -169,11 +168,6 @@ def _recordings(
     return found, {number: count for number, count in counts.items() if count}
 
 
-def _suggestion(contents: Contents, result: MutantResult) -> Any:
-    found = contents.suggest(result) if contents.suggest is not None else None
-    return to_data(found) if found is not None else None
-
-
 def _clips(folder: Path) -> dict[int, list[str]]:
     """Clips and pictures that lie there already, by the number of the mutant that they are named for."""
     found: dict[int, list[str]] = {}
@@ -191,3 +185,53 @@ def _write(file: Path, name: str, data: Any) -> int:
 
 def _bytes(name: str, data: Any) -> bytes:
     return script_of(name, data).encode("utf-8", errors="replace")
+
+
+#: what could end the script or its string, whatever reads it first: the page's parser or the language's
+_ESCAPES = str.maketrans(
+    {
+        "\\": "\\\\",
+        "'": "\\'",
+        "<": "\\x3c",
+        ">": "\\x3e",
+        "&": "\\x26",
+        "\u2028": "\\u2028",
+        "\u2029": "\\u2029",
+        "\r": "\\r",
+        "\n": "\\n",
+    }
+)
+#: as much as this is told with all its digits; and up to this, whole numbers are whole to the page as well
+_EXACT, _WHOLE = 1e4, 2**53
+
+
+def script_of(name: str, data: Any) -> str:
+    """A script that hands data to the page under a name.
+
+    The data are a text that is parsed as JSON: no key of theirs means anything to the language.
+    """
+    text = json.dumps(plain(data), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return f"mutabot.take('{name.translate(_ESCAPES)}','{text.translate(_ESCAPES)}');\n"
+
+
+def plain(value: Any) -> Any:
+    """Data that JSON can hold: numbers that are none become null, and what it does not know a text."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, float):
+        return _short(value) if math.isfinite(value) else None
+    if value is None or isinstance(value, bool | int):
+        return value
+    return str(value)
+
+
+def _short(number: float) -> float | int:
+    """As many digits as a page shows, so that thousands of numbers stay small.
+
+    From ``_EXACT`` on these are too few: of seconds since 1970, seven digits are some minutes.
+    """
+    if number.is_integer() and abs(number) < _WHOLE:
+        return int(number)
+    return number if abs(number) >= _EXACT else float(f"{number:.7g}")

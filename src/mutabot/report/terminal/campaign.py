@@ -15,32 +15,26 @@ from mutabot.analysis.divergence import first_line
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import Group, KillRate, RoundScores
 from mutabot.analysis.statistics import Interval
-from mutabot.journal.records import REMARKS
 from mutabot.model import LeftOut, Outcome, Verdict
-
-from .console import (
+from mutabot.report.terminal.console import (
     add_row,
     between,
     heading,
+    legend,
     make_mutant_table,
     make_table,
+    mark_of,
+    marks_in,
     percent,
     plain,
     plural,
     short_place,
 )
-from .errors import error_lines
-from .marks import legend, mark_of, marks_in
-from .mutant.looked import unlooked_lines
-from .narrowed import budget_lines, since_lines
-from .repeats import repeat_lines
+from mutabot.report.terminal.mutant.happened import unlooked_lines
+from mutabot.report.terminal.trust import budget_lines, control_lines, error_lines, since_lines, trust_lines
 
 #: verdicts outside the score that a user should look at, in this order
 _TOLD = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
-_SET_ASIDE = "The journal holds what mutabot has not written, or what is damaged; it counts as not run:"
-_ALTERED = "Something else changed the journal while the campaign ran; what mutabot had found was restored:"
-#: rows of a journal that are named
-_ROWS = 8
 #: rounds from which on a row gives counts in place of one letter each
 _MANY_ROUNDS = 12
 #: columns from which on every fact of a mutant has a column of its own
@@ -85,7 +79,7 @@ def _parts(results: Results, width: int, everything: bool) -> Iterator[Renderabl
     yield from _outside(results, width)
     yield from left_out_lines(results.left_out, everything=everything)
     yield from trust_lines(results)
-    yield from _controls(results)
+    yield from control_lines(results)
 
 
 def title(results: Results) -> str:
@@ -333,45 +327,3 @@ def left_out_lines(left_out: Sequence[LeftOut], *, everything: bool = False) -> 
                     yield Padding(
                         Text(f"{item.id}  {plain(item.description)}", overflow="fold"), (0, 0, 0, 8)
                     )
-
-
-def trust_lines(results: Results) -> Iterator[RenderableType]:
-    """Flaky tests, and what a second look at outcomes found."""
-    if results.flaky.tests:
-        yield heading(f"{plural(len(results.flaky.tests), 'test')} set aside, which cannot be relied on")
-        for line in results.flaky.tests:
-            yield Text(plain(line), overflow="fold")
-    yield from _journal_lines(_SET_ASIDE, results.set_aside)
-    yield from _journal_lines(_ALTERED, results.altered)
-    for remark in results.meta.get(REMARKS) or ():
-        yield Text(f"\n{plain(remark)}", style="bold", overflow="fold")
-    checked = results.verification
-    if checked is not None:
-        text = f"\nVerified: {checked.agreed} of {checked.checked} outcomes end the same in fresh processes."
-        yield Text(text, style="bold red" if checked.disagreements else "dim")
-        for one in checked.disagreements:
-            words = f"mutant {one.number}, round {one.round + 1}: {one.first}; afresh: {one.second}"
-            yield Padding(Text(plain(words), overflow="fold"), (0, 0, 0, 2))
-    yield from repeat_lines(results.repeats)
-
-
-def _journal_lines(told: str, rows: Sequence[str]) -> Iterator[RenderableType]:
-    """What others did to the journal."""
-    if not rows:
-        return
-    yield Text(f"\n{told}", style="bold red", overflow="fold")
-    more = [f"and {len(rows) - _ROWS} more"] if len(rows) > _ROWS else []
-    for line in [*rows[:_ROWS], *more]:
-        yield Padding(Text(plain(line), overflow="fold"), (0, 0, 0, 2))
-
-
-def _controls(results: Results) -> Iterator[RenderableType]:
-    if not results.controls:
-        return
-    wrong = [control for control in results.controls if not control.ok]
-    if not wrong:
-        files = {control.test_file.partition("::")[0] for control in results.controls}
-        yield Text(f"\nControls ended as they must in {plural(len(files), 'test file')}.", style="dim")
-    for control in wrong:
-        text = f"\nThe {control.control} control of {control.test_file} ended wrongly: {control.detail}"
-        yield Text(text, style="bold red")

@@ -1,18 +1,20 @@
-"""The planned mutants on the terminal and as JSON, for ``mutabot list``."""
+"""The planned mutants on the terminal and as JSON, and the operators: ``mutabot list`` and ``operators``."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import groupby
 from typing import Any
 
 from rich.console import Console
+from rich.padding import Padding
+from rich.text import Text
 
 from mutabot.model import LeftOut, Mutant
 from mutabot.report.as_json import mutant_data
-
-from .campaign import WIDE, left_out_lines
-from .console import add_row, make_mutant_table, plural, short_place
+from mutabot.report.terminal.campaign import WIDE, left_out_lines
+from mutabot.report.terminal.console import add_row, heading, make_mutant_table, plain, plural, short_place
 
 
 def print_plan(
@@ -68,3 +70,24 @@ def plan_data(mutants: Sequence[Mutant], left_out: Sequence[LeftOut]) -> dict[st
             {"id": item.id, "description": item.description, "reason": item.reason} for item in left_out
         ],
     }
+
+
+def print_rules(console: Console, rules: Iterable[Mapping[str, str]]) -> None:
+    """Print operators, family by family: what each does, where it applies, and what it stands for."""
+    found = list(rules)
+    for family, group in groupby(found, key=lambda rule: rule["family"]):
+        console.print(heading(family))
+        for rule in group:
+            console.print(Text(rule["name"], style="bold"))
+            for line in _lines(rule):
+                console.print(Padding(Text(plain(line), overflow="fold"), (0, 0, 0, 3), expand=False))
+    console.print()
+    console.print(plural(len(found), "operator"))
+
+
+def _lines(rule: Mapping[str, str]) -> Iterable[str]:
+    yield rule["summary"]
+    if rule["where"]:
+        yield f"where: {rule['where']}"
+    if rule["source"]:
+        yield f"source: {rule['source']}"

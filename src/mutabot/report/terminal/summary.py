@@ -10,6 +10,9 @@ from rich.text import Text
 
 from mutabot.analysis.results import Results
 from mutabot.model import Verdict
+from mutabot.report.terminal.console import between, heading, make_table, percent
+from mutabot.report.terminal.mutant.happened import unlooked_lines
+from mutabot.report.terminal.trust import budget_lines, error_lines, since_lines, trust_lines
 
 from .campaign import (
     RATES,
@@ -19,12 +22,7 @@ from .campaign import (
     sample_lines,
     survivor_lines,
     title,
-    trust_lines,
 )
-from .console import between, heading, make_table, percent
-from .errors import error_lines
-from .mutant.looked import unlooked_lines
-from .narrowed import budget_lines, since_lines
 
 #: survivors that are shown
 _SURVIVORS = 10

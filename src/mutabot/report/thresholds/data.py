@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import math
+import json
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mutabot.analysis.thresholds.comparing import Comparison
-from mutabot.analysis.thresholds.floor import Floor
+from mutabot.analysis.thresholds.demands import suggested
 from mutabot.analysis.thresholds.ladders import Ladder, Step
 from mutabot.analysis.thresholds.rounds import LadderRound
-from mutabot.analysis.thresholds.thresholds import Thresholds
+from mutabot.analysis.thresholds.thresholds import Floor, Thresholds
 from mutabot.analysis.thresholds.words import line_of
-from mutabot.report.as_json import FORMAT, interval_data
+from mutabot.model.graded.demand import OFFSET
+from mutabot.report.as_json import FORMAT, facts, interval_data
 
 
 def thresholds_data(thresholds: Thresholds) -> dict[str, Any]:
@@ -22,54 +24,38 @@ def thresholds_data(thresholds: Thresholds) -> dict[str, Any]:
         "rounds": thresholds.rounds,
         "ladders": [ladder_data(one) for one in thresholds.all],
         "floors": [_floor(one) for one in thresholds.floors],
-        "runs": thresholds.runs,
-        "exhaustive": thresholds.exhaustive,
-        "controls": thresholds.controls,
-        "false_alarms": thresholds.false_alarms,
-        "most_violated": thresholds.most_violated,
+        **facts(thresholds, "runs exhaustive controls false_alarms most_violated"),
     }
 
 
 def ladder_data(ladder: Ladder) -> dict[str, Any]:
     """One ladder."""
-    mutant, span = ladder.mutant, ladder.mutant.site.span
+    mutant = ladder.mutant
     judged = not ladder.why_unjudged
     median = ladder.median if judged else None
     return {
-        "id": ladder.id,
-        "place": ladder.place,
-        "name": ladder.name,
-        "file": span.file,
-        "line": span.line,
-        "function": span.function,
+        **facts(ladder, "id place name"),
+        **facts(mutant.site.span, "file line function"),
         "call": mutant.site.text,
         "role": mutant.site.role.value,
-        "quantity": mutant.quantity,
-        "operator": mutant.operator,
-        "direction": mutant.direction,
-        "unit": ladder.unit,
+        **facts(mutant, "quantity operator direction unit"),
         "magnitudes": list(ladder.sizes),
         "judged": judged,
         "why": ladder.why_unjudged or None,
         "text": line_of(ladder) if judged else None,
         "none_up_to": (ladder.none_up_to or None) if judged else None,
-        "half_from": _end(ladder.half_from) if judged else None,
-        "all_from": _end(ladder.all_from) if judged else None,
+        "half_from": ladder.half_from if judged else None,
+        "all_from": ladder.all_from if judged else None,
         "refused_from": ladder.refused_from if judged else None,
         "rounds_counted": len(ladder.counted),
         "median": None
         if median is None
-        else {"above": median.low or None, "at_most": _end(median.high), "level": median.level},
+        else {"above": median.low or None, "at_most": median.high, "level": median.level},
         "share_shown": ladder.share_shown if judged else None,
         "rounds": [_round(one) for one in ladder.rounds],
         "steps": [_step(one) for one in ladder.steps],
-        "violations": [
-            {"round": one.round + 1, "noticed": one.noticed, "missed": one.missed}
-            for one in ladder.violations
-        ],
-        "better": [
-            {"round": one.round + 1, "magnitude": one.magnitude, "text": one.text} for one in ladder.better
-        ],
+        "violations": [{"round": one.round + 1, **facts(one, "noticed missed")} for one in ladder.violations],
+        "better": [{"round": one.round + 1, **facts(one, "magnitude text")} for one in ladder.better],
         "runs": ladder.runs,
     }
 
@@ -81,9 +67,7 @@ def compared_data(comparison: Comparison) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "why_no_words": comparison.why_no_words or None,
-        "mean": None
-        if mean is None
-        else {"steps": mean.mean, "low": mean.low, "high": mean.high, "level": mean.level},
+        "mean": None if mean is None else {"steps": mean.mean, **facts(mean, "low high level")},
         "improved": comparison.has_improved,
         "ladders": [
             {
@@ -95,8 +79,7 @@ def compared_data(comparison: Comparison) -> dict[str, Any]:
             }
             for one in comparison.ladders
         ],
-        "gone": list(comparison.gone),
-        "added": list(comparison.added),
+        **facts(comparison, "gone added"),
     }
 
 
@@ -117,28 +100,21 @@ def _round(one: LadderRound) -> dict[str, Any]:
 
 def _step(step: Step) -> dict[str, Any]:
     return {
-        "magnitude": step.magnitude,
-        "number": step.number,
-        "noticed": step.noticed,
-        "valid": step.valid,
+        **facts(step, "magnitude number noticed valid"),
         "interval": interval_data(step.interval),
-        "by": dict(step.by),
-        "refused": step.refused,
-        "unknown": step.unknown,
+        **facts(step, "by refused unknown"),
     }
 
 
 def _floor(one: Floor) -> dict[str, Any]:
-    low, high = one.half_width
     return {
         "up": one.up.id,
         "down": one.down.id,
         "unit": one.up.unit,
-        "blind": [_end(end) for end in one.blind],
-        "half_width": [low, _end(high)],
+        "blind": list(one.blind),
+        "half_width": list(one.half_width),
         "bias": [
-            {"round": pair.round + 1, "above": _end(pair.bias[0]), "at_most": _end(pair.bias[1])}
-            for pair in one.pairs
+            {"round": pair.round + 1, "above": pair.bias[0], "at_most": pair.bias[1]} for pair in one.pairs
         ],
         "noise": one.noise,
         "below_noise": one.is_below_noise,
@@ -147,5 +123,37 @@ def _floor(one: Floor) -> dict[str, Any]:
     }
 
 
-def _end(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+def suggested_toml(ladders: Sequence[Ladder], *, table: str) -> str:
+    """A demand for each quantity and site, of which both directions are met.
+
+    ``table`` is the name of the tables: ``tool.mutabot.demand``, or ``demand`` in a file of mutabot's own.
+    Where none can be suggested, a comment says why.
+    """
+    found: dict[str, list[Ladder]] = {}
+    for one in ladders:
+        found.setdefault(f"{one.mutant.site.id} {one.pair_name} {one.unit}", []).append(one)
+    blocks = ["\n".join(_block(both, table)) for both in found.values()]
+    return "\n\n".join(blocks)
+
+
+def _block(both: Sequence[Ladder], table: str) -> Iterator[str]:
+    for one in both:
+        yield f"# {one.place} {one.name}: {line_of(one)}"
+    sizes = [suggested(one) for one in both]
+    known = [size for size in sizes if size is not None]
+    first = both[0]
+    if len(known) < len(sizes):
+        yield "# no demand: some round neither notices nor refuses it, or the ladder ends too soon"
+        return
+    yield f"[[{table}]]"
+    yield f"site = {_toml_text(first.mutant.site.id)}"
+    if first.mutant.quantity is not None:
+        yield f"quantity = {_toml_text(first.mutant.quantity)}"
+    if first.mutant.operator != OFFSET:
+        yield f"operator = {_toml_text(first.mutant.operator)}"
+    notice = f"{max(known):.12g} {first.unit or ''}"
+    yield f"notice = {_toml_text(notice.strip())}"
+
+
+def _toml_text(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)

@@ -2,6 +2,7 @@
 
 Ladders of a unit share an axis. Left of a bar no round notices, which is the rail; right of it all do, which
 is a pale band. A bar is split from top to bottom by how the rounds ended, as many parts as rounds.
+Pictures are rectangles and texts in pixels, written as SVG.
 """
 
 from __future__ import annotations
@@ -9,13 +10,106 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
 
 from mutabot.analysis.thresholds.ladders import Ladder
 from mutabot.analysis.thresholds.rounds import Above, LadderRound
 from mutabot.analysis.thresholds.thresholds import Thresholds
 from mutabot.analysis.thresholds.words import amount
-from mutabot.report.picture import Picture, Rectangle, Words
+from mutabot.errors import UsageError
 from mutabot.report.terminal.console import plural
+
+INK, FAINT, PAPER = "#222222", "#767676", "#ffffff"
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """A filled rectangle, in pixels from the upper left corner."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    fill: str
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """A line of text.
+
+    Attributes:
+        x, y: where its base line begins, ends or has its middle, in pixels.
+        anchor: ``start``, ``middle`` or ``end``.
+        size: height of the letters in pixels.
+    """
+
+    x: float
+    y: float
+    text: str
+    size: float = 13.0
+    anchor: str = "start"
+    fill: str = INK
+    bold: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A drawing in pixels."""
+
+    width: int
+    height: int
+    boxes: Sequence[Rectangle]
+    words: Sequence[Words]
+
+
+def svg(picture: Picture, by: str) -> str:
+    """The picture as a file of its own, which says which command wrote it."""
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{picture.width}" height="{picture.height}" '
+        f'viewBox="0 0 {picture.width} {picture.height}" font-family="Helvetica, Arial, sans-serif">',
+        f"<!-- written by {by} -->",
+        *map(_svg_of_box, picture.boxes),
+        *map(_svg_of_words, picture.words),
+        "</svg>",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _svg_of_box(box: Rectangle) -> str:
+    place = f'x="{box.x:.1f}" y="{box.y:.1f}" width="{box.width:.1f}" height="{box.height:.1f}"'
+    return f'<rect {place} fill="{box.fill}"/>'
+
+
+def _svg_of_words(words: Words) -> str:
+    weight = ' font-weight="bold"' if words.bold else ""
+    look = f'font-size="{words.size:g}" text-anchor="{words.anchor}" fill="{words.fill}"{weight}'
+    return f'<text x="{words.x:.1f}" y="{words.y:.1f}" {look}>{escape(words.text)}</text>'
+
+
+def check_picture(path: Path) -> None:
+    """Raise UsageError for a file that could not be written; said before a campaign rather than after it."""
+    if path.suffix.lower() != ".svg":
+        raise UsageError(f"{path} is no picture that can be drawn: pictures are SVG; write {_svg_name(path)}")
+    if path.is_dir() or not path.parent.is_dir():
+        what = "a folder is" if path.is_dir() else "there is no folder"
+        raise UsageError(
+            f"the picture {path} cannot be written: {what} {path if path.is_dir() else path.parent}"
+        )
+
+
+def write_drawing(picture: Picture, path: Path, *, by: str) -> None:
+    """Write a drawing, which says by which command. Raises UsageError if the file cannot be written."""
+    try:
+        path.write_text(svg(picture, by), encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"the picture {path} cannot be written: {error.strerror}") from error
+
+
+def _svg_name(path: Path) -> Path:
+    return path.with_suffix(".svg") if path.name else Path("ends.svg")
+
 
 _WIDTH, _MARGIN, _LABELS, _ENDS = 1200, 20, 400, 150
 _ROW, _BAR, _HEAD, _PANEL, _AXIS = 24, 14, 76, 34, 30

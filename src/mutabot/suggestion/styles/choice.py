@@ -1,37 +1,28 @@
-"""Which styles there are: every file of this folder that sets ``STYLE``."""
+"""Which styles there are."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
-from importlib import import_module
-from pathlib import Path
-from pkgutil import iter_modules
 
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import Insertion
+from mutabot.suggestion.project import Insertion, Project
+from mutabot.suggestion.style import Addition, Place, Style
+from mutabot.suggestion.styles.functions import PYTEST, UNITTEST
 
-from .style import Addition, Place, Style
+from .scenarios import PYTEST_BDD
 
-
-@cache
-def styles() -> tuple[Style, ...]:
-    """In the order in which they are asked."""
-    names = sorted(one.name for one in iter_modules([str(Path(__file__).parent)]))
-    modules = [import_module(f"{__package__}.{name}") for name in names if name != "choice"]
-    found: list[Style] = [module.STYLE for module in modules if hasattr(module, "STYLE")]
-    return tuple(sorted(found, key=lambda one: one.order))
+#: in the order in which they are asked
+STYLES: tuple[Style, ...] = (UNITTEST, PYTEST_BDD, PYTEST)
 
 
 def style_of(place: Place) -> Style:
     """The style of a place."""
-    return next(one for one in styles() if one.name == place.style)
+    return next(one for one in STYLES if one.name == place.style)
 
 
 def place_of(project: Project, test: str) -> Place | None:
     """The place of a test by its node id; None if no style knows how to add to it."""
     node = test.partition("[")[0]
-    found = (style.place(project, node) for style in styles())
+    found = (style.place(project, node) for style in STYLES)
     return next((one for one in found if one is not None), None)
 
 

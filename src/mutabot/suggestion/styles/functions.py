@@ -1,33 +1,27 @@
-"""Plain pytest: test functions, and methods of classes that are no ``TestCase``."""
+"""Plain pytest and unittest: test functions, methods of classes, and methods of ``TestCase`` classes."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from typing import TypeGuard
 
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import Insertion, changed_texts, imports_of
-
-from .copying import imports_for, text_of
-from .style import (
+from mutabot.suggestion.project import Insertion, Project, imports_of
+from mutabot.suggestion.style import (
     Addition,
     Function,
     Place,
     PlainAsserts,
-    Written,
     arguments_of,
     class_of,
     end_of,
     functions_of,
     put_at_end,
 )
-from .watching import asked_for, at_start, fixture, helper, watcher
+from mutabot.suggestion.watches import asked_for, at_start, fixture, helper, watcher
 
 
 class _Functions(PlainAsserts):
     name = "pytest"
-    order = 30
 
     def place(self, project: Project, node: str) -> Place | None:
         file, *path = node.split("::")
@@ -39,9 +33,6 @@ class _Functions(PlainAsserts):
 
     def at_end(self, project: Project, additions: Sequence[Addition]) -> list[Insertion]:
         return at_ends(project, additions)
-
-    def written(self, project: Project, file: str, additions: Sequence[Addition]) -> Written:
-        return written(project, file, additions)
 
 
 def at_ends(project: Project, additions: Sequence[Addition], *, fixtures: bool = True) -> list[Insertion]:
@@ -72,56 +63,6 @@ def at_ends(project: Project, additions: Sequence[Addition], *, fixtures: bool =
     return found
 
 
-def written(project: Project, file: str, additions: Sequence[Addition], *, fixtures: bool = True) -> Written:
-    """The functions with their additions; methods in a subclass, whose other tests do not run again."""
-    text = changed_texts(project.root, at_ends(project, additions, fixtures=fixtures))[file]
-    module = ast.parse(text)
-    imports: list[str] = []
-    lines: list[str] = []
-    names = [one.watch.name for one in additions if one.watch is not None]
-    helpers = [name if fixtures else watcher(name) for name in dict.fromkeys(names)]
-    paths = [[name] for name in helpers]
-    paths += [
-        list(path) for path in dict.fromkeys(tuple(one.place.node.split("::")[1:]) for one in additions)
-    ]
-    for path in paths:
-        function = functions_of(module, path)
-        assert function is not None, "it was put there, or is a place"
-        used = arguments_of(function)
-        imports += imports_for(project, file, module, [function], used, without=helpers)
-        part = text_of(function, text.splitlines())
-        if len(path) > 1:
-            imports.append(f"import {project.import_name(file)}")
-            part = [*_class_head(project, file, module, path), *part]
-        lines += ["", "", *part]
-    marks = [line for line in module.body if _is_marks(line)]
-    if marks:
-        imports += imports_for(project, file, module, [line.value for line in marks])
-        lines = ["", *map(ast.unparse, marks), *lines]
-    return Written(tuple(dict.fromkeys(imports)), tuple(lines))
-
-
-def _class_head(project: Project, file: str, module: ast.Module, path: Sequence[str]) -> list[str]:
-    owner = class_of(module, path[0])
-    assert owner is not None, "a method has a class"
-    others = [
-        one.name
-        for one in owner.body
-        if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef)
-        and one.name.startswith("test")
-        and one.name != path[-1]
-    ]
-    head = [f"class {_class_name(path)}({project.import_name(file)}.{path[0]}):"]
-    if others:
-        head += [f"    {' = '.join(others)} = None  # these run where they are", ""]
-    return head
-
-
-def _class_name(path: Sequence[str]) -> str:
-    test = "".join(part.capitalize() for part in path[-1].removeprefix("test").split("_"))
-    return f"{path[0]}{test}" if path[0].startswith("Test") else f"Test{path[0]}{test}"
-
-
 def _names(function: Function) -> tuple[str, ...]:
     """Arguments, and what is assigned on the way."""
     assigned = [
@@ -133,10 +74,44 @@ def _names(function: Function) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*arguments_of(function), *assigned)))
 
 
-def _is_marks(node: ast.stmt) -> TypeGuard[ast.Assign]:
-    return isinstance(node, ast.Assign) and any(
-        isinstance(one, ast.Name) and one.id == "pytestmark" for one in node.targets
+PYTEST = _Functions()
+
+
+class _TestCases:
+    name = "unittest"
+
+    def place(self, project: Project, node: str) -> Place | None:
+        file, *path = node.split("::")
+        module = project.module(file)
+        if module is None or len(path) != 2 or not _is_test_case(module, path[0]):
+            return None
+        found = PYTEST.place(project, node)
+        return Place(self.name, file, node, found.names) if found is not None else None
+
+    def at_end(self, project: Project, additions: Sequence[Addition]) -> list[Insertion]:
+        return at_ends(project, additions, fixtures=False)
+
+    def within(self, text: str, value: str, tolerance: str) -> str:
+        return f"self.assertAlmostEqual({text}, {value}, delta={tolerance})"
+
+    def equal(self, text: str, value: str) -> str:
+        plain = {
+            "True": f"self.assertTrue({text})",
+            "False": f"self.assertFalse({text})",
+            "None": f"self.assertIsNone({text})",
+        }
+        return plain.get(value, f"self.assertEqual({text}, {value})")
+
+    def needs(self, line: str) -> tuple[str, ...]:
+        return ()
+
+
+def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
+    owner = class_of(module, name)
+    bases = [ast.unparse(one) for one in owner.bases] if owner is not None else []
+    return any(
+        base.endswith("TestCase") or (depth > 0 and _is_test_case(module, base, depth - 1)) for base in bases
     )
 
 
-STYLE = _Functions()
+UNITTEST = _TestCases()

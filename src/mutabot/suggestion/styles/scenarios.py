@@ -1,26 +1,70 @@
-"""pytest-bdd: scenarios in feature files, whose steps are functions."""
+"""Feature files: the scenarios in them, their steps, and where a step can be added."""
 
 from __future__ import annotations
 
 import ast
 import re
 from collections.abc import Iterator, Sequence
-from pathlib import Path, PurePosixPath
+from dataclasses import dataclass
+from pathlib import Path
 
-from mutabot.suggestion.sources.project import Project
-from mutabot.suggestion.sources.texts import Insertion, imports_of, top_names
+from mutabot.suggestion.project import Insertion, Project, imports_of, top_names
+from mutabot.suggestion.style import Addition, Function, Place, PlainAsserts, arguments_of
+from mutabot.suggestion.watches import fixture
 
-from .copying import imports_for
-from .feature_files import Scenario, scenario_with, scenarios_in
-from .style import (
-    Addition,
-    Function,
-    Place,
-    PlainAsserts,
-    Written,
-    arguments_of,
-)
-from .watching import fixture
+_SCENARIO = re.compile(r"\s*(?:Scenario Outline|Scenario Template|Scenario|Example)\s*:\s*(.*?)\s*$")
+_BACKGROUND = re.compile(r"\s*Background\s*:")
+_OTHER = re.compile(r"\s*(?:Feature|Rule|Examples|Scenarios)\s*:|\s*@")
+_STEP = re.compile(r"(\s*)(Given|When|Then|And|But|\*)\s+(.*?)\s*$")
+
+
+@dataclass(slots=True)
+class Scenario:
+    """A scenario.
+
+    Attributes:
+        title: as the file has it; empty for a background.
+        end: the 1-based line after which a further step comes.
+        indent: of its steps.
+        steps: keyword and text.
+    """
+
+    title: str
+    end: int
+    indent: str
+    steps: list[tuple[str, str]]
+
+    def keyword(self) -> str:
+        """With which a further check begins."""
+        real = [word for word, _ in self.steps if word not in {"And", "But", "*"}]
+        return "And" if real and real[-1] == "Then" else "Then"
+
+
+def scenarios_in(text: str) -> list[Scenario]:
+    """The scenarios of a feature file, with backgrounds as those without a title."""
+    found: list[Scenario] = []
+    current: Scenario | None = None
+    quoted = False
+    for number, line in enumerate(text.splitlines(), start=1):
+        is_quote = line.strip()[:3] in {'"""', "```"}
+        if is_quote or quoted:
+            quoted = quoted != is_quote
+            if current is not None:
+                current.end = number
+            continue
+        scenario, step = _SCENARIO.match(line), _STEP.match(line)
+        if scenario is not None or _BACKGROUND.match(line):
+            current = Scenario(scenario[1] if scenario else "", number, "    ", [])
+            found.append(current)
+        elif _OTHER.match(line):
+            current = None
+        elif current is not None and step is not None:
+            current.indent, current.end = step[1], number
+            current.steps.append((step[2], step[3]))
+        elif current is not None and line.strip().startswith("|"):
+            current.end = number
+    return found
+
 
 _KINDS = ("given", "when", "then", "step")
 _FIELD = re.compile(r"\{(\w*)[^}]*\}")
@@ -31,7 +75,6 @@ _GIVEN = {"datatable", "docstring"}
 
 class _Scenarios(PlainAsserts):
     name = "pytest-bdd"
-    order = 20
 
     def place(self, project: Project, node: str) -> Place | None:
         file, *path = node.split("::")
@@ -66,36 +109,6 @@ class _Scenarios(PlainAsserts):
         imports += ["import pytest"] if any(one.watch is not None for one in additions) else []
         return found + imports_of(file, module, [*imports, "from pytest_bdd import then"])
 
-    def written(self, project: Project, file: str, additions: Sequence[Addition]) -> Written:
-        name = project.import_name(file)
-        imports = [line for one in additions for line in one.imports]
-        imports += [f"import {name}", "from pathlib import Path", "from pytest_bdd import scenarios, then"]
-        lines = [
-            "",
-            f"# steps and fixtures of {PurePosixPath(file).name}: they are looked for where the scenario is",
-            f"for _name, _one in vars({name}).items():",
-            '    if _name.startswith("__pytest_bdd") or not _name.startswith(("_", "test")):',
-            "        globals().setdefault(_name, _one)",
-            "",
-        ]
-        files: list[tuple[str, str]] = []
-        for place in dict.fromkeys(one.place for one in additions):
-            steps = [one for one in additions if one.place == place]
-            scenario = _scenario(project, place)
-            words = [scenario.keyword(), *["And"] * (len(steps) - 1)]
-            said = [f"{scenario.indent}{word} {one.says}" for word, one in zip(words, steps, strict=True)]
-            text = "\n".join(scenario_with(project.text(place.feature), place.title, said)) + "\n"
-            feature = f"{_slug(place.title)}.feature"
-            files.append((feature, text))
-            lines.append(f'scenarios(str(Path(__file__).with_name("{feature}")))')
-        module = project.module(file)
-        assert module is not None
-        for step in _steps(additions, module):
-            lines += step
-        imports += imports_for(project, file, module, _annotations(additions, module))
-        imports += ["import pytest"] if any(one.watch is not None for one in additions) else []
-        return Written(tuple(dict.fromkeys(imports)), tuple(lines), tuple(files))
-
 
 def _steps(additions: Sequence[Addition], module: ast.Module) -> Iterator[list[str]]:
     """The functions of these steps and what they need, annotated as the file's other steps are."""
@@ -127,12 +140,6 @@ def _annotated(module: ast.Module) -> dict[str, str]:
         for one in node.args.args
         if one.annotation is not None
     }
-
-
-def _annotations(additions: Sequence[Addition], module: ast.Module) -> list[ast.AST]:
-    """The annotations that the steps have."""
-    uses = {use for one in additions for use in one.uses}
-    return [ast.parse(text) for name, text in _annotated(module).items() if name in uses]
 
 
 def _scenario(project: Project, place: Place) -> Scenario:
@@ -222,4 +229,4 @@ def _decorated(function: Function) -> Iterator[tuple[str, set[str]]]:
             yield re.escape(text), set()
 
 
-STYLE = _Scenarios()
+PYTEST_BDD = _Scenarios()

@@ -8,23 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from mutabot.model import Case, Kind, Operation, Path, Pattern, Quantity
 from mutabot.model.named import WRITTEN, Form, Named, Refused, settings_of
 from mutabot.settings.mistakes import Check
 from mutabot.settings.toml_lines import KeyPath
-from mutabot.vocabulary.cases.modes import Undecided, in_cases
-from mutabot.vocabulary.cases.when import in_case, read_when
-from mutabot.vocabulary.idle import read_idle
+from mutabot.vocabulary.cases.when import Undecided, in_case, in_cases, read_when
 from mutabot.vocabulary.patterns import read_patterns
 from mutabot.vocabulary.quantities import in_message, is_quantity, read_fields, read_quantity, read_result
 from mutabot.vocabulary.schema import NamedTable
-from mutabot.vocabulary.targets import target_fault
+from mutabot.vocabulary.targets import read_idle, target_fault
 
-from .current import read_current
-from .names import DIRECTIONS, NAMING, forms_of, name_of, node_of, type_of
-from .refused import read_refused
+from .names import DIRECTIONS, NAMING, forms_of, name_of, node_of, read_current, read_refused, type_of
 
 #: the kind of target that all of them have
 _KIND = "messages"
@@ -39,19 +36,12 @@ _QUANTITIES: Mapping[Form, tuple[str | None, str | None]] = {
     Form.PARAMETER: (None, "value"),
     Form.TRANSFORM: (None, "fields"),
 }
-_PUBLISHED = ("what is published", "what is received")
-_GOAL = ("goal", "feedback or result")
-_NOTHING = ("what is sent", "what is read")
 #: how mistakes call what is written, and what is read
 _SIDES: Mapping[Form, tuple[str, str]] = {
-    Form.PUBLISH: _PUBLISHED,
-    Form.RECEIVE: _PUBLISHED,
+    **dict.fromkeys((Form.PUBLISH, Form.RECEIVE), ("what is published", "what is received")),
     Form.CALL: ("request", "response"),
-    Form.GOAL: _GOAL,
-    Form.FEEDBACK: _GOAL,
-    Form.RESULT: _GOAL,
-    Form.PARAMETER: _NOTHING,
-    Form.TRANSFORM: _NOTHING,
+    **dict.fromkeys((Form.GOAL, Form.FEEDBACK, Form.RESULT), ("goal", "feedback or result")),
+    **dict.fromkeys((Form.PARAMETER, Form.TRANSFORM), ("what is sent", "what is read")),
 }
 #: forms that make the robot do something, unless the vocabulary says otherwise
 _COMMANDS = frozenset({Form.PUBLISH, Form.CALL, Form.GOAL, Form.CANCEL})
@@ -101,24 +91,16 @@ def _named(check: Check, table: NamedTable, key: str, place: KeyPath) -> Named |
     if key == "topic":
         _check_direction(check, table.direction, place)
     read: dict[str, str | None] = {}
-    for part, read_part in ((key, name_of), ("node", _node), ("type", _type)):
+    for part, read_part in ((key, partial(name_of, key)), ("node", node_of), ("type", type_of)):
         text = getattr(table, part)
         try:
-            read[part] = read_part(part, text) if text is not None else None
+            read[part] = read_part(text) if text is not None else None
         except ValueError as error:
             check.error((*place, part), str(error))
     name = read.get(key)
     if name is None or len(check.errors) > before:
         return None
     return Named(forms_of(key, table.direction)[0], name, read["node"], read["type"])
-
-
-def _node(key: str, text: str) -> str:
-    return node_of(text)
-
-
-def _type(key: str, text: str) -> str:
-    return type_of(text)
 
 
 def _check_direction(check: Check, direction: str | None, place: KeyPath) -> None:

@@ -73,6 +73,7 @@
 
   /** Newer data of the same campaign: what is shown is drawn again, and the reader stays where he is. */
   function renew(older) {
+    if (document.querySelector("#nav :active, main :active")) { setTimeout(renew, 100, older); return; } // a click under way would be lost
     const body = main(), active = document.activeElement;
     const within = [body, document.getElementById("nav")].find((one) => one.contains(active));
     const { parts } = here();

@@ -1,4 +1,4 @@
-"""Everything about one mutant on the terminal, for ``mutabot show``."""
+"""Everything about one mutant on the terminal, for ``mutabot show`` and ``mutabot replay``."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
+from rich.cells import cell_len
 from rich.console import Console, RenderableType
 from rich.padding import Padding
 from rich.table import Table
@@ -17,15 +18,11 @@ from mutabot.analysis.score import KillRate
 from mutabot.analysis.stored.evidence import StoredEvidence
 from mutabot.analysis.suggested import Suggestions
 from mutabot.journal.records import Replayed
-from mutabot.model import Kind, Mutant, Outcome, Quantity
+from mutabot.model import Kind, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import end_in_words
-from mutabot.report.terminal.console import between, heading, make_table, percent, plain
-from mutabot.report.terminal.marks import mark_of
-
-from .excerpt import excerpt
-from .happened import happened_parts
-from .looked import looked_parts
-from .suggested import suggested_parts
+from mutabot.report.suggested import suggested_parts
+from mutabot.report.terminal.console import between, heading, make_table, mark_of, percent, plain
+from mutabot.report.terminal.mutant.happened import happened_parts, looked_parts
 
 _NUMBER = re.compile(r"-?\d+(\.\d+)?(e-?\d+)?")
 
@@ -97,7 +94,7 @@ def _facts(result: MutantResult) -> Table:
     table.add_column(overflow="fold")
     facts = {
         "id": mutant.id,
-        "place": "; ".join(map(_place_text, mutant.singles)),
+        "place": _place_text(mutant),
         "role": mutant.site.role.value,
         "operator": f"{mutant.operator} ({mutant.family})",
         "operation": mutant.operation + (f", command {mutant.pattern_name}" if mutant.pattern else ""),
@@ -112,9 +109,9 @@ def _facts(result: MutantResult) -> Table:
     return table
 
 
-def _place_text(single: Mutant) -> str:
-    function = single.site.span.function
-    return f"{single.site.place} in {function}" if function else single.site.place
+def _place_text(mutant: Mutant) -> str:
+    function = mutant.site.span.function
+    return f"{mutant.site.place} in {function}" if function else mutant.site.place
 
 
 def _interval_text(rate: KillRate) -> str:
@@ -223,3 +220,38 @@ def _hits(count: int) -> str:
 def _effort(outcome: Outcome, *, with_time: bool = True) -> str:
     text = f"acted at {outcome.acted} of {outcome.hits} hits, {outcome.tests} tests run"
     return f"{text}, {outcome.wall:.1f} s" if with_time else text
+
+
+_TAB = 4
+
+
+def excerpt(source: str, span: Span, *, around: int = 2) -> list[str]:
+    """The lines of a span and ``around`` lines before and after it, with a caret underline.
+
+    Columns of the span count UTF-8 bytes; the underline counts the cells that a terminal shows.
+    """
+    lines = source.splitlines()
+    if not 1 <= span.line <= len(lines):
+        return []
+    first, last = max(1, span.line - around), min(len(lines), span.end_line + around)
+    width = len(str(last))
+    shown = []
+    for number in range(first, last + 1):
+        line = lines[number - 1]
+        shown.append(f"{number:>{width}} │ {line.expandtabs(_TAB)}".rstrip())
+        if span.line <= number <= span.end_line:
+            shown.append(f"{'':>{width}} │ {_underline(line, number, span)}")
+    return shown
+
+
+def _underline(line: str, number: int, span: Span) -> str:
+    raw = line.encode()
+    indent = len(raw) - len(raw.lstrip())
+    start = span.column if number == span.line else indent
+    end = span.end_column if number == span.end_line else len(raw)
+    before, marked = _cells_of(raw[:start]), _cells_of(raw[:end])
+    return " " * before + "^" * max(1, marked - before)
+
+
+def _cells_of(raw: bytes) -> int:
+    return cell_len(raw.decode(errors="ignore").expandtabs(_TAB))

@@ -1,1 +1,0 @@
-"""``mutabot merge``: the shards of a campaign as one."""

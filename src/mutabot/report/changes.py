@@ -1,0 +1,216 @@
+"""What differs between two campaigns: as text, as JSON and as Markdown, in the same sections."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from rich.console import Console, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from mutabot.analysis.results import MutantResult
+from mutabot.analysis.score import Group
+from mutabot.analysis.stored.changes import Changes, Pair
+from mutabot.report.as_json import FORMAT, facts, mutant_data
+from mutabot.report.status import rounds_text, status_of
+from mutabot.report.terminal.campaign import WIDE
+from mutabot.report.terminal.console import (
+    add_row,
+    heading,
+    make_mutant_table,
+    make_table,
+    plain,
+    short_place,
+)
+from mutabot.report.texts import escaped, table
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """Mutants of which the same is to be said.
+
+    Attributes:
+        heading: what is said, with a capital letter.
+        rows: the mutants, each with what happened to it.
+    """
+
+    heading: str
+    rows: tuple[tuple[MutantResult, str], ...]
+
+
+def sections(changes: Changes) -> Iterator[Section]:
+    """The sections that are not empty, what needs action first."""
+    pairs = (
+        ("New survivors", changes.appeared),
+        ("Changed survivors", changes.changed),
+        ("Survivors of which nothing is known now", changes.unknown),
+        ("Fixed survivors", changes.fixed),
+    )
+    for name, found in pairs:
+        if found:
+            yield Section(name, tuple((pair.either, _told(pair)) for pair in found))
+    if changes.gone:
+        yield Section(
+            "Mutants that are gone", tuple((one, f"before: {rounds_text(one)}") for one in changes.gone)
+        )
+    added = tuple((one, rounds_text(one)) for one in changes.added if not one.is_survivor)
+    if added:
+        yield Section("New mutants that do not survive", added)
+
+
+def summary(changes: Changes) -> str:
+    """The numbers in a line."""
+    return (
+        f"Survivors: {len(changes.appeared)} new, {len(changes.fixed)} fixed, "
+        f"{len(changes.changed)} changed, {changes.same} as before, {len(changes.unknown)} unknown; "
+        f"mutants: {len(changes.added)} new, {len(changes.gone)} gone"
+    )
+
+
+def notes(changes: Changes) -> list[str]:
+    """What is to be known of campaigns that did not run to their end, or not of the same mutants."""
+    states = (("old", changes.old_state), ("new", changes.new_state))
+    ends = [f"the {name} campaign is not complete: {state}" for name, state in states if state != "complete"]
+    return [*ends, *changes.notes]
+
+
+def score_rows(changes: Changes) -> Iterator[tuple[str, str, str, str]]:
+    """Family and role, the old score, the new one, and the difference in percentage points."""
+    for (family, role), (old, new) in changes.scores.items():
+        before, after = _mean(old), _mean(new)
+        by = f"{100 * (after - before):+.1f}" if before is not None and after is not None else "–"
+        yield f"{family} · {role}", _percent(before), _percent(after), by
+
+
+def _told(pair: Pair) -> str:
+    old = f"before: {rounds_text(pair.old)}" if pair.old is not None else "a new mutant"
+    return f"{rounds_text(pair.new)}; {old}" if pair.new is not None else old
+
+
+def _mean(group: Group | None) -> float | None:
+    return group.scores.mean if group is not None else None
+
+
+def _percent(share: float | None) -> str:
+    return "–" if share is None else f"{100 * share:.1f} %"
+
+
+def changes_data(changes: Changes) -> dict[str, Any]:
+    """Everything about a comparison with an older campaign."""
+    return {
+        "format": FORMAT,
+        **facts(changes, "old_state new_state notes"),
+        "same_survivors": changes.same,
+        "new_survivors": _pairs(changes.appeared),
+        "fixed_survivors": _pairs(changes.fixed),
+        "changed_survivors": _pairs(changes.changed),
+        "unknown_survivors": _pairs(changes.unknown),
+        "gone_mutants": _pairs(Pair(one, None) for one in changes.gone),
+        "new_mutants": _pairs(Pair(None, one) for one in changes.added),
+        "groups": [
+            {"family": family, "role": role, "old": _score(old), "new": _score(new)}
+            for (family, role), (old, new) in changes.scores.items()
+        ],
+    }
+
+
+def _pairs(pairs: Iterable[Pair]) -> list[dict[str, Any]]:
+    return [
+        {**mutant_data(pair.either.mutant), "old": _result(pair.old), "new": _result(pair.new)}
+        for pair in pairs
+    ]
+
+
+def _result(result: MutantResult | None) -> dict[str, Any] | None:
+    if result is None:
+        return None
+    status = status_of(result)
+    return {
+        "status": status.value if status is not None else None,
+        "rounds": [one.verdict.value if one is not None else None for one in result.rounds],
+        **facts(result.kill_rate, "killed valid"),
+        **facts(result, "indistinguishable why"),
+    }
+
+
+def _score(group: Group | None) -> dict[str, Any] | None:
+    if group is None:
+        return None
+    return {"mutants": group.mutants, "score": group.scores.mean, "check_score": group.scores.mean_check}
+
+
+#: mutants of a section that are shown
+_ROWS = 50
+
+
+def change_lines(changes: Changes, path: Callable[[str], str]) -> Iterator[str]:
+    """The lines. ``path`` names a file of the project as the reader knows it."""
+    yield "### Since the older campaign"
+    yield ""
+    yield f"{summary(changes)}."
+    yield ""
+    for line in notes(changes):
+        yield f"> **{escaped(line)}**"
+        yield ""
+    yield from table(("family · role", "old", "new", "points"), score_rows(changes), right=(1, 2, 3))
+    for section in sections(changes):
+        yield f"#### {section.heading}: {len(section.rows)}"
+        yield ""
+        rows = (
+            (
+                str(result.mutant.number),
+                replace(result.mutant.site.span, file=path(result.mutant.site.span.file)).place,
+                result.mutant.operator,
+                result.mutant.description,
+                told,
+            )
+            for result, told in section.rows[:_ROWS]
+        )
+        yield from table(("no.", "place", "operator", "what it does", "how it ended"), rows, right=(0,))
+        if len(section.rows) > _ROWS:
+            yield f"and {len(section.rows) - _ROWS} more"
+            yield ""
+
+
+#: mutants of a section that are shown
+_SHOWN = 50
+
+
+def print_changes(console: Console, changes: Changes) -> None:
+    """Print what differs."""
+    for part in _parts(changes, console.width):
+        console.print(part)
+
+
+def _parts(changes: Changes, width: int) -> Iterator[RenderableType]:
+    yield Text(summary(changes), style="bold")
+    for line in notes(changes):
+        yield Text(plain(line), style="bold")
+    yield _scores(changes)
+    for section in sections(changes):
+        yield heading(f"{section.heading}: {len(section.rows)}")
+        yield _mutants(section, width)
+        if len(section.rows) > _SHOWN:
+            yield Text(f"and {len(section.rows) - _SHOWN} more", style="dim")
+
+
+def _scores(changes: Changes) -> Table:
+    table = make_table()
+    table.add_column("family · role")
+    for name in ("old", "new", "points"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for row in score_rows(changes):
+        table.add_row(*row)
+    return table
+
+
+def _mutants(section: Section, width: int) -> Table:
+    narrow = width < WIDE
+    table = make_mutant_table(("place", "operator"), "what it does, and how it ended", narrow=narrow)
+    for result, told in section.rows[:_SHOWN]:
+        mutant = result.mutant
+        facts = (short_place(mutant.site.span.file, mutant.site.span.line), mutant.operator)
+        add_row(table, mutant.number, facts, f"{mutant.description}\n{told}", narrow=narrow)
+    return table

@@ -1,1 +1,0 @@
-"""What differs between two campaigns: as text, as JSON and as Markdown."""

@@ -1,1 +1,0 @@
-"""Suggested checks: for people, and as data."""

@@ -1,0 +1,169 @@
+"""Texts of programs under test, so that any format can hold them and none tells of the machine.
+
+``portable`` makes a whole campaign fit to leave the machine, ``escaped`` a text fit for Markdown. Other
+formats only have to escape what is special in them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass, replace
+from enum import Enum
+from typing import Any, TypeVar
+
+from mutabot.analysis.results import MutantResult
+from mutabot.analysis.stored.campaign import StoredCampaign
+from mutabot.journal.records import Reaching
+
+#: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
+_UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
+_ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
+#: an absolute path in one of the folders in which machines keep files; topics of ROS look like others
+_ABSOLUTE = re.compile(
+    r"(?<![\w.~/…-])(?:file://)?/(?:home|root|tmp|usr|opt|var|etc|mnt|srv|nix|workspace|workspaces|builds|github|"
+    r"__w|Users|private|Volumes|Library)(?:/[^\s/:;,'\"<>()\[\]{}|]+)*/(?=[^\s/:;,'\"<>()\[\]{}|])"
+)
+
+
+def legible(text: str) -> str:
+    """A text with a sign in the place of every character that a format could not hold; as long as before."""
+    return _UNFIT.sub("\N{REPLACEMENT CHARACTER}", text)
+
+
+def one_line(text: str) -> str:
+    """A text without line breaks and repeated blanks."""
+    return " ".join(text.split())
+
+
+class Cleaner:
+    """Makes messages fit for a report: legible, and with paths that say nothing of the machine.
+
+    What lies in the project is named from its folder on, any other file by its last name: ``…/decoder.py``.
+    """
+
+    def __init__(self, root: str | None) -> None:
+        folder = (root or "").rstrip("/")
+        self._root = re.compile(rf"(?:file://)?{re.escape(folder)}(?:/|(?![\w.-]))") if folder else None
+
+    def __call__(self, text: str) -> str:
+        text = _ESCAPES.sub("", text)
+        if self._root is not None:
+            text = self._root.sub(lambda found: "" if found[0].endswith("/") else ".", text)
+        return legible(_ABSOLUTE.sub("…/", text))
+
+
+#: what begins a structure within a line: emphasis, code, links, images, tables, formulas, strikethrough
+_SPECIAL = re.compile(r"([\\`*_\[\]|~$])")
+#: what begins one at the start of a line
+_START = re.compile(r"^(#+|[-+=]+)(?=\s|$)|^(\d+)([.)])(?=\s|$)")
+
+
+def escaped(text: str) -> str:
+    """A text as one line of Markdown that shows it as it is, wherever it stands."""
+    line = one_line(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    line = _SPECIAL.sub(r"\\\1", line)
+    # no link is made of an address that a program wrote
+    line = line.replace("://", ":&#47;&#47;").replace("www.", "www&#46;")
+    return _START.sub(lambda found: f"\\{found[1]}" if found[1] else f"{found[2]}\\{found[3]}", line)
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], *, right: Container[int] = ()) -> Iterator[str]:
+    """The lines of a table, and an empty one. ``right``: columns of numbers."""
+    yield _row(head)
+    yield _row_of("---:" if index in right else "---" for index in range(len(head)))
+    for row in rows:
+        yield _row(row)
+    yield ""
+
+
+def _row(cells: Iterable[str]) -> str:
+    return _row_of(escaped(cell) for cell in cells)
+
+
+def _row_of(cells: Iterable[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+T = TypeVar("T")
+
+#: facts of a campaign that tell nothing of the machine and its folders
+_META = (
+    "mutabot",
+    "python",
+    "versions",
+    "seed",
+    "rounds",
+    "engine",
+    "families",
+    "order",
+    "started",
+    "seconds",
+)
+
+
+def portable(campaign: StoredCampaign) -> StoredCampaign:
+    """The same campaign, fit for any report."""
+    results = campaign.results
+    clean = Cleaner(results.meta.get("root"))
+    return StoredCampaign(
+        replace(
+            results,
+            meta=mapped({key: results.meta[key] for key in _META if key in results.meta}, clean),
+            state=clean(results.state),
+            mutants=tuple(_mutant(one, clean) for one in results.mutants),
+            graded=tuple(_mutant(one, clean) for one in results.graded),
+            left_out=mapped(results.left_out, legible),
+            controls=mapped(results.controls, clean),
+            flaky=mapped(results.flaky, clean),
+            attempt=mapped(results.attempt, clean),
+            tests=tuple(
+                replace(one, test=replace(one.test, test=clean(one.test.test))) for one in results.tests
+            ),
+        ),
+        # a mark of the byte order is no part of the first line
+        sources={
+            legible(file): legible(text.removeprefix("\ufeff")) for file, text in campaign.sources.items()
+        },
+        operators=mapped(campaign.operators, legible),
+        reaching=Reaching(
+            mapped(campaign.reaching.tests, clean),
+            {legible(site): tests for site, tests in campaign.reaching.sites.items()},
+        ),
+    )
+
+
+def mapped(value: T, change: Callable[[str], str]) -> T:
+    """The same data with every text in it changed; keys of tables too."""
+    made: Any = _mapped(value, change)
+    result: T = made
+    return result
+
+
+def _mapped(value: Any, change: Callable[[str], str]) -> Any:
+    if isinstance(value, Enum):
+        return value
+    if isinstance(value, str):
+        return change(value)
+    if isinstance(value, Mapping):
+        return {change(str(key)): _mapped(item, change) for key, item in value.items()}
+    if isinstance(value, tuple | list):
+        return type(value)(_mapped(item, change) for item in value)
+    if is_dataclass(value) and not isinstance(value, type):
+        return replace(
+            value, **{one.name: _mapped(getattr(value, one.name), change) for one in fields(value)}
+        )
+    return value
+
+
+def _mutant(result: MutantResult, clean: Cleaner) -> MutantResult:
+    """Ids and what stands in the program stay as they are: they are the user's own text."""
+    return replace(
+        result,
+        mutant=mapped(result.mutant, legible),
+        rounds=tuple(
+            replace(mapped(one, clean), mutant=legible(one.mutant)) if one is not None else None
+            for one in result.rounds
+        ),
+        why=clean(result.why),
+    )

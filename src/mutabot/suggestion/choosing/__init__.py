@@ -1,1 +1,0 @@
-"""From what was read to the fewest checks that notice most."""

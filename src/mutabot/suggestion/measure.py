@@ -1,0 +1,158 @@
+"""What could be read at the ends of tests: by the original in many rounds, and by the survivors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from mutabot.border.test_end import TestEnd
+from mutabot.campaign.again import as_it_is_now
+from mutabot.campaign.baseline.taking import take_baseline
+from mutabot.campaign.beginning import open_executor
+from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.engines.choice import first_engine
+from mutabot.campaign.engines.controls import run_controls
+from mutabot.campaign.engines.fresh import task
+from mutabot.campaign.request import Progress, Request
+from mutabot.model import Mutant, Probe
+from mutabot.suggestion.project import Insertion, Project, changed_texts
+from mutabot.suggestion.readings import ORACLE, PROBE, Reading, of_objects, readings_at
+from mutabot.suggestion.style import Addition, Place
+from mutabot.suggestion.styles.choice import insertions_of
+from mutabot.suggestion.watches import Command, commands_of
+from mutabot.suggestion.workspace import copy_of
+
+#: what notes readings in the tests' process, and the probe that carries them out of it
+_NOTED = "mutabot.inside.readings.noted"
+_PROBE = f"{_NOTED}:values"
+
+#: what was read at the end of one test: expression to number, text or truth value
+Read = Mapping[str, Any]
+
+
+@dataclass(slots=True)
+class Measured:
+    """What was read.
+
+    Attributes:
+        originals: per place, by (round, node id), what the original's tests read.
+        mutants: the same per place and mutant id.
+        readings: per place, what is known of its readings.
+        objects: readings of objects, each with its tolerance.
+        commands: after which it was looked.
+    """
+
+    originals: dict[Place, dict[tuple[int, str], Read]] = field(default_factory=dict)
+    mutants: dict[Place, dict[str, dict[tuple[int, str], Read]]] = field(default_factory=dict)
+    readings: dict[Place, list[Reading]] = field(default_factory=dict)
+    objects: list[tuple[str, float]] = field(default_factory=list)
+    commands: list[Command] = field(default_factory=list)
+
+
+def measure(
+    request: Request,
+    project: Project,
+    places: Mapping[str, Place],
+    survivors: Sequence[tuple[Mutant, Sequence[int]]],
+    progress: Progress,
+) -> Measured:
+    """Run a copy of the project whose tests note what they can read.
+
+    Args:
+        request: for all rounds, fresh ones included.
+        places: by node id with parameters.
+        survivors: each with the rounds in which it survived.
+
+    Raises what a baseline raises.
+    """
+    measured = Measured(objects=of_objects(project), commands=commands_of(project))
+    additions = []
+    for place in dict.fromkeys(places.values()):
+        measured.readings[place] = readings_at(project, place)
+        additions.append(_noting(place, measured.readings[place], measured.objects))
+    insertions = insertions_of(project, additions)
+    insertions += [_watching(project, measured, file) for file in {one.file for one in places.values()}]
+    texts = changed_texts(project.root, insertions)
+    with copy_of(request, texts) as copied:
+        probes = (*copied.vocabulary.probes, Probe(_PROBE, 1e9))
+        noting = replace(copied, vocabulary=replace(copied.vocabulary, probes=probes))
+        with open_executor(noting, progress) as opened:
+            may_share = first_engine(noting).may_share
+            baseline, results = take_baseline(noting, opened, progress, repetitions=1, may_share=may_share)
+            for result in results:
+                _take(measured.originals, places, result.task.key.round, result.ends)
+            _run_survivors(Campaign(noting, baseline, opened, progress), measured, places, survivors)
+    return measured
+
+
+def _run_survivors(
+    campaign: Campaign,
+    measured: Measured,
+    places: Mapping[str, Place],
+    survivors: Sequence[tuple[Mutant, Sequence[int]]],
+) -> None:
+    baseline, progress = campaign.baseline, campaign.progress
+    now = [(as_it_is_now(campaign.request, baseline, mutant), rounds) for mutant, rounds in survivors]
+    for _ in run_controls(campaign, [mutant for mutant, _ in now]):
+        pass
+    trials = [(mutant, round) for mutant, rounds in now for round in rounds]
+    progress.stage("survivors", len(trials))
+    tasks = (
+        task(campaign, mutant, round, tests)
+        for mutant, round in trials
+        if (tests := baseline.judges(round, mutant))
+    )
+    for result in campaign.executor.run(tasks):
+        mutant, round = result.task.key
+        progress.advance(f"#{mutant.number} round {round + 1}")
+        found: dict[Place, dict[tuple[int, str], Read]] = {}
+        _take(found, places, round, result.ends)
+        for place, read in found.items():
+            measured.mutants.setdefault(place, {}).setdefault(mutant.id, {}).update(read)
+
+
+def _take(
+    found: dict[Place, dict[tuple[int, str], Read]],
+    places: Mapping[str, Place],
+    round: int,
+    ends: Iterable[TestEnd],
+) -> None:
+    for end in ends:
+        place = places.get(end.test)
+        prefix = f"{_PROBE}."
+        read = {
+            name.removeprefix(prefix): value for name, value in end.probes.items() if name.startswith(prefix)
+        }
+        if place is not None and read and end.outcome == "passed":
+            found.setdefault(place, {})[round, end.test] = read
+
+
+def _watching(project: Project, measured: Measured, file: str) -> Insertion:
+    """The lines that look after every command of the tests of a file."""
+    known = next(found for place, found in measured.readings.items() if place.file == file)
+    looks = ", ".join(
+        f"({one.text!r}, lambda: {one.text})" for one in known if one.way == PROBE and not one.uses
+    )
+    classes = [target for target, _ in measured.objects]
+    line = f"_mutabot_watch({measured.commands!r}, [{looks}], {classes!r})"
+    lines = (f"from {_NOTED} import watch as _mutabot_watch", line)
+    return Insertion(file, len(project.lines(file)), lines)
+
+
+def _noting(place: Place, readings: Sequence[Reading], objects: Sequence[tuple[str, float]]) -> Addition:
+    """The lines that note; they are plain statements, and never fail."""
+    # what the oracle does when it reads must not be seen by what only looks
+    ordered = sorted(readings, key=lambda one: one.way == ORACLE)
+    pairs = ", ".join(f"({one.text!r}, lambda: {one.text})" for one in ordered)
+    classes = [target for target, _ in objects]
+    return Addition(
+        place,
+        (
+            f"from {_NOTED} import note as _mutabot_note",
+            f"_mutabot_note(locals(), [{pairs}], {classes!r})",
+        ),
+        "mutabot notes what can be read",
+        tuple(place.names),
+        tuple(dict.fromkeys(line for one in readings for line in one.needs)),
+    )

@@ -1,1 +1,0 @@
-"""What can be read at the ends of tests, and what is read there."""

@@ -1,0 +1,158 @@
+"""Operators on binary operations and augmented assignments: AOR, LOR, SOR and ASR."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import ClassVar
+
+import libcst as cst
+
+from mutabot_source.operator import ClassicalOperator, Draft, Example, Surroundings, each
+
+_TEXTS = cst.SimpleString | cst.FormattedString | cst.ConcatenatedString
+_DISPLAYS = cst.List | cst.Tuple | cst.Dict | cst.Set | cst.ListComp | cst.SetComp | cst.DictComp
+
+
+class _BinaryOperator(ClassicalOperator):
+    """Replaces a binary operator by each other of its group, and the operation by its operands.
+
+    Class attributes:
+        signs: variant and sign by class of the node.
+        needs: kind of value of the operation.
+        keeps_right: whether the right operand may stand for the operation as the left one may.
+    """
+
+    signs: ClassVar[Mapping[type[cst.CSTNode], tuple[str, str]]]
+    needs: ClassVar[str]
+    keeps_right: ClassVar[bool] = True
+
+    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+        if not isinstance(node, cst.BinaryOperation) or type(node.operator) not in self.signs:
+            return
+        if any(isinstance(operand, _TEXTS | _DISPLAYS) for operand in (node.left, node.right)):
+            return
+        for kind, (variant, sign) in self.signs.items():
+            if kind is not type(node.operator):
+                yield Draft(variant, (node.left, f" {sign} ", node.right), self.needs)
+        yield Draft("leftOp", (node.left,), self.needs)
+        if self.keeps_right:
+            yield Draft("rightOp", (node.right,), self.needs)
+
+
+class ArithmeticReplacement(_BinaryOperator):
+    """Replaces ``+ - * / // % **``."""
+
+    name = "AOR"
+    rank = 20
+    summary = "An arithmetic operator becomes each of the others, or the operation one of its operands."
+    signs: ClassVar = {
+        cst.Add: ("add", "+"),
+        cst.Subtract: ("sub", "-"),
+        cst.Multiply: ("mul", "*"),
+        cst.Divide: ("div", "/"),
+        cst.FloorDivide: ("floordiv", "//"),
+        cst.Modulo: ("mod", "%"),
+        cst.Power: ("pow", "**"),
+    }
+    needs = "number"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("z = x + y\n", each("z = {}\n", "x - y, x * y, x / y, x // y, x % y, x ** y, x, y")),
+        Example(
+            "z = a * b % c\n",
+            each(
+                "z = {}\n",
+                "a * b + c, a * b - c, a * b * c, a * b / c, a * b // c, (a * b) ** c, a * b, c, "
+                "(a + b) % c, (a - b) % c, a / b % c, a // b % c, a % b % c, a ** b % c, a % c, b % c",
+            ),
+            note="operands stay what they are",
+        ),
+        Example("z = 'lift/' + height\n", note="a text is no operand of arithmetic"),
+        Example("z = a + b\n", kinds={"a + b": "text"}, note="the baseline saw a text there"),
+        Example("z = a @ b\n", note="not arithmetic on numbers"),
+    )
+
+
+class LogicalReplacement(_BinaryOperator):
+    """Replaces ``&``, ``|`` and ``^``."""
+
+    name = "LOR"
+    rank = 60
+    summary = "A bitwise operator becomes each of the others, or the operation one of its operands."
+    signs: ClassVar = {cst.BitAnd: ("and", "&"), cst.BitOr: ("or", "|"), cst.BitXor: ("xor", "^")}
+    needs = "bits"
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(
+            "z = x & y\n",
+            each("z = {}\n", "x | y, x ^ y, x, y"),
+            kinds={"x & y": "integer"},
+        ),
+        Example(
+            "z = x ^ y\n",
+            each("z = {}\n", "x & y, x | y, x, y"),
+            kinds={"x ^ y": "set"},
+            note="sets and flags as well",
+        ),
+        Example("Speed = int | float\n", kinds={"int | float": "types:UnionType"}, note="a type is no value"),
+        Example("def f(speed: A | B): ...\n", note="nor is an annotation"),
+    )
+
+
+class ShiftReplacement(_BinaryOperator):
+    """Replaces ``<<`` and ``>>``."""
+
+    name = "SOR"
+    rank = 50
+    summary = "A shift goes the other way, or is left out."
+    signs: ClassVar = {cst.LeftShift: ("left", "<<"), cst.RightShift: ("right", ">>")}
+    needs = "integer"
+    keeps_right = False
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("z = x << 2\n", ("z = x >> 2\n", "z = x\n"), kinds={"x << 2": "integer"}),
+        Example("z = x >> y\n", ("z = x << y\n", "z = x\n"), kinds={"x >> y": "integer"}),
+        Example("stream << 2\n", kinds={"stream << 2": "module:Stream"}, note="not a shift of numbers"),
+    )
+
+
+_Signs = dict[type[cst.CSTNode], tuple[str, str]]
+_ARITHMETIC: _Signs = {
+    cst.AddAssign: ("add", "+="),
+    cst.SubtractAssign: ("sub", "-="),
+    cst.MultiplyAssign: ("mul", "*="),
+    cst.DivideAssign: ("div", "/="),
+    cst.FloorDivideAssign: ("floordiv", "//="),
+    cst.ModuloAssign: ("mod", "%="),
+    cst.PowerAssign: ("pow", "**="),
+}
+_BITS: _Signs = {
+    cst.BitAndAssign: ("and", "&="),
+    cst.BitOrAssign: ("or", "|="),
+    cst.BitXorAssign: ("xor", "^="),
+}
+_SHIFTS: _Signs = {cst.LeftShiftAssign: ("left", "<<="), cst.RightShiftAssign: ("right", ">>=")}
+
+
+class AssignmentReplacement(ClassicalOperator):
+    """Replaces ``+=`` and its like."""
+
+    name = "ASR"
+    rank = 70
+    summary = "An augmented assignment becomes another one of its kind, or a plain assignment."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("x += y\n", each("x {}\n", "-= y, *= y, /= y, //= y, %= y, **= y, = y")),
+        Example("x <<= 1\n", ("x >>= 1\n", "x = 1\n"), kinds={"x <<= 1": "integer"}),
+        Example("x &= y\n", ("x |= y\n", "x ^= y\n", "x = y\n"), kinds={"x &= y": "truth"}),
+        Example("x += y\n", kinds={"x += y": "text"}, note="the baseline saw a text there"),
+        Example("x = y\n", note="a name may not have a value before its plain assignment"),
+    )
+
+    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+        if not isinstance(node, cst.AugAssign):
+            return
+        kind = type(node.operator)
+        for group, needs in ((_ARITHMETIC, "number"), (_BITS, "bits"), (_SHIFTS, "integer")):
+            if kind not in group:
+                continue
+            for other, (variant, sign) in group.items():
+                if other is not kind:
+                    yield Draft(variant, (node.target, f" {sign} ", node.value), needs)
+            yield Draft("assign", (node.target, " = ", node.value), needs)

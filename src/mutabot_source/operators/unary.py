@@ -1,0 +1,99 @@
+"""Operators on single values: ABS, UOI and UOD."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import ClassVar
+
+import libcst as cst
+
+from mutabot_source.operator import HELPER, ClassicalOperator, Draft, Example, Surroundings, is_scalar
+
+
+class Absolute(ClassicalOperator):
+    """abs, negAbs and failOnZero around arithmetic values."""
+
+    name = "ABS"
+    rank = 10
+    summary = "An arithmetic value becomes its absolute value, the negative of that, or raises if it is zero."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("y = x\n", ("y = abs(x)\n", "y = -abs(x)\n", "y = failOnZero(x)\n")),
+        Example(
+            "y = arm.x\n",
+            ("y = abs(arm.x)\n", "y = -abs(arm.x)\n", "y = failOnZero(arm.x)\n"),
+            note="attributes, items, calls and sums as well",
+        ),
+        Example("y = x\n", kinds={"x": "text"}, note="the baseline saw a text there"),
+        Example("y = 0.2\n", note="a literal shows its sign: that is UOI's"),
+        Example("f.g\n", kinds={"f.g": "module:Kind"}, note="what it is taken from is no arithmetic value"),
+    )
+
+    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+        if not is_scalar(node, around) or around.is_condition:
+            return
+        absolute = f"{HELPER}.absolute("
+        yield Draft("abs", (absolute, node, ")"), "number", ("abs(", node, ")"))
+        yield Draft("negAbs", (f"-{absolute}", node, ")"), "number", ("-abs(", node, ")"))
+        not_zero = (f"{HELPER}.fail_if(", node, ", 0, 'ZeroValue', 'the value is zero')")
+        yield Draft("failOnZero", not_zero, "number", ("failOnZero(", node, ")"))
+
+
+_CONDITIONS = cst.Comparison | cst.BooleanOperation
+
+
+class UnaryInsertion(ClassicalOperator):
+    """Puts ``-``, ``~`` or ``not`` in front of a value of the right type."""
+
+    name = "UOI"
+    rank = 80
+    summary = "A value gets a minus, a bitwise or a logical not in front, whichever its type takes."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("y = 0.2\n", ("y = -0.2\n",), note="a taught point"),
+        Example("y = x\n", ("y = -x\n",)),
+        Example("y = x\n", ("y = -x\n", "y = ~x\n"), kinds={"x": "integer"}),
+        Example("y = x\n", ("y = not x\n",), kinds={"x": "truth"}),
+        Example("y = a + b\n", ("y = -(a + b)\n", "y = -a + b\n", "y = a + -b\n")),
+        Example("while x: ...\n", ("while not x: ...\n",), kinds={"x": "text"}, note="any condition"),
+        Example("z = a < b\n", ("z = not a < b\n", "z = -a < b\n", "z = a < -b\n")),
+        Example("y = True\n", ("y = not True\n",)),
+        Example("y = -0.2\n", note="what has a sign is UOD's"),
+        Example("y = 0\n", note="a zero has no other sign"),
+        Example("y = 'red'\n", note="a text has no sign"),
+    )
+
+    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+        if around.is_operand_of_unary or not around.is_value:
+            return
+        if isinstance(node, _CONDITIONS):
+            yield Draft("not", ("not ", node))
+        elif isinstance(node, cst.Integer | cst.Float | cst.Imaginary):
+            if float(abs(node.evaluated_value)) != 0.0:
+                yield Draft("neg", ("-", node))
+        elif isinstance(node, cst.Name) and node.value in ("True", "False"):
+            yield Draft("not", ("not ", node))
+        elif is_scalar(node, around):
+            if around.is_condition:
+                yield Draft("not", ("not ", node))
+                return
+            yield Draft("neg", ("-", node), "number")
+            yield Draft("invert", ("~", node), "integer")
+            yield Draft("not", ("not ", node), "truth")
+
+
+class UnaryDeletion(ClassicalOperator):
+    """Drops ``-``, ``+``, ``~`` and ``not``."""
+
+    name = "UOD"
+    rank = 90
+    summary = "A unary minus, plus, bitwise or logical not is left out."
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example("y = -0.2\n", ("y = 0.2\n",), note="a taught point"),
+        Example("if not held: ...\n", ("if held: ...\n",)),
+        Example("y = ~x\n", ("y = x\n",)),
+        Example("y = a - b\n", note="that minus has two operands"),
+        Example("z = x not in y\n", note="part of a comparison: ROR's"),
+    )
+
+    def drafts(self, node: cst.CSTNode, around: Surroundings) -> Iterable[Draft]:
+        if isinstance(node, cst.UnaryOperation):
+            yield Draft("", (node.expression,))
