@@ -103,7 +103,8 @@ def test_a_call_through_library_code_counts_for_the_programs_line(make_stage: Ma
 def test_the_first_act_is_reported_at_once(make_stage: Make) -> None:
     stage = make_stage(ROBOT, "from robot import move\n\ndef run():\n    move(0.1)\n", VOCABULARY)
     stage.mutated("reverse", "x")
-    assert [line for line in stage.pipe.lines if isinstance(line, Acted)] == [Acted("test")]
+    told = [line for line in stage.pipe.lines if isinstance(line, Acted)]
+    assert told == [Acted("test", in_call=True), Acted("test", in_call=False), Acted("test")]
 
 
 def test_a_mutant_that_changes_nothing_has_hits_but_did_not_act(make_stage: Make) -> None:
