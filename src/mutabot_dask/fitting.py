@@ -14,6 +14,7 @@ from mutabot.border.events import (
     Acted,
     BranchDied,
     BranchEnd,
+    BranchFinished,
     Copied,
     Event,
     ForkEnded,
@@ -35,7 +36,7 @@ from .checked import Misfit
 _OUTCOMES = {"passed", "failed", "skipped", "xfailed", "xpassed"}
 #: what only fork servers say
 _NEVER = (Serving, Copied, ForkEnded)
-_BRANCHES = (BranchEnd, BranchDied, Unbranched, Undiverged)
+_BRANCHES = (BranchEnd, BranchFinished, BranchDied, Unbranched, Undiverged)
 #: bytes of a recording, which comes packed
 _UNPACKED = 256 << 20
 
@@ -68,7 +69,7 @@ def _mutants(line: Event) -> Iterator[str]:
     match line:
         case BranchEnd() | BranchDied():
             yield line.mutant
-        case Unbranched():
+        case Unbranched() | BranchFinished():
             yield from line.mutants
         case Undiverged():
             yield from line.hits

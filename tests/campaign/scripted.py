@@ -16,6 +16,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from mutabot.border.footprint import Footprint
+
 from mutabot.border.events import (
     Acted,
     BranchDied,
@@ -27,7 +29,6 @@ from mutabot.border.events import (
     TestStart,
     TextsSeen,
 )
-from mutabot.border.footprint import Footprint
 from mutabot.border.job import Job
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.request import Request

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mutabot.campaign.baseline.sharing import Sharing
 
 from mutabot.analysis.chance import false_kills
 from mutabot.analysis.results import Results, read_results
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.sharing import Sharing
 from mutabot.campaign.engines import repeats
 from mutabot.campaign.engines.doubt import Doubts
 from mutabot.campaign.run import run_campaign

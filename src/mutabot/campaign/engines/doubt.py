@@ -99,10 +99,10 @@ class Doubts:
         return counts
 
     def _ran(self, key: Key, outcome: Outcome) -> tuple[str, ...]:
-        judges = self.baseline.judges(key[1], self.mutants[key[0]])
-        if outcome.test in judges and not outcome.complete:
-            return judges[: judges.index(outcome.test) + 1]
-        return judges if outcome.tests else ()
+        suite = self.baseline.suite(key[1])
+        if outcome.test in suite and not outcome.complete:
+            return suite[: suite.index(outcome.test) + 1]
+        return suite if outcome.tests else ()
 
     def cost(self, key: Key) -> float:
         """Seconds that the tests of a repeat take on the original."""

@@ -66,7 +66,7 @@ def _gains(campaign: Campaign, mutant: Mutant, round: int) -> bool:
     if baseline.is_early(mutant):
         return True
     ends = (baseline.ends[round, test] for test in baseline.judges(round, mutant))
-    return any(end.footprint is not None and end.footprint.processes for end in ends)
+    return any(end.processes for end in ends)
 
 
 ENGINE: Engine = Warm()
