@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mutabot.campaign.baseline.sharing import Sharing
 
 from mutabot.analysis.chance import false_kills
 from mutabot.analysis.results import Results, read_results
@@ -115,7 +114,7 @@ def doubts(
     kills: dict[str, list[tuple[int, int]]], mutants: int, rounds: int = 1, clock: float | None = None
 ) -> Doubts:
     """Mutants of which each test kills some, given as (mutant, round); all tests judge all of them."""
-    baseline = Baseline(tests=[list(kills)] * rounds, sharing=[Sharing() for _ in range(rounds)])
+    baseline = Baseline(tests=[list(kills)] * rounds)
     for round in range(rounds):
         baseline.reaching[round, PLACE] = list(kills)
         for test in kills:

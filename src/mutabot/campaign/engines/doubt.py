@@ -95,8 +95,13 @@ class Doubts:
         counts: Counter[str] = Counter()
         wanted = set(tests)
         for key, outcome in self.outcomes.items() if wanted else ():
-            counts.update(wanted.intersection(self._ran(key, outcome)))
+            counts.update(wanted.intersection(self._judging(key, outcome)))
         return counts
+
+    def _judging(self, key: Key, outcome: Outcome) -> list[str]:
+        """The tests that have had a say in an outcome: of those that ran, all that reach the mutant."""
+        judges = self.baseline.judges(key[1], self.mutants[key[0]])
+        return [test for test in self._ran(key, outcome) if test in judges or test == outcome.test]
 
     def _ran(self, key: Key, outcome: Outcome) -> tuple[str, ...]:
         suite = self.baseline.suite(key[1])

@@ -17,6 +17,8 @@ _GRAPHICS = ("libEGL", "libGL.", "libGLX", "libOSMesa", "libvulkan")
 _SELF = "/proc/self"
 #: devices that keep nothing
 _NOBODYS = ("/dev/null", "/dev/urandom", "/dev/random", "/dev/zero")
+#: what tells of processes, and can be asked by any number of them
+_HARMLESS = ("/proc/", "anon_inode:[pidfd]", "pidfd:")
 #: what threads of LTTng, which comes with ROS 2, wait at
 _TRACER = "/dev/shm/lttng-ust-wait"
 #: how often, and for how many seconds each, to wait for threads that are about to end
@@ -113,7 +115,7 @@ def _open() -> Iterator[tuple[int, str]]:
         except OSError:  # the descriptor of the listing itself
             continue
         is_file = stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_ISLNK(mode)
-        if not is_file and link not in _NOBODYS and not link.startswith("/proc/"):
+        if not is_file and link not in _NOBODYS and not link.startswith(_HARMLESS):
             yield int(name), link
 
 
