@@ -301,6 +301,8 @@ class _Suite:
         """The report of a test that ends like this, beside what the text says."""
         test = self.tests[run.test]
         hits = test.hits(run.mutant) if run.mutant is not None else 0
+        if run.mutant is not None and run.mutant.family == CONTROL and not hits:
+            end = {}
         is_failed = end.get("outcome") == "failed"
         usual = {
             "outcome": "passed",
