@@ -115,7 +115,7 @@ class BranchOfSession:
 
     def _report(self, bunch: Bunch, end: TestEnd, mutants: Sequence[str]) -> None:
         """Say how a test of this branch ended."""
-        sites = self._session.recorder.sites_of_trace() if end.outcome != outcomes.FAILED else ()
+        sites = self._session.recorder.sites_of(end.trace) if end.outcome != outcomes.FAILED else ()
         if end.outcome == outcomes.FAILED:  # only survivors are compared with the original
             end = replace(end, trace=(), returned=(), moments=())
         each = 1 / len(mutants)  # they share what it took
