@@ -241,13 +241,8 @@ def longest(task: Task) -> float:
     walls = [task.deadlines.get(test, task.deadline) for test in task.job.tests or ()]
     branching = task.job.branching
     if branching is not None:
-        walls += [
-            task.deadline,
-            *(branching.walls.get(test, branching.wall) for test in task.job.tests or ()),
-        ]
-        walls += [
-            branching.walls.get(test, branching.wall) for tests in branching.tests.values() for test in tests
-        ]
+        suite = [branching.walls.get(test, branching.wall) for test in task.job.tests or ()]
+        walls += [task.deadline, *suite, len(branching.mutants) * sum(suite)]
     return _GRACE + 2 * (task.startup + sum(walls))
 
 
@@ -264,7 +259,6 @@ def _only(task: Task, mutants: set[str]) -> Task:
     own = replace(
         branching,
         mutants=tuple(one for one in branching.mutants if one.id in mutants),
-        tests={mutant: tests for mutant, tests in branching.tests.items() if mutant in mutants},
         choices={mutant: found for mutant, found in branching.choices.items() if mutant in mutants},
     )
     return replace(task, job=replace(task.job, branching=own))

@@ -24,6 +24,7 @@ from mutabot.border.events import (
     Acted,
     BranchDied,
     BranchEnd,
+    BranchFinished,
     Event,
     ForkEnded,
     PlacesReached,
@@ -268,7 +269,7 @@ def _in_json(path: str) -> bytes:
 _OUTCOMES = {"passed", "failed", "skipped", "xfailed", "xpassed"}
 #: what only fork servers say
 _NEVER = (Serving, ForkEnded)
-_BRANCHES = (BranchEnd, BranchDied, Unbranched, Undiverged)
+_BRANCHES = (BranchEnd, BranchFinished, BranchDied, Unbranched, Undiverged)
 #: bytes of a recording, which comes packed
 _UNPACKED = 256 << 20
 
@@ -301,7 +302,7 @@ def _mutants(line: Event) -> Iterator[str]:
     match line:
         case BranchEnd() | BranchDied():
             yield line.mutant
-        case Unbranched():
+        case Unbranched() | BranchFinished():
             yield from line.mutants
         case Undiverged():
             yield from line.hits

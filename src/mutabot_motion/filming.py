@@ -83,9 +83,8 @@ def _leading_to(campaign: Campaign, mutant: Mutant, round: int, test: str) -> tu
         listed = ", ".join(judges[:3]) or "no test does"
         problem = f"{test} does not reach the mutant in round {round + 1}; these do: {listed}"
         raise SelectionError(problem, unknown=[test])
-    if not baseline.dependent and baseline.sharing[round].why_together((test,)) is None:
-        return (test,)
-    return judges[: judges.index(test) + 1]
+    suite = baseline.suite(round)
+    return suite[: suite.index(test) + 1]
 
 
 def _tasks(

@@ -20,6 +20,7 @@ from mutabot.border.events import (
     Acted,
     BranchDied,
     BranchEnd,
+    BranchFinished,
     Event,
     PlacesReached,
     SessionEnd,
@@ -27,7 +28,6 @@ from mutabot.border.events import (
     TestStart,
     TextsSeen,
 )
-from mutabot.border.footprint import Footprint
 from mutabot.border.job import Job
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.request import Request
@@ -155,6 +155,7 @@ class Scripted:
         found = {
             one.id: self._count(one, job.round) for one in (job.branching.mutants if job.branching else ())
         }
+        forked: dict[str, int] = {}
         yield from self.suite.sites
         places = self._places(job)
         if places:
@@ -171,7 +172,7 @@ class Scripted:
             if reached:
                 yield PlacesReached(test, reached)
             if job.branching is not None:
-                yield from self._branches(job, run, found)
+                yield from self._branches(job, run, found, forked)
             end = self.script.end(run)
             if isinstance(end, Died):
                 if job.mutant is not None:
@@ -182,25 +183,33 @@ class Scripted:
             if ended.acted:
                 yield Acted(test)
             yield ended
+            result.exit_code = result.exit_code or int(ended.outcome == "failed")
             if job.stop_at_kill and ended.is_decided:
                 break
+        yield from (BranchFinished((mutant,), code) for mutant, code in forked.items())
         yield SessionEnd(0, tuple(self.suite.tests))
 
-    def _branches(self, job: Job, trunk: Run, found: dict[str, int]) -> Iterator[Event]:
-        """The branches of one test; a mutant that it decides about has no further ones."""
+    def _branches(
+        self, job: Job, trunk: Run, found: dict[str, int], forked: dict[str, int]
+    ) -> Iterator[Event]:
+        """What branches do in one test: from the first on that reaches them, to one that decides."""
         assert job.branching is not None
         for mutant in job.branching.mutants:
-            if mutant.id not in found or trunk.test not in job.branching.tests[mutant.id]:
+            is_due = mutant.id in forked or self.suite.tests[trunk.test].hits(mutant)
+            if mutant.id not in found or not is_due:
                 continue
+            forked.setdefault(mutant.id, 0)
             run = replace(trunk, mutant=mutant, before=found[mutant.id], is_branch=True)
             end = self.script.end(run)
             if isinstance(end, Died):
                 yield BranchDied(mutant.id, run.test, end.exit_code, end.overdue, end.where, acted=True)
+                del found[mutant.id], forked[mutant.id]
                 continue
             ended = self.suite.end(run, end)
             yield BranchEnd(mutant.id, ended, self.suite.sites)
+            forked[mutant.id] = forked[mutant.id] or int(ended.outcome == "failed")
             if ended.is_decided and not job.branching.every_test:
-                del found[mutant.id]
+                del found[mutant.id], forked[mutant.id]
 
     @staticmethod
     def _places(job: Job) -> list[TextPlace]:
@@ -292,6 +301,8 @@ class _Suite:
         """The report of a test that ends like this, beside what the text says."""
         test = self.tests[run.test]
         hits = test.hits(run.mutant) if run.mutant is not None else 0
+        if run.mutant is not None and run.mutant.family == CONTROL and not hits:
+            end = {}
         is_failed = end.get("outcome") == "failed"
         usual = {
             "outcome": "passed",
@@ -302,7 +313,6 @@ class _Suite:
             "wall": 0.01,
             "cpu": 0.01,
             "trace": tuple(call.trace for call in test.calls),
-            "footprint": Footprint(),
             "example": (0, 1) if hits else None,
             "place": test.place if is_failed else None,
         }

@@ -106,7 +106,7 @@ class NotInstrumented:
 
 @dataclass(frozen=True, slots=True)
 class BranchEnd:
-    """A branch has finished its test.
+    """A branch has finished a test: the one in which it was forked, or a later one.
 
     Attributes:
         mutant: id of the mutant it was.
@@ -119,6 +119,19 @@ class BranchEnd:
     end: TestEnd
     sites: tuple[SiteSeen, ...] = ()
     shared: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class BranchFinished:
+    """A branch has gone to the end of the session.
+
+    Attributes:
+        mutants: ids of the mutants it was.
+        exit_code: its exit code, by which the suite says how it has ended; its parent's word.
+    """
+
+    mutants: tuple[str, ...]
+    exit_code: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +178,7 @@ class ForkEnded:
 
 @dataclass(frozen=True, slots=True)
 class Unbranched:
-    """A test in which it was not safe to fork: these mutants need a process of their own there."""
+    """It was not safe to fork at the first hit, in this test: these mutants need a process of their own."""
 
     test: str
     mutants: tuple[str, ...]
@@ -395,6 +408,7 @@ Event = (
     | NotInstrumented
     | TestEnd
     | BranchEnd
+    | BranchFinished
     | BranchDied
     | Unbranched
     | Undiverged

@@ -18,6 +18,7 @@ from .events import (
     Acted,
     Began,
     BranchDied,
+    BranchFinished,
     Called,
     Did,
     Event,
@@ -200,9 +201,13 @@ def acted_in(records: Collection[ChildRecord]) -> list[str]:
     return list(dict.fromkeys(test for record in records for test in record.acted))
 
 
-def fold_fork(events: Sequence[Event], died: BranchDied | None) -> list[Event]:
-    """What is to be known of a fork that has ended, by its events and, if it ``died``, its parent's word."""
-    found: list[Event] = [event for event in events if not isinstance(event, Acted)]
+def fold_fork(events: Sequence[Event], exit_code: int, died: BranchDied | None) -> list[Event]:
+    """What is to be known of a fork that has ended, by its events and its parent's word of how it ended."""
+    found: list[Event] = [
+        replace(event, exit_code=exit_code) if isinstance(event, BranchFinished) else event
+        for event in events
+        if not isinstance(event, Acted)
+    ]
     if died is None:
         return found
     told = [event.in_call for event in events if isinstance(event, Acted)]

@@ -73,23 +73,23 @@ class Branching:
 
     Attributes:
         mutants: the mutants that are alive in this round.
-        tests: per mutant id, the tests in which it is to be branched, in the order of the job's tests.
         tokens: descriptors of the token pool: reading end, writing end; filled in by whoever runs the job.
         gate: descriptor that can be read while mutants may begin, filled in likewise; None: always.
-        walls: wall-clock seconds that a branch may take, by test.
+        walls: wall-clock seconds that a branch may take for a test, by test.
         wall: the same for tests that are missing there.
         choices: of mutants that are alternatives in the program text: which, by id.
-        every_test: whether to branch a mutant also in tests after one that decided about it.
+        every_test: whether a branch goes on after a test that decided about its mutant.
+        serial: whether the trunk waits for each branch, since two of them would get in each other's way.
     """
 
     mutants: tuple[Mutant, ...]
-    tests: Mapping[str, tuple[str, ...]]
     tokens: tuple[int, int] = (-1, -1)
     gate: int | None = None
     walls: Mapping[str, float] = field(default_factory=dict)
     wall: float = 600.0
     choices: Mapping[str, tuple[Choice, ...]] = field(default_factory=dict)
     every_test: bool = False
+    serial: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,6 @@ from typing import Any
 from mutabot.model.seen.check import Check
 from mutabot.model.verdict import By
 
-from .footprint import Footprint
-
 #: hits per test that are reported with their values; a test is compared and planned from these
 TRACE_LIMIT = 5000
 
@@ -56,7 +54,8 @@ class TestEnd:
         probes: values of each probe by ``target.part``; those of the second object of a class by
             ``target#2.part``.
         unread: why a probe could not be read, by target.
-        footprint: what of the test can be noticed outside of it; None if that was not looked at.
+        processes: processes below the tests that were there during it, by number, with a name for people.
+        exclusive: by what it gets in the way of other processes, in words, or None.
         moments: probes along the way: after which call (from 1), parts that differ from the moment before,
             and whether these are all parts.
         reading: processor seconds it takes to read all probes; None if they cannot be read along the way.
@@ -98,7 +97,8 @@ class TestEnd:
     prepared: int = 0
     probes: Mapping[str, Any] = field(default_factory=dict)
     unread: Mapping[str, str] = field(default_factory=dict)
-    footprint: Footprint | None = None
+    processes: tuple[tuple[int, str], ...] = ()
+    exclusive: str | None = None
     moments: tuple[Any, ...] = ()
     reading: float | None = None
     not_along: str | None = None

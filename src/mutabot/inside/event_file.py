@@ -85,8 +85,8 @@ class EventFile:
         elif self._bell is not None and isinstance(event, _PROMPT):
             self._ring(self._bell)
 
-    def go_on_apart(self) -> int:
-        """In a process that was just forked: go on with a file of its own, whose inode is returned.
+    def go_on_apart(self) -> None:
+        """In a process that was just forked: go on with a file of its own.
 
         Its name tells the ``ForkEnded.fork`` of its parent, which has counted it in ``forks``.
         """
@@ -94,7 +94,6 @@ class EventFile:
         self.name = f"{self.name}.{self.forks}"
         self._last = self.forks = 0
         self._open()
-        return self._status.st_ino
 
     def close(self) -> None:
         """Let go of the file, and of the pipe."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Generator
-from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -125,8 +124,7 @@ def pytest_fixture_setup(fixturedef: Any, request: Any) -> Generator[None, Any, 
         return (yield)
     from .seeds import seeded_apart  # noqa: PLC0415
 
-    watched = _conductor.footprints.setting_up(fixturedef) if _conductor is not None else nullcontext()
-    with seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")), watched:
+    with seeded_apart(seeded.seed_of(f"{fixturedef.baseid}::{fixturedef.argname}")):
         return (yield)
 
 

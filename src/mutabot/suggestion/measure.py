@@ -99,9 +99,9 @@ def _run_survivors(
     trials = [(mutant, round) for mutant, rounds in now for round in rounds]
     progress.stage("survivors", len(trials))
     tasks = (
-        task(campaign, mutant, round, tests)
+        task(campaign, mutant, round, baseline.suite(round))
         for mutant, round in trials
-        if (tests := baseline.judges(round, mutant))
+        if baseline.judges(round, mutant)
     )
     for result in campaign.executor.run(tasks):
         mutant, round = result.task.key

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -22,7 +20,6 @@ from mutabot.errors import (
 from mutabot.model import Verdict
 from tests.campaign.project import (
     CONFIGURATION,
-    DEPENDENT,
     ROBOT,
     VOCABULARY,
     Quiet,
@@ -31,7 +28,7 @@ from tests.campaign.project import (
     run,
     write_project,
 )
-from tests.campaign.scripted import CHECKED, Run, Script
+from tests.campaign.scripted import CHECKED, Script
 
 MISSION = """
     def run(arm):
@@ -203,28 +200,6 @@ def test_the_robots_state_is_its_own_in_every_process(tmp_path: Path) -> None:
     write_project(tmp_path, mission, tests, robot=robot)
     found = run(tmp_path)
     assert {outcome.verdict for outcome in found.values()} == {Verdict.KILLED}
-
-
-def test_a_test_that_passes_only_after_another_is_judged_by_the_whole_suite(
-    tmp_path: Path, script: Script
-) -> None:
-    """Run alone it would fail, and every mutant it reaches would count as killed."""
-
-    def is_alone(run: Run) -> bool:
-        return len(run.tests) == 1 and run.test.endswith("finishes")
-
-    def ends(run: Run) -> Mapping[str, Any]:
-        is_noticed = run.test.endswith("prepares") and run.mutant is not None and ":prepare:" in run.mutant.id
-        return CHECKED if is_alone(run) or is_noticed else {}
-
-    script.control = lambda run: CHECKED if is_alone(run) else None
-    script.mutated = ends
-    write_project(tmp_path, *DEPENDENT)
-    progress = Quiet()
-    path = run_campaign(request_for(tmp_path, engine="replay"), progress)
-    verdicts = {outcome.mutant.split(":")[1]: outcome.verdict for outcome in outcomes(path)}
-    assert verdicts == {"prepare": Verdict.KILLED, "finish": Verdict.SURVIVED}
-    assert any("whole suite" in line for line in progress.lines)
 
 
 def test_a_plain_function_that_returns_a_coroutine_is_refused(tmp_path: Path) -> None:

@@ -305,6 +305,7 @@ TWO_TESTS = """
 def test_a_trunk_that_dies_leaves_its_mutants_to_replay(tmp_path: Path, script: Script) -> None:
     # the baseline is the first run, the trunk the second
     script.original = lambda run: Died(3) if run.test.endswith("test_b") and run.before == 1 else {}
+    script.kill(":back_off:")  # before the trunk dies; what survives has not come to the end of the session
     write_project(tmp_path, MISSION, TWO_TESTS)
     progress = Quiet()
     path = run_campaign(request_for(tmp_path, engine="auto"), progress)

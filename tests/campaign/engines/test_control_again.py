@@ -64,7 +64,7 @@ def test_a_control_that_hangs_once_does_not_end_the_campaign(
     run_campaign(request_for(tmp_path, engine=engine, only=("*:reverse",)), progress)
     lines = [line for line in progress.lines if "ended wrongly once" in line]
     assert {line.partition(" (")[0] for line in lines} == {
-        "the identity control of tests/test_mission.py::test_moves ended wrongly once",
+        "the identity control of tests/test_mission.py ended wrongly once",
         "the fatal control of tests/test_mission.py ended wrongly once",
     }
     assert all(where() in line for line in lines)

@@ -11,7 +11,6 @@ from mutabot.analysis.chance import false_kills
 from mutabot.analysis.results import Results, read_results
 from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.sharing import Sharing
 from mutabot.campaign.engines import repeats
 from mutabot.campaign.engines.doubt import Doubts
 from mutabot.campaign.run import run_campaign
@@ -115,7 +114,7 @@ def doubts(
     kills: dict[str, list[tuple[int, int]]], mutants: int, rounds: int = 1, clock: float | None = None
 ) -> Doubts:
     """Mutants of which each test kills some, given as (mutant, round); all tests judge all of them."""
-    baseline = Baseline(tests=[list(kills)] * rounds, sharing=[Sharing() for _ in range(rounds)])
+    baseline = Baseline(tests=[list(kills)] * rounds)
     for round in range(rounds):
         baseline.reaching[round, PLACE] = list(kills)
         for test in kills:

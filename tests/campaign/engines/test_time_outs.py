@@ -175,9 +175,9 @@ def test_a_mutant_that_never_gets_its_time_is_no_time_out(
 def test_who_had_too_little_time_is_not_judged() -> None:
     mutant: Any = None
     death = Death("no end", "test", overdue=True, acted=True, hindered="why", is_starved=True)
-    assert _ruling(Run(mutant, 0, ("test",), death=death))[0] is Verdict.UNSTABLE
+    assert _ruling(Run(mutant, 0, ("test",), death=death), 0)[0] is Verdict.UNSTABLE
     death.is_starved = False
-    assert _ruling(Run(mutant, 0, ("test",), death=death))[0] is Verdict.TIMEOUT
+    assert _ruling(Run(mutant, 0, ("test",), death=death), 0)[0] is Verdict.TIMEOUT
 
 
 @pytest.mark.whole

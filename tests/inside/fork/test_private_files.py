@@ -12,11 +12,11 @@ from mutabot.inside.fork.private_files import private_folders
 
 CODE = """
 import os, pathlib, shutil, sys
-from mutabot.inside.fork.private_files import make_private
+from mutabot.inside.fork.private_files import PrivateFiles
 
 root = pathlib.Path(sys.argv[1])
 os.chdir(root)
-reason = make_private(str(root), str(root / ".mutabot/work/home"), str(root / ".mutabot"))
+reason = PrivateFiles(str(root), str(root / ".mutabot/work/home"), str(root / ".mutabot")).make()
 if reason is not None:
     print("not here:", reason)
     raise SystemExit
@@ -66,3 +66,49 @@ def test_the_project_and_temporary_files_are_private(tmp_path: Path) -> None:
     assert len(folders) == 2
     inner = private_folders(str(tmp_path))
     assert inner.index(str(tmp_path.resolve())) == len(inner) - 1  # the outer folder is covered first
+
+
+FORKED = """
+import os, pathlib, shutil, sys
+from mutabot.inside.fork.private_files import PrivateFiles
+
+root, home = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[1]) / ".mutabot/work/home"
+files = PrivateFiles(str(root), str(home), str(root / ".mutabot"))
+os.chdir(root)
+reason = files.make()
+if reason is not None:
+    print("not here:", reason)
+    raise SystemExit
+pathlib.Path("report.txt").write_text("parent")
+(root / "data/part.csv").unlink()
+(root / "data").rename(root / "moved")
+(root / "new").mkdir()
+(root / "new/link").symlink_to("../report.txt")
+own = home / "forks/1"
+own.mkdir(parents=True)
+reading, writing = os.pipe()
+pid = os.fork()
+if pid == 0:
+    files.go_on_apart(str(own))
+    os.write(writing, b"x")
+    seen = [pathlib.Path("new/link").read_text(), sorted(os.listdir(root)), os.listdir(root / "moved")]
+    pathlib.Path("report.txt").write_text("child")
+    shutil.rmtree(root / "moved")
+    (home / "seen").write_text(repr(seen))
+    os._exit(0)
+os.close(writing)
+os.read(reading, 1)
+pathlib.Path("report.txt").write_text("parent again")
+assert os.waitpid(pid, 0)[1] == 0
+print((home / "seen").read_text(), pathlib.Path("report.txt").read_text(), sorted(os.listdir(root / "moved")))
+"""
+
+
+def test_a_fork_goes_on_with_a_copy_of_what_its_parent_did(project: Path) -> None:
+    command = [sys.executable, "-c", FORKED, str(project)]
+    done = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60)
+    if done.stdout.startswith("not here"):
+        pytest.skip(done.stdout)
+    seen = "['parent', ['.mutabot', 'moved', 'new', 'report.txt'], ['other.csv']]"
+    assert done.stdout.strip() == f"{seen} parent again ['other.csv']"
+    assert (project / "report.txt").read_text() == "original"

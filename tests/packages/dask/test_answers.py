@@ -68,7 +68,7 @@ def unit(ticket: str = "ticket") -> Unit:
 
 
 def trunk(ticket: str = "ticket") -> Unit:
-    job = replace(unit().task.job, mutant=None, branching=Branching((mutant(1),), {mutant(1).id: (TEST,)}))
+    job = replace(unit().task.job, mutant=None, branching=Branching((mutant(1),)))
     return Unit(GROUND, Task(None, job, is_trunk=True), ticket)
 
 

@@ -20,7 +20,6 @@ from mutabot.model.place import Place
 
 from .answers import RecordedAnswers
 from .planted import PlantedFaults
-from .sharing import Sharing
 
 #: operations and simulated seconds that a test may use beyond its multiple of the baseline
 SPARE_OPERATIONS, SPARE_SIMULATED = 200, 10.0
@@ -53,7 +52,7 @@ class Baseline(Original):
         observations: (round, test) to what is compared with a mutant's.
         unstable: tests set aside as flaky, with the reason, by (round, test).
         flaky_reaching: (round, place) to the tests that reach it but are set aside in this round.
-        dependent: selections of tests that pass only together with others; filled in by the controls.
+        exits: per round, the exit code of the suite on the original.
         strides: after every how many commands probes are read along the way, by (round, test).
         refused: (round, test) to the calls that the robot refuses there: see ``Job.refused``.
         written_through: places that return the robot's own memory, to which the program writes.
@@ -67,12 +66,9 @@ class Baseline(Original):
         prepared: what the providers have found out before, by their names.
         faults: the mutants of the plan.
         remarks: what is to be known about the vocabulary.
-        sharing: per round, what its tests share.
         early: places that are reached before any test begins, while the program or a test file is imported:
             a mutant there needs a process of its own.
         unread: whether nobody uses what the calls of a place return.
-        widened: mutants, by id and round, that left something behind in a test which leaves nothing behind
-            in the original: judged by the whole suite.
     """
 
     ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
@@ -89,14 +85,12 @@ class Baseline(Original):
     unequal: set[tuple[int, str]] = field(default_factory=set)
     doubted: set[str] = field(default_factory=set)
     flaky_reaching: dict[tuple[int, Place], list[str]] = field(default_factory=dict)
-    dependent: set[tuple[str, ...]] = field(default_factory=set)
+    exits: dict[int, int] = field(default_factory=dict)
     skipped: int = 0
     startup: float = 0.0
     prepared: Mapping[str, Preparation] = field(default_factory=dict)
     faults: PlantedFaults = field(default_factory=PlantedFaults)
     remarks: tuple[Remark, ...] = ()
-    sharing: list[Sharing] = field(default_factory=list)
-    widened: set[tuple[str, int]] = field(default_factory=set)
     early: set[Place] = field(default_factory=set)
     uneven: set[tuple[int, str]] = field(default_factory=set)
 
@@ -105,30 +99,26 @@ class Baseline(Original):
         """All places that any test reaches in any round."""
         return list(self.hits)
 
-    def selection(self, round: int, place: Place) -> tuple[str, ...]:
-        """The tests that judge a mutant at this place, in the order in which to run them.
-
-        Those that reach it, quickest first. Where these do not pass alone, the whole suite in its own order;
-        where they share anything with others, these as well, in the same order.
-        """
-        return self._together(round, tuple(self.reaching.get((round, place), ())))
+    def suite(self, round: int) -> tuple[str, ...]:
+        """The tests that a mutant is run with, in their order: all that can be relied on."""
+        return tuple(self.tests[round])
 
     def judges(self, round: int, mutant: Mutant) -> tuple[str, ...]:
-        """The tests that judge a mutant: those that reach it, and what goes with them."""
-        tests = self.selection(round, Place.of(mutant))
-        return tuple(self.tests[round]) if tests and (mutant.id, round) in self.widened else tests
+        """The tests that reach a mutant, quickest first."""
+        return tuple(self.reaching.get((round, Place.of(mutant)), ()))
 
-    def _together(self, round: int, tests: tuple[str, ...]) -> tuple[str, ...]:
-        if tests in self.dependent:
-            return tuple(self.tests[round])
-        if not tests or self.sharing[round].why_together(tests) is None:
-            return tests
-        together = set(self.sharing[round].closure(tests))
-        return tuple(test for test in self.tests[round] if test in together)
+    def why_not_fork(self, round: int, mutant: Mutant) -> tuple[str, str] | None:
+        """A test that reaches a mutant and has processes below it, and what to say of it; else None."""
+        for test in self.judges(round, mutant):
+            processes = self.ends[round, test].processes
+            if processes:
+                return test, f"it has processes below it, such as {processes[0][1]}"
+        return None
 
-    def why_not_branch(self, round: int, tests: Collection[str]) -> tuple[str, str] | None:
-        """One of these tests that forbids to fork for a mutant that they judge, and why; else None."""
-        return self.sharing[round].why_together(tests) or self.sharing[round].why_alone(tests)
+    def why_exclusive(self, round: int) -> tuple[str, str] | None:
+        """A test of the suite that gets in the way of other processes, and how; None if there is none."""
+        ends = ((test, self.ends[round, test].exclusive) for test in self.tests[round])
+        return next(((test, why) for test, why in ends if why is not None), None)
 
     def is_early(self, mutant: Mutant) -> bool:
         """Whether a mutant may act before any test begins."""
@@ -155,40 +145,6 @@ class Baseline(Original):
         self.reaching[round, place] = here
         if aside := [test for test in aside if tests is None or test in tests]:
             self.flaky_reaching[round, place] = aside
-
-    def in_order(self, round: int, tests: Collection[str]) -> tuple[str, ...]:
-        """These tests as one process may run them: quickest first, unless they share anything."""
-        is_shared = self.sharing[round].why_together(tests) is not None
-        order = self.tests[round] if is_shared else self.by_cost(round)
-        return tuple(test for test in order if test in tests)
-
-    def must_widen(self, mutant: Mutant, round: int, ends: Iterable[TestEnd]) -> bool:
-        """Whether tests that do not reach a mutant might notice what it left behind in those that do.
-
-        From then on the whole suite judges it in this round.
-        """
-        whole = set(self.tests[round]) <= {end.test for end in ends}
-        left = any(self._left_behind(round, end) for end in ends)
-        if left and not whole:
-            self.widened.add((mutant.id, round))
-        return left and not whole
-
-    def _left_behind(self, round: int, end: TestEnd) -> bool:
-        """Whether a test left something behind that it leaves as it was in the original."""
-        if end.footprint is None or end.test in self.sharing[round].reasons:
-            return False
-        original = self.ends[round, end.test].footprint
-        return not set(end.footprint.left) <= set(original.left if original is not None else ())
-
-    def passes_only_together(self, tests: tuple[str, ...]) -> None:
-        """A selection of tests does not pass by itself: its mutants are judged by the whole suite."""
-        self.dependent.add(tests)
-
-    def passes_only_after_others(self, round: int, test: str) -> None:
-        """A test passes only after others: no selection with it can be relied on by itself."""
-        for (where, _), tests in self.reaching.items():
-            if where == round and test in tests:
-                self.passes_only_together(tuple(tests))
 
     def doubt(self, test: str) -> None:
         """A test failed once where equal runs pass: its kills may be chance."""
@@ -251,7 +207,7 @@ class Baseline(Original):
         return {test: self.refused[round, test] for test in tests if (round, test) in self.refused}
 
     def by_cost(self, round: int) -> list[str]:
-        """All tests of a round, quickest first: the order of every selection."""
+        """All tests of a round, quickest first."""
         return sorted(self.tests[round], key=lambda test: cost(self.ends[round, test]))
 
     def budget(self, round: int, test: str, factor: float) -> Budget:

@@ -25,11 +25,11 @@ from .baseline import Baseline, Hit, cost
 from .failing import refuse_failing, rounds_to_repeat, why_set_aside
 from .observed import observations_of, places_of, refused_of
 from .readability import note_readability, refuse_unreadable
-from .sharing import Sharing
-from .sharing import remarks as sharing_remarks
 from .site_names import Sources
 
 REPETITIONS = 2
+#: pytest's exit code where tests failed
+_FAILED = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,8 +136,10 @@ def _read(
     ends = list(baseline.ends.values())
     refuse_unreadable(request.vocabulary, ends)
     note_readability(request.vocabulary, ends, progress)
-    for remark in sharing_remarks(baseline.sharing, _not_private(suite.results.values())):
-        progress.note(remark)
+    _note_exclusive(baseline, progress)
+    why = _not_private(suite.results.values())
+    if why is not None:
+        progress.note(f"runs cannot keep their files to themselves ({why}): what one leaves, others may find")
     note_moments(ends, progress)
     return baseline
 
@@ -151,6 +153,20 @@ def _text_seen(result: Result) -> TextSeen:
         elsewhere=result.reached_elsewhere,
         refused=result.not_instrumented,
     )
+
+
+def _exit_code(result: Result, *, is_whole: bool) -> int:
+    """How the suite ends; without the tests that are set aside nothing fails."""
+    if not is_whole and result.exit_code == _FAILED:
+        return 0
+    return result.exit_code
+
+
+def _note_exclusive(baseline: Baseline, progress: Progress) -> None:
+    """Say why nothing can run beside the suite."""
+    found = (baseline.why_exclusive(round) for round in range(len(baseline.tests)))
+    if (first := next((one for one in found if one is not None), None)) is not None:
+        progress.note(f"{first[0]}: it {first[1]}: mutants run one after the other, with nothing beside them")
 
 
 def _not_private(results: Iterable[Result]) -> str | None:
@@ -266,7 +282,7 @@ def _add_round(
     baseline.tests.append(good)
     spent = (result.wall - sum(end.wall for end in result.ends) for result in repetitions)
     baseline.startup = max([baseline.startup, *spent])
-    baseline.sharing.append(Sharing.of([(end.test, end.footprint) for end in repetitions[0].ends]))
+    baseline.exits[round] = _exit_code(repetitions[0], is_whole=len(good) == len(runs[0]))
     _add_hits(baseline, sources, round, repetitions[0], good)
     baseline.refused |= {(round, test): calls for test, calls in refused_of(repetitions[0]).items()}
     return failed

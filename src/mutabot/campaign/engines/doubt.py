@@ -95,14 +95,19 @@ class Doubts:
         counts: Counter[str] = Counter()
         wanted = set(tests)
         for key, outcome in self.outcomes.items() if wanted else ():
-            counts.update(wanted.intersection(self._ran(key, outcome)))
+            counts.update(wanted.intersection(self._judging(key, outcome)))
         return counts
 
-    def _ran(self, key: Key, outcome: Outcome) -> tuple[str, ...]:
+    def _judging(self, key: Key, outcome: Outcome) -> list[str]:
+        """The tests that have had a say in an outcome: of those that ran, all that reach the mutant."""
         judges = self.baseline.judges(key[1], self.mutants[key[0]])
-        if outcome.test in judges and not outcome.complete:
-            return judges[: judges.index(outcome.test) + 1]
-        return judges if outcome.tests else ()
+        return [test for test in self._ran(key, outcome) if test in judges or test == outcome.test]
+
+    def _ran(self, key: Key, outcome: Outcome) -> tuple[str, ...]:
+        suite = self.baseline.suite(key[1])
+        if outcome.test in suite and not outcome.complete:
+            return suite[: suite.index(outcome.test) + 1]
+        return suite if outcome.tests else ()
 
     def cost(self, key: Key) -> float:
         """Seconds that the tests of a repeat take on the original."""

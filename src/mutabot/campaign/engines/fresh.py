@@ -1,10 +1,11 @@
-"""One fresh process per (mutant, round), and what was seen of it: replay, and every second look."""
+"""The whole suite in a fresh process per (mutant, round): replay, and every second look."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
+from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.observed import observation, places_of
 from mutabot.campaign.baseline.site_names import Sources
@@ -64,25 +65,18 @@ def replay_alone(campaign: Campaign, hindered: Hindered) -> Iterator[Outcome]:
 
 def _replayed(campaign: Campaign, trials: Iterable[Trial], hindered: Hindered | None) -> Iterator[Outcome]:
     """The same; ``hindered`` takes those that are to be run alone. None: all are run alone."""
-    baseline = campaign.baseline
     uncovered: list[Outcome] = []
-    widened: list[Trial] = []
     tasks = _tasks(campaign, trials, uncovered)
     if hindered is None:
         tasks = (replace(one, alone=True) for one in tasks)
     for result in campaign.executor.run(tasks):
         yield from _drain(uncovered)
-        mutant, round = trial_of(result)
         outcome, why = _outcome(campaign, result)
         if hindered is not None and why is not None:
-            hindered.add(mutant, outcome, why)
-        elif outcome.verdict is Verdict.SURVIVED and baseline.must_widen(mutant, round, result.ends):
-            widened.append((mutant, round))
+            hindered.add(trial_of(result)[0], outcome, why)
         else:
             yield outcome
     yield from _drain(uncovered)
-    if widened:
-        yield from _replayed(campaign, widened, hindered)
 
 
 def trial_of(result: Result) -> Trial:
@@ -108,8 +102,8 @@ def longest_first(campaign: Campaign, trials: list[Trial]) -> list[Trial]:
     baseline = campaign.baseline
 
     def seconds(trial: Trial) -> float:
-        mutant, round = trial
-        return sum(baseline.ends[round, test].wall for test in baseline.judges(round, mutant))
+        _, round = trial
+        return sum(baseline.ends[round, test].wall for test in baseline.suite(round))
 
     return sorted(trials, key=seconds, reverse=True)
 
@@ -121,9 +115,8 @@ def _drain(outcomes: list[Outcome]) -> Iterator[Outcome]:
 
 def _tasks(campaign: Campaign, trials: Iterable[Trial], uncovered: list[Outcome]) -> Iterator[Task]:
     for mutant, round in trials:
-        tests = campaign.baseline.judges(round, mutant)
-        if tests:
-            yield task(campaign, mutant, round, tests)
+        if campaign.baseline.judges(round, mutant):
+            yield task(campaign, mutant, round, campaign.baseline.suite(round))
         else:
             uncovered.append(without_tests(campaign.baseline, mutant, round))
 
@@ -149,9 +142,7 @@ def task(
     )
     least = request.configuration.timeout_seconds
     startup = max(least, WALL_FACTOR * baseline.startup)
-    return Task(
-        (mutant, round), job, walls, least, startup, alone=baseline.sharing[round].is_exclusive(tests)
-    )
+    return Task((mutant, round), job, walls, least, startup, alone=baseline.why_exclusive(round) is not None)
 
 
 def wall_limit(campaign: Campaign, round: int, test: str) -> float:
@@ -181,6 +172,7 @@ def run_of(result: Result, sources: Sources) -> Run:
         ends=result.ends,
         observations={end.test: observation(end, places) for end in result.ends if end.outcome != "failed"},
         death=_death(result),
+        exit_code=result.exit_code if result.end is not None else None,
         problem=_problem(result),
         wall=result.wall,
     )
@@ -201,9 +193,7 @@ def _death(result: Result) -> Death | None:
     elif result.end.errors:
         text = "; ".join(result.end.errors)
     else:
-        missing = set(result.task.job.tests or ()) - {end.test for end in result.ends}
-        if missing:
-            text = f"{len(missing)} tests did not run, such as {min(missing)}"
+        text = not_run(result.task.job.tests or (), result.ends, result.exit_code)
     if text is None:
         return None
     return Death(
@@ -217,3 +207,14 @@ def _death(result: Result) -> Death | None:
         hindered=result.hindered,
         is_starved=result.is_starved,
     )
+
+
+def not_run(tests: Collection[str], ends: Collection[TestEnd], exit_code: int) -> str | None:
+    """Why nothing is known of tests although the session has come to its end; None if that says enough.
+
+    A suite that ends early, and says so by its exit code, has ended otherwise than on the original.
+    """
+    missing = set(tests) - {end.test for end in ends}
+    if not missing or any(end.is_decided for end in ends) or exit_code not in (0, 1):
+        return None
+    return f"{len(missing)} tests did not run, such as {min(missing)}"

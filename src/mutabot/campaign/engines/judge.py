@@ -22,6 +22,9 @@ _MOST_LOOKED = 20
 _MOST_DIVERGED = 5
 _RECORDED = frozenset({Verdict.SURVIVED, Verdict.KILLED, Verdict.TIMEOUT, Verdict.REFUSED})
 
+#: exit codes of pytest's that say nothing about the mutant: the mistake may be ours
+_OF_NO_TEST = {3: "an internal error", 4: "a wrong command line or configuration"}
+
 Ruling = tuple[Verdict, TestEnd | None, str | None]
 
 
@@ -65,6 +68,7 @@ class Run:
         wall: seconds spent on it.
         shared: simulated seconds that it did not have to spend, since the original had.
         engine: ``replay`` or ``branch``.
+        exit_code: how the process ended after the whole session; None if it did not get that far.
         problem: why nothing is known of the mutant, or None: it was not there, or reports cannot be trusted.
     """
 
@@ -77,6 +81,7 @@ class Run:
     wall: float = 0.0
     shared: float | None = None
     engine: str = "replay"
+    exit_code: int | None = None
     problem: str | None = None
 
     @property
@@ -128,12 +133,12 @@ def _judged(campaign: Campaign, run: Run) -> Outcome:
 def judge(campaign: Campaign, run: Run) -> Outcome:
     """The outcome of a run."""
     request, baseline = campaign.request, campaign.baseline
-    verdict, end, message = _ruling(run)
+    verdict, end, message = _ruling(run, baseline.exits[run.round])
     aside = baseline.missing_judges(run.round, run.mutant) if verdict is Verdict.SURVIVED else ()
     if aside:
         verdict, message = Verdict.UNSTABLE, _let_through_without(aside)
     simulated = [end.simulated for end in run.ends if end.simulated is not None]
-    by = end.by if end is not None else By.EXCEPTION
+    by = end.by if end is not None else By.EXCEPTION if run.death is not None else By.CHECK
     died_at_work = end is None and run.death is not None and (run.death.acted or run.death.in_mutated_call)
     outcome = Outcome(
         mutant=run.mutant.id,
@@ -176,8 +181,8 @@ def _let_through_without(aside: Sequence[str]) -> str:
     return f"the tests that can be relied on let it through; {others}"
 
 
-def _ruling(run: Run) -> Ruling:
-    """Verdict, the test that decided it, and the reason in words."""
+def _ruling(run: Run, usual: int) -> Ruling:
+    """Verdict, the test that decided it, and the reason in words; ``usual``: the suite's exit code."""
     if run.problem is not None:
         return Verdict.ERROR, None, run.problem
     acted = False
@@ -196,10 +201,17 @@ def _ruling(run: Run) -> Ruling:
             if acted:
                 return Verdict.KILLED, end, end.message
             return Verdict.UNSTABLE, end, f"failed before the mutant changed anything: {end.message}"
+    return _ruling_on_end(run, refused, usual, acted=acted)
+
+
+def _ruling_on_end(run: Run, refused: TestEnd | None, usual: int, *, acted: bool) -> Ruling:
+    """No test decided: what the end of the process says."""
     if run.death is not None:
         return _ruling_on_death(run.death, acted)
     if refused is not None:
         return Verdict.REFUSED, refused, refused.refused
+    if run.exit_code not in (None, usual) and not any(end.outcome == "failed" for end in run.ends):
+        return _ruling_on_exit(run.exit_code, usual, acted)
     return _ruling_on_survivor(run, acted)
 
 
@@ -234,6 +246,16 @@ def _ruling_on_death(death: Death, acted: bool) -> Ruling:
     if death.in_mutated_call and death.signal in OWN_FAULT:
         return Verdict.KILLED, None, f"the mutated call crashed: {death.text}"
     return Verdict.ERROR, None, death.text
+
+
+def _ruling_on_exit(code: int | None, usual: int, acted: bool) -> Ruling:
+    """No test failed, and yet the suite ended otherwise: its hooks saw to that."""
+    text = f"the suite ends with exit code {code} instead of {usual}"
+    if code in _OF_NO_TEST:
+        return Verdict.ERROR, None, f"{text} ({_OF_NO_TEST[code]})"
+    if not acted:
+        return Verdict.UNSTABLE, None, f"{text}, and the mutant has changed nothing"
+    return Verdict.KILLED, None, text
 
 
 def _ruling_on_survivor(run: Run, acted: bool) -> Ruling:

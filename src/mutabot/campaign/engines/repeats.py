@@ -72,7 +72,7 @@ class _SecondLook:
     def run(self, keys: Iterable[Key], until: float | None = None) -> None:
         """Run these once more, as far as ``until`` (``Request.clock``) allows."""
         trials: list[Trial] = [(self.doubts.mutants[mutant], round) for mutant, round in keys]
-        self.looker.look(trials, self.doubts.outcomes, until)
+        self.looker.look(trials, until)
 
     def repeat_raced(self, seconds: float) -> None:
         """Run what chance decides several times more; what does not always end alike becomes unstable."""

@@ -7,19 +7,18 @@ What is in doubt is run again by ``repeats``.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import takewhile
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.request import Request
-from mutabot.errors import ControlError, UnstableError
+from mutabot.errors import UnstableError
 from mutabot.journal.records import Disagreement, Flaky
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.outcome import in_words, same_end
 
-from .controls import run_controls
 from .engine import Trial
 from .fresh import replay
 
@@ -31,39 +30,19 @@ class Looker:
     campaign: Campaign
     found: dict[tuple[str, int], Outcome] = field(default_factory=dict)
 
-    def look(
-        self,
-        trials: Sequence[Trial],
-        first: Mapping[tuple[str, int], Outcome],
-        until: float | None = None,
-    ) -> None:
+    def look(self, trials: Sequence[Trial], until: float | None = None) -> None:
         """Run these again in fresh processes; none begins after ``until`` (``Request.clock``)."""
         clock = self.campaign.request.clock
         if not trials or (until is not None and clock() >= until):
             return
         self.campaign.progress.stage("second look", len(trials))
         self.run(takewhile(lambda _: until is None or clock() < until, trials))
-        found = [trial for trial in trials if _key(trial) in self.found]
-        doubtful = [trial for trial in found if not same_end(first[_key(trial)], self.found[_key(trial)])]
-        if doubtful and self._learn_dependent(mutant for mutant, _ in doubtful):
-            self.campaign.progress.stage("second look, with the whole suite", len(doubtful))
-            self.run(doubtful)
 
     def run(self, trials: Iterable[Trial]) -> None:
         """Run these, whatever they did before."""
         for outcome in replay(self.campaign, trials):
             self.found[outcome.mutant, outcome.round] = outcome
             self.campaign.progress.advance(in_words(outcome))
-
-    def _learn_dependent(self, mutants: Iterable[Mutant]) -> bool:
-        """Whether there are tests that pass only after others, which a trunk never notices."""
-        before = len(self.campaign.baseline.dependent)
-        try:
-            for _ in run_controls(self.campaign, mutants):
-                pass
-        except ControlError as error:
-            self.campaign.progress.note(str(error))
-        return len(self.campaign.baseline.dependent) > before
 
 
 def flaky_of(baseline: Baseline) -> Flaky:
@@ -97,10 +76,6 @@ def unconfirmed(first: Outcome, second: Outcome) -> Outcome:
         first, verdict=Verdict.UNSTABLE, by=None, test=second.test or first.test, message=text,
         indistinguishable=None, distance=None, divergence=(), gaps=(), way=None, compared=None, figures=(),
     )  # fmt: skip
-
-
-def _key(trial: Trial) -> tuple[str, int]:
-    return trial[0].id, trial[1]
 
 
 def disagreement(mutant: Mutant, first: Outcome, second: Outcome) -> Disagreement | None:

@@ -1,8 +1,8 @@
 """Trunks, seen from the controller: one per round or several, and what their branches report.
 
-A branch's report counts only once the trunk itself has passed the same test as in the baseline: the trunk is
-the second run of the original. What could not be branched, or got lost with a trunk, is left to another
-engine.
+The trunk is the second run of the original. What a branch tells counts only if all tests up to the one in
+which it was forked ended in the trunk as in the baseline: mutants that were forked after another end are left
+to another engine, as are those that could not be branched, or got lost with a trunk.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from mutabot.border.events import (
     BranchDied,
     BranchEnd,
+    BranchFinished,
     Event,
     SiteSeen,
     Unbranched,
@@ -27,11 +28,12 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.moments import moments_in
 from mutabot.campaign.comparing.observation import Observation
 from mutabot.campaign.workers.task import Result, Task, at, death, how_ended
-from mutabot.model import Instrumentation, Mutant, Outcome, Verdict
+from mutabot.families import CONTROL
+from mutabot.model import Instrumentation, Mutant, Outcome
 from mutabot.model.place import Place
 
 from .engine import Remainder, Trial
-from .fresh import wall_limit, without_tests
+from .fresh import not_run, wall_limit, without_tests
 from .judge import Death, Run, judged, not_judged, refuse_others
 
 #: seconds without any word from a trunk, beyond what its tests and branches may take
@@ -54,33 +56,24 @@ class Trunks:
 
     Attributes:
         suspects: (round, test) that ended otherwise in a trunk than in the baseline.
-        orders: per round, the tests of the trunk in its order.
         hindered: why a limit of wall clock that ended them says little, by mutant and round.
     """
 
     def __init__(self, campaign: Campaign, left: Remainder, engine: str) -> None:
         self._campaign, self._left, self._engine = campaign, left, engine
         self.suspects: list[tuple[int, str]] = []
-        self.orders: dict[int, tuple[str, ...]] = {}
         self.hindered: dict[tuple[str, int], str] = {}
         self._trunks: dict[int, _Trunk] = {}
 
-    def run(
-        self, trials: Iterable[Trial], *, only: Mapping[str, tuple[str, ...]] | None = None
-    ) -> Iterator[Outcome]:
-        """Outcomes of mutants in rounds, as they come.
-
-        ``only`` names the tests that judge certain mutants, by id; all others are judged by every test that
-        reaches them.
-        """
+    def run(self, trials: Iterable[Trial]) -> Iterator[Outcome]:
+        """Outcomes of mutants in rounds, as they come."""
         baseline = self._campaign.baseline
         for mutant, round in trials:
-            tests = (only or {}).get(mutant.id) or baseline.judges(round, mutant)
-            if tests:
-                self._add(mutant, round, tests)
+            # a control that may not have a test of its own is no mutant of any test
+            if mutant.family == CONTROL or baseline.judges(round, mutant):
+                self._add(mutant, round)
             else:
                 yield without_tests(baseline, mutant, round)
-        self.orders.update((round, trunk.order) for round, trunk in self._trunks.items())
         parts = cut(list(self._trunks.values()), self._campaign.executor.spread)
         by_key = dict(enumerate(parts))
         # the text of all rounds alike, so that one fork server can serve them
@@ -95,22 +88,19 @@ class Trunks:
                 task, line = event
                 yield from by_key[task.key].take(line)
 
-    def _add(self, mutant: Mutant, round: int, tests: tuple[str, ...]) -> None:
+    def _add(self, mutant: Mutant, round: int) -> None:
         baseline = self._campaign.baseline
-        why = baseline.why_apart(mutant)
-        if why is not None:
-            self._left.set_apart(mutant, round, why)
-            return
-        if round not in self._trunks:
+        if round not in self._trunks:  # also if nothing is branched in it: it is the second run
             self._trunks[round] = _Trunk(
                 self._campaign, round, self._left, self.suspects, self._engine, self.hindered
             )
-        forbidding = baseline.why_not_branch(round, tests)
-        if forbidding is not None:
+        why, forbidding = baseline.why_apart(mutant), baseline.why_not_fork(round, mutant)
+        if why is not None:
+            self._left.set_apart(mutant, round, why)
+        elif forbidding is not None:
             self._left.leave(mutant, round, *forbidding)
-            self._trunks[round].run_too(tests)
         else:
-            self._trunks[round].add(mutant, tests)
+            self._trunks[round].add(mutant)
 
 
 def cut(trunks: list[_Trunk], places: int) -> list[_Trunk]:
@@ -123,25 +113,28 @@ def cut(trunks: list[_Trunk], places: int) -> list[_Trunk]:
 
 
 @dataclass(slots=True)
-class _Branches:
+class _Branch:
     """What is known of one mutant so far.
 
     Attributes:
         mutant: the mutant.
-        tests: the tests that judge it, in order.
         ends, observations: its tests that have ended.
-        deaths: set for the tests in which its branch died.
-        shared: simulated seconds its branches inherited.
+        death: set if its branch died.
+        exit_code: how it ended, if it went to the end of the session.
+        forked: number of the test in which it was forked, as far as it has told.
+        shared: simulated seconds it inherited in that test.
     """
 
     mutant: Mutant
-    tests: tuple[str, ...]
     ends: dict[str, TestEnd] = field(default_factory=dict)
     observations: dict[str, Observation] = field(default_factory=dict)
-    deaths: dict[str, Death] = field(default_factory=dict)
+    death: Death | None = None
+    exit_code: int | None = None
+    forked: int | None = None
     shared: float | None = None
 
-    def take(self, line: BranchEnd) -> None:
+    def take(self, line: BranchEnd, number: int) -> None:
+        self.forked = number if self.forked is None else self.forked
         self.ends[line.end.test] = line.end
         if line.shared is not None:
             self.shared = (self.shared or 0.0) + line.shared
@@ -162,87 +155,66 @@ class _Trunk:
         self._campaign, self._round, self._left, self._suspects = campaign, round, left, suspects
         self._engine, self._hindered = engine, hindered
         self._baseline, self._sources = campaign.baseline, campaign.sources
-        self._open: dict[str, _Branches] = {}
-        self._needed: set[str] = set()
-        self._passed: set[str] = set()
-        self._failed: set[str] = set()
-        self._waiting: dict[str, set[str]] = {}
+        self._open: dict[str, _Branch] = {}
+        self._tests = self._baseline.suite(round)
+        self._numbers = {test: number for number, test in enumerate(self._tests)}
+        self._own_ends: list[TestEnd] = []
+        self._is_off = False
+        self._waiting: dict[int, set[str]] = {}
         self._undiverged: dict[str, Mapping[str, int]] = {}
         self._trunk_places: dict[int, Place] = {}
         self._doubted: list[Mutant] = []
 
-    def add(self, mutant: Mutant, tests: tuple[str, ...]) -> None:
-        """A mutant to branch in these tests."""
-        self._open[mutant.id] = _Branches(mutant, tests)
-        self._needed.update(tests)
-
-    def run_too(self, tests: tuple[str, ...]) -> None:
-        """Tests to run although nothing is branched in them: the trunk is their second run."""
-        self._needed.update(tests)
+    def add(self, mutant: Mutant) -> None:
+        """A mutant to branch."""
+        self._open[mutant.id] = _Branch(mutant)
 
     @property
     def mutants(self) -> tuple[Mutant, ...]:
         """The mutants whose outcomes are not known yet."""
-        return tuple(branches.mutant for branches in self._open.values())
-
-    @property
-    def order(self) -> tuple[str, ...]:
-        """The tests it runs, in their order."""
-        return self._baseline.in_order(self._round, self._needed)
+        return tuple(branch.mutant for branch in self._open.values())
 
     @property
     def seconds(self) -> float:
         """What its own tests and its branches take at most, by those of the baseline."""
-        return self._own + sum(map(self._branches_seconds, self._open.values()))
+        return self._own * (1 + len(self._open)) + _FORK * len(self._open)
 
     @property
     def _own(self) -> float:
         """What its own tests take."""
-        return sum(self._wall(test) for test in self._needed)
+        return sum(self._baseline.ends[self._round, test].wall for test in self._tests)
 
     def parts(self, places: float) -> list[_Trunk]:
-        """Trunks with a part of the mutants each, for so many places; equal tests stay together."""
-        seconds = sum(map(self._branches_seconds, self._open.values()))
-        worth = max(_FEWEST * places, seconds / (_WORTH * (self._own or 1.0)))
+        """Trunks with a part of the mutants each, for so many places; what equal tests reach is together."""
+        worth = max(_FEWEST * places, len(self._open) / _WORTH)
         count = min(math.ceil(min(_PARTS * places, worth)), len(self._open) // _LEAST)
         if count < 2:
             return [self]
-        branches = sorted(self._open.values(), key=lambda one: (one.tests, one.mutant.id))
-        share = seconds / count
-        found, used, bare = list[_Trunk](), 0.0, set(self._needed)
-        for one in branches:
-            if not found or (used >= share * len(found) and len(found) < count):
-                found.append(self._empty())
-            found[-1].add(one.mutant, one.tests)
-            used += self._branches_seconds(one)
-            bare.difference_update(one.tests)
-        found[0].run_too(tuple(bare))
+        judges = self._baseline.judges
+        mutants = sorted(self.mutants, key=lambda one: (judges(self._round, one), one.id))
+        found = [self._empty() for _ in range(count)]
+        for number, mutant in enumerate(mutants):
+            found[number * count // len(mutants)].add(mutant)
         return found
 
     def _empty(self) -> _Trunk:
         return _Trunk(self._campaign, self._round, self._left, self._suspects, self._engine, self._hindered)
 
-    def _wall(self, test: str) -> float:
-        return self._baseline.ends[self._round, test].wall
-
-    def _branches_seconds(self, branches: _Branches) -> float:
-        return sum(self._wall(test) for test in branches.tests) + _FORK
-
     def task(self, key: int, text: Instrumentation | None) -> Task:
         """The task that runs the trunk."""
         request, baseline, round = self._campaign.request, self._baseline, self._round
-        in_order = self.order
+        in_order = self._tests
         walls = {test: wall_limit(self._campaign, round, test) for test in in_order}
         longest = max(walls.values(), default=0.0)
         mutants = self.mutants
         choices = {mutant.id: baseline.faults.choices(mutant) for mutant in mutants}
         branching = Branching(
             mutants=mutants,
-            tests={mutant: branches.tests for mutant, branches in self._open.items()},
             walls=walls,
             wall=longest,
             choices={mutant: found for mutant, found in choices.items() if found},
             every_test=request.every_test,
+            serial=baseline.why_exclusive(round) is not None,
         )
         factor = request.configuration.timeout_factor
         budgets = {test: baseline.budget(round, test, factor) for test in in_order}
@@ -256,8 +228,8 @@ class _Trunk:
             branching=branching,
             instrumentation=text,
         )
-        patience = 2.0 * longest + _PATIENCE
-        return Task(key, job, {}, patience, patience, is_trunk=True, may_share=True)
+        patience = 2.0 * sum(walls.values()) + _PATIENCE  # it waits for branches that go to the end
+        return Task(key, job, {}, patience, patience, is_trunk=True, may_share=True, alone=branching.serial)
 
     def take(self, line: Event) -> Iterator[Outcome]:
         """Sort in an event; yields the outcomes that it settles.
@@ -271,14 +243,13 @@ class _Trunk:
 
     def _give_up(self, line: Event, error: Exception) -> Iterator[Outcome]:
         refuse_others(error)
-        branches = self._open.get(line.mutant) if isinstance(line, BranchEnd | BranchDied) else None
-        if branches is not None:
-            del self._open[branches.mutant.id]
-            yield not_judged(branches.mutant, self._round, error, self._engine)
+        branch = self._open.get(line.mutant) if isinstance(line, BranchEnd | BranchDied) else None
+        if branch is not None:
+            del self._open[branch.mutant.id]
+            yield not_judged(branch.mutant, self._round, error, self._engine)
             return
         self._left.notes.append(f"a report of the trunk cannot be used: {type(error).__name__}: {error}")
-        if isinstance(line, TestEnd):
-            self._failed.add(line.test)
+        self._is_off = self._is_off or isinstance(line, TestEnd)
 
     def _take(self, line: Event) -> Iterator[Outcome]:
         match line:
@@ -286,8 +257,14 @@ class _Trunk:
                 yield from self._branch_ended(line)
             case BranchDied() if line.mutant in self._open:
                 yield from self._branch_died(line)
+            case BranchFinished():
+                for mutant in self._open.keys() & set(line.mutants):
+                    self._open[mutant].exit_code = line.exit_code
+                    yield from self._settle(mutant)
             case Unbranched():
                 self._left.reasons.setdefault(line.test, line.reason)
+                for mutant in self._open.keys() & set(line.mutants):
+                    self._doubted.append(self._open.pop(mutant).mutant)
             case Undiverged():
                 self._undiverged[line.test] = line.hits
             case SiteSeen():
@@ -305,7 +282,7 @@ class _Trunk:
         """
         why = f"round {self._round + 1}: {line.reason}; mutants that may have to do with it run in processes"
         self._left.notes.append(f"{why} of their own")
-        self._doubted += [branches.mutant for branches in self._open.values()]
+        self._doubted += self.mutants
         self._open.clear()
 
     def finish(self, result: Result) -> Iterator[Outcome]:
@@ -313,22 +290,21 @@ class _Trunk:
         if result.end is None:
             self._left.notes.append(f"the trunk of round {self._round + 1} died: {death(result)}{at(result)}")
         for mutant in list(self._open):
-            yield from self._settle(mutant)
-        left = [*self._doubted, *(branches.mutant for branches in self._open.values())]
+            yield from self._settle_undiverged(mutant)
+        left = [*self._doubted, *self.mutants]
         self._left.trials.extend((mutant, self._round) for mutant in left)
 
     def _branch_ended(self, line: BranchEnd) -> Iterator[Outcome]:
-        branches = self._open[line.mutant]
-        branches.take(line)
+        branch = self._open[line.mutant]
+        branch.take(line, self._numbers[line.end.test])
         if line.end.outcome != "failed":
             places = {seen.index: place_of(seen, self._sources) for seen in line.sites}
-            branches.observations[line.end.test] = observation(line.end, places)
+            branch.observations[line.end.test] = observation(line.end, places)
         yield from self._settle(line.mutant)
 
     def _branch_died(self, line: BranchDied) -> Iterator[Outcome]:
-        branches = self._open[line.mutant]
         code = line.exit_code
-        branches.deaths[line.test] = Death(
+        self._open[line.mutant].death = Death(
             text=f"{line.overdue or how_ended(code)} during {line.test}",
             test=line.test,
             signal=-code if code < 0 and line.overdue is None else None,
@@ -344,55 +320,58 @@ class _Trunk:
     def _test_ended(self, end: TestEnd) -> Iterator[Outcome]:
         """The trunk has run a test: the second opinion on the original."""
         undiverged = self._undiverged.pop(end.test, {})
-        if end.lasting == self._baseline.ends[self._round, end.test].lasting:
-            self._passed.add(end.test)
-            found = observation(end, self._trunk_places)
-            self._baseline.compare_runs(self._round, end, found, self._campaign.request.vocabulary)
-            if self._campaign.evidence is not None:
-                self._campaign.evidence.add_again(self._round, end)
-            self._take_undiverged(end, found, undiverged)
-        else:
-            self._failed.add(end.test)
+        if end.lasting != self._baseline.ends[self._round, end.test].lasting:
+            self._is_off = True
             self._suspects.append((self._round, end.test))
-        for mutant in self._waiting.pop(end.test, set()) | undiverged.keys():
-            if mutant in self._open:
-                yield from self._settle(mutant)
-
-    def _take_undiverged(self, end: TestEnd, found: Observation, hits: Mapping[str, int]) -> None:
-        """The trunk has run its test for these mutants too, up to the end."""
-        for mutant in hits.keys() & self._open.keys():
-            branches = self._open[mutant]
-            own = replace(end, hits=hits[mutant], acted=0, wall=0.0, cpu=0.0, trace=(), recording=None)
-            branches.take(BranchEnd(mutant, own, (), end.simulated))
-            branches.observations[end.test] = found
+        if self._is_off:
+            return
+        found = observation(end, self._trunk_places)
+        self._baseline.compare_runs(self._round, end, found, self._campaign.request.vocabulary)
+        if self._campaign.evidence is not None:
+            self._campaign.evidence.add_again(self._round, end)
+        own = replace(end, hits=0, acted=0, wall=0.0, cpu=0.0, trace=(), recording=None)
+        self._own_ends.append(own)
+        for mutant in undiverged.keys() & self._open.keys():
+            branch = self._open[mutant]
+            branch.ends.setdefault(end.test, replace(own, hits=undiverged[mutant]))
+            branch.observations.setdefault(end.test, found)
+        for mutant in self._waiting.pop(len(self._own_ends) - 1, set()) & self._open.keys():
+            yield from self._settle(mutant)
 
     def _settle(self, mutant: str) -> Iterator[Outcome]:
         """Yield the mutant's outcome if all that it depends on is known."""
-        branches = self._open[mutant]
-        run = Run(branches.mutant, self._round, branches.tests, engine=self._engine, shared=branches.shared)
-        goes_on = self._campaign.request.every_test
-        for test in branches.tests:
-            if test in self._failed:
-                return  # replay will find out what is the matter with this test
-            death = branches.deaths.get(test)
-            if test not in branches.ends and death is None:
-                return
-            if test not in self._passed:
-                self._waiting.setdefault(test, set()).add(mutant)
-                return
-            if death is not None:
-                run.death = run.death or death
-            else:
-                run.ends.append(branches.ends[test])
-            if not goes_on and (death is not None or branches.ends[test].is_decided):
-                break
-        run.observations = branches.observations
+        branch = self._open[mutant]
+        is_decided = any(end.is_decided for end in branch.ends.values())
+        is_over = branch.death is not None or branch.exit_code is not None
+        if not is_over and (not is_decided or self._campaign.request.every_test):
+            return
+        died_in = branch.death.test if branch.death is not None else None
+        forked = branch.forked if branch.forked is not None else self._numbers.get(died_in or "", 0)
+        if forked >= len(self._own_ends):
+            self._waiting.setdefault(forked, set()).add(mutant)
+            return
+        before = {end.test: end for end in self._own_ends[:forked]}
+        yield from self._judged(branch, {**before, **branch.ends})
+
+    def _settle_undiverged(self, mutant: str) -> Iterator[Outcome]:
+        """The trunk has run all tests, and nothing differed: it was the mutant's run as well."""
+        branch = self._open[mutant]
+        is_same = bool(branch.ends) and branch.forked is None and branch.death is None
+        if is_same and len(self._own_ends) == len(self._tests) and not self._is_off:
+            branch.exit_code = self._baseline.exits[self._round]
+            yield from self._judged(branch, {**{one.test: one for one in self._own_ends}, **branch.ends})
+
+    def _judged(self, branch: _Branch, ends: Mapping[str, TestEnd]) -> Iterator[Outcome]:
+        run = Run(branch.mutant, self._round, self._tests, engine=self._engine, shared=branch.shared)
+        run.ends = [ends[test] for test in self._tests if test in ends]
+        run.death, run.exit_code = branch.death, branch.exit_code
+        if run.exit_code is not None:
+            text = not_run(self._tests, run.ends, run.exit_code)
+            run.death = Death(text) if text is not None else run.death
+        run.observations = branch.observations
         run.wall = sum(end.wall for end in run.ends)
         outcome = judged(self._campaign, run)
-        survived = outcome.verdict is Verdict.SURVIVED
-        if survived and self._baseline.must_widen(run.mutant, run.round, run.ends):
-            return  # to replay
         if run.hindered is not None:
-            self._hindered[mutant, self._round] = run.hindered
-        del self._open[mutant]
+            self._hindered[branch.mutant.id, self._round] = run.hindered
+        del self._open[branch.mutant.id]
         yield outcome

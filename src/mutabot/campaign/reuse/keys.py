@@ -111,8 +111,7 @@ class Dependencies:
         """What tests can run of these Python files, everything else being as it is now."""
         vocabulary = _without_source(to_data(self.request.vocabulary))
         everywhere = {*self.names, *_targets({**vocabulary, "operations": ()})}
-        footprints = (end.footprint for end in self._baseline.ends.values())
-        starts = any(one is not None and one.processes for one in footprints)
+        starts = any(end.processes for end in self._baseline.ends.values())
         return Reach(Project(digests, texts, self._test_files), everywhere, starts_processes=starts)
 
     def file_of(self, test: str) -> str:

@@ -17,7 +17,7 @@ from pathlib import Path
 from shutil import disk_usage
 
 from mutabot.border.event_file import EventReader
-from mutabot.border.events import BranchDied, Event, ForkEnded
+from mutabot.border.events import Event, ForkEnded
 from mutabot.border.fold import fold_fork
 from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE, Job, job_file, write_job
 from mutabot.border.keeper import FILE as KEEPER
@@ -226,19 +226,19 @@ class EventStream:
         found: list[Event] = []
         for event in events:
             if isinstance(event, ForkEnded):
-                found += self._of_fork(f"{name}.{event.fork}", event.died)
+                found += self._of_fork(f"{name}.{event.fork}", event)
             else:
                 found.append(event)
         return found
 
-    def _of_fork(self, name: str, died: BranchDied | None) -> list[Event]:
+    def _of_fork(self, name: str, ended: ForkEnded) -> list[Event]:
         """What a fork told that has ended; nothing if it cannot be relied on."""
         reader = EventReader(self._home.events(name), self._home.key)
         events = reader.read(is_last=True)
         if reader.damage is not None:
             return []
         Path(self._home.events(name)).unlink(missing_ok=True)
-        return self._with_forks(name, fold_fork(events, died))
+        return self._with_forks(name, fold_fork(events, ended.exit_code, ended.died))
 
 
 def command(arguments: Iterable[str], home: Path) -> list[str]:

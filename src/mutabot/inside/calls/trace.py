@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -106,9 +106,9 @@ class Recorder:
         ended = began if ended is None else ended
         return Told(began, ended, site.operation, place, site.pattern, written, read, role)
 
-    def sites_of_trace(self) -> tuple[SiteSeen, ...]:
-        """The sites that the running test's trace refers to."""
-        return tuple(self.sites[index] for index in sorted({hit[0] for hit in self.trace}))
+    def sites_of(self, trace: Iterable[Any]) -> tuple[SiteSeen, ...]:
+        """The sites that a trace refers to; those of processes below the tests are in it as well."""
+        return tuple(self.sites[index] for index in sorted({hit[0] for hit in trace}))
 
 
 def _frozen(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -7,30 +7,49 @@ them until the place is evaluated again and they differ.
 from __future__ import annotations
 
 import mmap
+import struct
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from mutabot.model import Choice, Mutant
 
+#: a mutant's place on the board: how its branch ended, and which test it is in
+_CELL = struct.Struct("=BxxxI")
+
 
 class Board:
-    """How branches have ended, by mutant, in memory that a trunk shares with all that is forked from it."""
+    """How far branches are and how they have ended, by mutant, in memory that they share with their trunk."""
 
     def __init__(self, mutants: Iterable[Mutant]) -> None:
         self._places = {mutant.id: place for place, mutant in enumerate(mutants)}
-        self._memory = mmap.mmap(-1, max(1, len(self._places)))
+        self._memory = mmap.mmap(-1, max(1, len(self._places)) * _CELL.size)
+
+    def begin(self, mutant: str, test: int) -> None:
+        """A branch of it is about to begin, in this test by its number in the session."""
+        self._write(mutant, 0, test)
 
     def note(self, mutant: str, code: int) -> None:
         """Its branch ends like this."""
-        self._memory[self._places[mutant]] = code
+        self._write(mutant, code, self.test(mutant))
 
-    def clear(self, mutant: str) -> None:
-        """A branch of it begins."""
-        self.note(mutant, 0)
+    def next_test(self, mutant: str) -> None:
+        """Its branch begins another test."""
+        self._write(mutant, self.code(mutant), self.test(mutant) + 1)
 
     def code(self, mutant: str) -> int:
         """What was noted last; 0 if its branch has not said how it ended."""
-        return self._memory[self._places[mutant]]
+        return self._cell(mutant)[0]
+
+    def test(self, mutant: str) -> int:
+        """The number of the test that its branch is in."""
+        return self._cell(mutant)[1]
+
+    def _cell(self, mutant: str) -> tuple[int, int]:
+        code, test = _CELL.unpack_from(self._memory, self._places[mutant] * _CELL.size)
+        return code, test
+
+    def _write(self, mutant: str, code: int, tests: int) -> None:
+        _CELL.pack_into(self._memory, self._places[mutant] * _CELL.size, code, tests)
 
 
 @dataclass(slots=True)
@@ -44,7 +63,8 @@ class Bunch:
         part: told a place, and the alternatives there, by the value that they have, that are about to differ
             from those of the first mutant: they go on in other processes.
         is_copied: whether the test has forked copies of this process, in which mutants may have differed.
-        waited: seconds that this process has waited for those that parted.
+        waited: seconds that this process has waited, in the running test, for those that parted.
+        is_parting: whether it is about to fork for them.
     """
 
     mutants: list[Mutant]
@@ -53,6 +73,7 @@ class Bunch:
     part: Callable[[int, Sequence[frozenset[int]]], None]
     is_copied: bool = False
     waited: float = 0.0
+    is_parting: bool = False
 
     @property
     def first(self) -> Mutant:
@@ -77,7 +98,21 @@ class Bunch:
 
     def end(self, code: int) -> list[str]:
         """The branch ends like this; the ids of the mutants for which that holds."""
-        known = self.mutants[:1] if self.is_copied else self.mutants
-        for mutant in known:
-            self.board.note(mutant.id, code)
-        return [mutant.id for mutant in known]
+        for mutant in self.known:
+            self.board.note(mutant, code)
+        return self.known
+
+    @property
+    def known(self) -> list[str]:
+        """The ids of the mutants for which holds what this process sees."""
+        return [mutant.id for mutant in (self.mutants[:1] if self.is_copied else self.mutants)]
+
+    @property
+    def test(self) -> int:
+        """The number of the test that the branch is in."""
+        return self.board.test(self.first.id)
+
+    def next_test(self) -> None:
+        """The branch begins another test."""
+        for mutant in self.mutants:
+            self.board.next_test(mutant.id)

@@ -1,8 +1,8 @@
 """The server of copies: a session that has collected its tests, and forks a copy of itself for each job.
 
 All that lies before the first test, such as imports and collection, is done once. A copy is cut off from
-what it would share, runs its job like a session of its own, and leaves without taking down what was there
-before the fork: others still need it.
+what it would share, and runs its job like a session of its own. What was to be done at exit before the fork
+is the server's.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class CopyServer:
     descriptor: int
     pipe: EventFile
     log_file: str
-    _known: frozenset[int] = field(default_factory=open_now)
+    _known: frozenset[tuple[int, str]] = field(default_factory=open_now)
     _copies: dict[int, int] = field(default_factory=dict)
 
     def serve(self) -> Commission | None:
@@ -142,15 +142,3 @@ def forget_exit_handlers() -> None:
     multiprocessing = sys.modules.get("multiprocessing.util")
     if multiprocessing is not None:  # it knows by itself what another process has made
         atexit.register(multiprocessing._exit_function)
-
-
-def leave(code: int) -> None:
-    """End a copy: run what it has registered for its exit itself, and nothing else."""
-    try:
-        with contextlib.suppress(Exception):
-            atexit._run_exitfuncs()
-        for stream in (sys.stdout, sys.stderr):
-            with contextlib.suppress(Exception):
-                stream.flush()
-    finally:
-        os._exit(code)

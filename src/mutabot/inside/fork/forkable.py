@@ -3,33 +3,37 @@
 from __future__ import annotations
 
 import ctypes
-import fcntl
 import os
 import select
 import stat
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
+
+from .event_loops import descriptors_of_loops
 
 #: libraries whose loading means that a graphics context may exist, which does not survive a fork
 _GRAPHICS = ("libEGL", "libGL.", "libGLX", "libOSMesa", "libvulkan")
 _SELF = "/proc/self"
+#: devices that keep nothing
+_NOBODYS = ("/dev/null", "/dev/urandom", "/dev/random", "/dev/zero")
+#: what tells of processes, and can be asked by any number of them
+_HARMLESS = ("/proc/", "anon_inode:[pidfd]", "pidfd:")
 #: what threads of LTTng, which comes with ROS 2, wait at
 _TRACER = "/dev/shm/lttng-ust-wait"
 #: how often, and for how many seconds each, to wait for threads that are about to end
 _TRIES, _PAUSE = 10, 0.002
 
 
-def why_not(own_children: Iterable[int], known: frozenset[int]) -> str | None:
+def why_not(own_children: Iterable[int], known: frozenset[tuple[int, str]]) -> str | None:
     """Why forking is not safe, in words; None if it is.
 
     Args:
         own_children: processes that this one forked as branches.
-        known: inodes of what was open before the user's code ran, as ``open_now`` gives them.
+        known: what was open before the user's code ran, as ``open_now`` gives it.
     """
     checks: tuple[Callable[[], str | None], ...] = (
         _threads,
-        _event_loop,
         lambda: subprocesses(own_children),
         lambda: _open_since(known),
         _graphics,
@@ -79,12 +83,6 @@ def _waits_in(thread: str, areas: list[tuple[int, int]]) -> bool:
     return any(start <= place < end for start, end in areas)
 
 
-def _event_loop() -> str | None:
-    events = sys.modules.get("asyncio.events")
-    running = events is not None and events._get_running_loop() is not None
-    return "an asyncio event loop is running" if running else None
-
-
 def subprocesses(own: Iterable[int]) -> str | None:
     """How many processes this one has started, in words, bar those of its ``own``; None if there are none."""
     try:
@@ -96,37 +94,41 @@ def subprocesses(own: Iterable[int]) -> str | None:
     return f"{len(others)} subprocess{'es' if len(others) > 1 else ''} in flight" if others else None
 
 
-def _open_since(known: frozenset[int]) -> str | None:
-    found = _open()
-    sockets = {inode for inode, name in found.items() if name is None} - known
+def _open_since(known: frozenset[tuple[int, str]]) -> str | None:
+    loops = descriptors_of_loops()
+    found = [name for descriptor, name in open_now() - known if descriptor not in loops]
+    sockets = sum(name.startswith("socket:") for name in found)
     if sockets:
-        return f"{len(sockets)} open socket{'s' if len(sockets) > 1 else ''}"
-    written = next((name for inode, name in found.items() if name is not None and inode not in known), None)
-    return f"{written} is open for writing" if written is not None else None
+        return f"{sockets} open socket{'s' if sockets > 1 else ''}"
+    return min(found, default=None)
 
 
-def open_now() -> frozenset[int]:
-    """Inodes of the sockets, and of the files open for writing, that this process has."""
-    return frozenset(_open())
+def open_now() -> frozenset[tuple[int, str]]:
+    """What of this process a fork would share, bar files and folders, which can be opened again."""
+    return frozenset([*_open(), *_shared_memory()])
 
 
-def _open() -> dict[int, str | None]:
-    """The same with the files' names; sockets have none. Files that were deleted are nobody else's."""
-    found: dict[int, str | None] = {}
+def _open() -> Iterator[tuple[int, str]]:
     for name in os.listdir(f"{_SELF}/fd"):
         try:
-            status = os.fstat(int(name))
+            mode, link = os.fstat(int(name)).st_mode, os.readlink(f"{_SELF}/fd/{name}")
         except OSError:  # the descriptor of the listing itself
             continue
-        if stat.S_ISSOCK(status.st_mode):
-            found[status.st_ino] = None
-        elif stat.S_ISREG(status.st_mode) and status.st_nlink and _is_written(int(name)):
-            found[status.st_ino] = os.readlink(f"{_SELF}/fd/{name}")
-    return found
+        is_file = stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_ISLNK(mode)
+        if not is_file and link not in _NOBODYS and not link.startswith(_HARMLESS):
+            yield int(name), link
 
 
-def _is_written(descriptor: int) -> bool:
-    return fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE != os.O_RDONLY
+def _shared_memory() -> Iterator[tuple[int, str]]:
+    """Memory to which a fork and its parent would both write: where it is, in the place of a descriptor."""
+    with open(f"{_SELF}/maps", encoding="utf-8", errors="replace") as file:
+        for line in file:
+            place, rights = line.split(maxsplit=2)[:2]
+            if rights[1] == "w" and rights[3] == "s":
+                yield (
+                    -int(place.partition("-")[0], 16),
+                    f"memory shared with others {line[73:].strip()}".rstrip(),
+                )
 
 
 def _graphics() -> str | None:

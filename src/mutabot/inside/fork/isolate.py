@@ -8,9 +8,19 @@ import random
 import stat
 import sys
 import tempfile
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
+from .event_loops import go_on_running, own_event_loops, running_loop
+from .private_files import PrivateFiles, is_below, private_folders
+
 _CHUNK = 1 << 16
+#: where forks have their folders, in that of the process
+_FORKS = "forks"
+#: device, inode, position and flags of an open file: descriptors that agree in them share one opening
+_Shared = tuple[int, int, int, int]
 
 
 class Foot:
@@ -19,46 +29,121 @@ class Foot:
     def __init__(self) -> None:
         # random registers a hook that seeds anew in every child
         self._random: Any = random.getstate()
+        self._loop = running_loop()
         sys.stdout.flush()
         sys.stderr.flush()
 
     def restore(self) -> None:
         """In the branch: put it back."""
         random.setstate(self._random)
+        go_on_running(self._loop)
+
+
+@dataclass(frozen=True, slots=True)
+class Apart:
+    """How a process that is forked is kept apart from its parent.
+
+    Attributes:
+        log: device and inode of the parent's log; what leads there leads nowhere in a fork.
+        home: the folder of the process's own.
+        files: its private files; None if they are not.
+        why_not: why it cannot be forked at all, in words, or None.
+        folder: the process's own among its forks, in a fork.
+    """
+
+    log: tuple[int, int] | None
+    home: str
+    files: PrivateFiles | None
+    why_not: str | None = None
+    folder: str = ""
+
+    def reason(self) -> str | None:
+        """Why this process cannot be forked now as far as its files are concerned; None if it can."""
+        if self.files is None:
+            return self.why_not or "its files are not private"
+        return next((f"{path} is open for writing" for path in _written() if not self._is_own(path)), None)
+
+    def _is_own(self, path: str) -> bool:
+        assert self.files is not None
+        folders = (*private_folders(self.files.root), self.files.home)
+        return any(is_below(path, one) for one in folders)
+
+    def go(self, name: str) -> Apart:
+        """In a process that was just forked, while its parent waits: share nothing with it any more.
+
+        ``name``: unlike that of any other fork. Raises OSError if that is not possible.
+        """
+        assert self.files is not None
+        folder = os.path.join(self.home, _FORKS, name)
+        os.makedirs(folder)
+        files = self.files.go_on_apart(folder)
+        isolate_files(self.log)
+        own_event_loops()
+        return Apart(self.log, self.home, files, folder=folder)
+
+
+def _written() -> Iterator[str]:
+    """Paths of the files that are open for writing and have a name."""
+    for descriptor, status in _descriptors():
+        is_named = stat.S_ISREG(status.st_mode) and status.st_nlink > 0
+        if is_named and fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE != os.O_RDONLY:
+            yield os.readlink(f"/proc/self/fd/{descriptor}")
+
+
+def _descriptors() -> Iterator[tuple[int, os.stat_result]]:
+    for name in os.listdir("/proc/self/fd"):
+        with suppress(OSError):  # the descriptor of the listing itself
+            yield int(name), os.fstat(int(name))
 
 
 def isolate_files(log: tuple[int, int] | None, instead: int | None = None) -> None:
-    """In a process that was just forked: stop writing where its parent writes.
+    """In a process that was just forked: stop reading and writing where its parent does.
 
-    Deleted temporary files, such as those that pytest captures output in, share one position between parent
-    and child; the child goes on with private copies. What leads to the parent's log leads elsewhere.
+    An open file has one position for parent and child; the child opens its own. Of a deleted temporary file,
+    such as those that pytest captures output in, it makes a copy. What leads to the parent's log leads
+    elsewhere.
 
     Args:
         log: device and inode of the parent's log; None if there is none.
         instead: descriptor of the child's own log; None for nowhere.
     """
+    found = list(_descriptors())  # before any is opened here
     nowhere = os.open(os.devnull, os.O_WRONLY)
-    copies: dict[tuple[int, int], int] = {}
-    for name in os.listdir("/proc/self/fd"):
-        descriptor = int(name)
-        try:
-            status = os.fstat(descriptor)
-        except OSError:  # the descriptor of the listing itself
-            continue
-        identity = (status.st_dev, status.st_ino)
-        if identity == log:
+    copies: dict[_Shared, int] = {}
+    for descriptor, status in found:
+        if (status.st_dev, status.st_ino) == log:
             target = nowhere if instead is None else instead
             os.dup2(target, descriptor, inheritable=os.get_inheritable(descriptor))
-        elif stat.S_ISREG(status.st_mode) and status.st_nlink == 0 and _is_written(descriptor):
-            if identity not in copies:
-                copies[identity] = _copy(descriptor)
-            os.dup2(copies[identity], descriptor, inheritable=os.get_inheritable(descriptor))
+        elif stat.S_ISREG(status.st_mode):
+            _renew(descriptor, status, copies)
     for descriptor in (nowhere, *copies.values()):
         os.close(descriptor)
 
 
-def _is_written(descriptor: int) -> bool:
-    return fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE != os.O_RDONLY
+def _renew(descriptor: int, status: os.stat_result, copies: dict[_Shared, int]) -> None:
+    """Let a descriptor lead to the same file, but to an opening of it that is this process's own."""
+    position, flags = os.lseek(descriptor, 0, os.SEEK_CUR), fcntl.fcntl(descriptor, fcntl.F_GETFL)
+    shared = (status.st_dev, status.st_ino, position, flags)
+    if shared not in copies:
+        is_deleted = status.st_nlink == 0
+        if is_deleted and flags & os.O_ACCMODE == os.O_RDONLY:
+            return
+        opened = _copy(descriptor) if is_deleted else _opened_again(descriptor, status, position, flags)
+        if opened is None:
+            return
+        copies[shared] = opened
+    os.dup2(copies[shared], descriptor, inheritable=os.get_inheritable(descriptor))
+
+
+def _opened_again(descriptor: int, status: os.stat_result, position: int, flags: int) -> int | None:
+    """The same file opened once more; None if it is ours, in a folder that tests do not see."""
+    path = os.readlink(f"/proc/self/fd/{descriptor}")
+    try:
+        opened = os.open(path, flags & ~(os.O_CREAT | os.O_EXCL | os.O_TRUNC) | os.O_CLOEXEC)
+    except FileNotFoundError:
+        return None
+    os.lseek(opened, position, os.SEEK_SET)
+    return opened
 
 
 def _copy(descriptor: int) -> int:

@@ -10,14 +10,19 @@ from __future__ import annotations
 import ctypes
 import os
 import re
+import shutil
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
 _MS_BIND, _MS_REC, _MS_PRIVATE, _MNT_DETACH = 4096, 16384, 1 << 18, 2
 #: the layers of a process lie in its own folder
-_LAYERS = "files"
+_LAYERS, _UPPER = "files", "upper"
+#: attributes that an overlay gives to a file of its upper layer, and that hold for no copy of it
+_OF_THE_LAYER = (".overlay.origin", ".overlay.uuid", ".overlay.impure", ".overlay.nlink")
 
 
 def private_folders(root: str) -> tuple[str, ...]:
@@ -30,46 +35,140 @@ def private_folders(root: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*outer, *folders]))
 
 
-def make_private(root: str, home: str, shared: str) -> str | None:
-    """Make this process's files private.
+@dataclass(slots=True)
+class PrivateFiles:
+    """The private files of a process.
 
     Args:
         root: absolute path of the project.
         home: the process's own folder, beside those of other processes, which it cannot touch.
         shared: the folder that stays common to all processes, but for those folders.
-
-    Returns why that is not possible, in words, and nothing has changed then, bar the namespace; None if it is
-    done.
     """
-    folders = [folder for folder in private_folders(root) if not is_below(folder, shared)]
-    beside = os.path.dirname(home)
-    covered: list[str] = []
-    try:
-        _enter_namespace()
+
+    root: str
+    home: str
+    shared: str
+    _own: str = ""
+    _covered: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self._own = self.home
+
+    def make(self) -> str | None:
+        """Make them.
+
+        Returns why that is not possible, in words, and nothing has changed then, bar the namespace; None if
+        it is done.
+        """
+        try:
+            _enter_namespace()
+            self._lay()
+        except OSError as error:
+            self._uncover()
+            return f"{error.strerror or error}"
+        with suppress(OSError):  # the same folder, but seen through its new layers
+            os.chdir(os.getcwd())
+        return None
+
+    def go_on_apart(self, folder: str) -> PrivateFiles:
+        """In a process that was just forked, while its parent waits: go on with files of its own.
+
+        What the parent did to its files is copied. ``folder`` lies in the home, which both have. Returns what
+        it has now.
+
+        Raises OSError if that is not possible.
+        """
+        place, layers = os.getcwd(), os.path.join(self._own, _LAYERS)
+        for number in os.listdir(layers):
+            copied = os.path.join(folder, _LAYERS, number)
+            os.makedirs(copied)
+            copy_tree(os.path.join(layers, number, _UPPER), os.path.join(copied, _UPPER))
+        if ctypes.CDLL(None, use_errno=True).unshare(_CLONE_NEWNS) != 0:
+            raise _last_error("this system allows no private mounts")
+        self._own = folder
+        self._uncover()
+        self._lay()
+        os.chdir(place)
+        return self
+
+    def _lay(self) -> None:
+        """Lay an overlay over each private folder."""
+        folders = [folder for folder in private_folders(self.root) if not is_below(folder, self.shared)]
+        beside = os.path.dirname(self.home)
         _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
-        with _opened([*folders, shared, beside, home]) as (*lowers, common, others, own):
-            below = _mounts_below(folders, shared)
+        with _opened([*folders, self.shared, beside, self.home, self._own]) as opened:
+            *lowers, common, others, home, own = opened
+            below = _mounts_below(folders, self.shared)
             with _opened(below) as kept:
-                again = [*zip(below, kept, strict=True), (shared, common)]
+                again = [*zip(below, kept, strict=True), (self.shared, common)]
                 for number, (folder, lower) in enumerate(zip(folders, lowers, strict=True)):
                     _lay_over(folder, lower, own, number)
-                    covered.append(folder)
+                    self._covered.append(folder)
                     # what is mounted in it comes back before the next folder, which may lie in such a one
                     for inner, descriptor in again:
                         if inner != folder and is_below(inner, folder):
                             _mount(_path(descriptor), inner, None, _MS_BIND | _MS_REC)
-                            covered.append(inner)
-            if beside != shared:
+                            self._covered.append(inner)
+            if beside != self.shared:
                 _lay_over(beside, others, own, len(folders))
-                covered.append(beside)
-                _mount(_path(own), home, None, _MS_BIND | _MS_REC)
-                covered.append(home)
-    except OSError as error:
-        _uncover(covered)
-        return f"{error.strerror or error}"
-    with suppress(OSError):  # the same folder, but seen through its new layers
-        os.chdir(os.getcwd())
-    return None
+                self._covered.append(beside)
+                _mount(_path(home), self.home, None, _MS_BIND | _MS_REC)
+                self._covered.append(self.home)
+
+    def _uncover(self) -> None:
+        """Take back what was laid over these folders, the last first."""
+        libc = ctypes.CDLL(None, use_errno=True)
+        while self._covered:
+            libc.umount2(os.fsencode(self._covered.pop()), _MNT_DETACH)
+
+
+def copy_tree(source: str, target: str) -> None:
+    """Copy the upper layer of an overlay: with what it deletes and hides, owners, times and rights."""
+    os.mkdir(target)
+    links: dict[tuple[int, int], str] = {}
+    with os.scandir(source) as entries:
+        for entry in entries:
+            _copy_entry(entry.path, f"{target}/{entry.name}", links)
+    _copy_status(source, target, os.stat(source))
+
+
+def _copy_entry(source: str, target: str, links: dict[tuple[int, int], str]) -> None:
+    status = os.lstat(source)
+    identity = (status.st_dev, status.st_ino)
+    if identity in links:
+        os.link(links[identity], target, follow_symlinks=False)
+        return
+    if stat.S_ISDIR(status.st_mode):
+        os.mkdir(target)
+        with os.scandir(source) as entries:
+            for entry in entries:
+                _copy_entry(entry.path, f"{target}/{entry.name}", links)
+    elif stat.S_ISLNK(status.st_mode):
+        os.symlink(os.readlink(source), target)
+    elif stat.S_ISREG(status.st_mode):
+        shutil.copyfile(source, target)
+    elif stat.S_ISCHR(status.st_mode) or stat.S_ISFIFO(status.st_mode):  # what was deleted is such a device
+        os.mknod(target, status.st_mode, status.st_rdev)
+    else:  # nobody is at the other end of a socket
+        return
+    if status.st_nlink > 1 and not stat.S_ISDIR(status.st_mode):
+        links[identity] = target
+    _copy_status(source, target, status)
+
+
+def _copy_status(source: str, target: str, status: os.stat_result) -> None:
+    if os.geteuid() == 0:
+        with suppress(PermissionError, OSError):
+            os.chown(target, status.st_uid, status.st_gid, follow_symlinks=False)
+    if stat.S_ISLNK(status.st_mode):
+        return
+    if not stat.S_ISCHR(status.st_mode):
+        for name in os.listxattr(source):
+            if not name.endswith(_OF_THE_LAYER):
+                with suppress(OSError):
+                    os.setxattr(target, name, os.getxattr(source, name))
+        os.chmod(target, stat.S_IMODE(status.st_mode))
+    os.utime(target, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
 def _enter_namespace() -> None:
@@ -91,7 +190,7 @@ def _enter_namespace() -> None:
 def _lay_over(folder: str, lower: int, own: int, number: int) -> None:
     """Cover a folder by an overlay whose upper layer lies in the process's own folder."""
     layers = f"{_path(own)}/{_LAYERS}/{number}"
-    for name in ("upper", "work"):
+    for name in (_UPPER, "work"):
         os.makedirs(f"{layers}/{name}", exist_ok=True)
     status = os.fstat(lower)
     os.chmod(f"{layers}/upper", status.st_mode & 0o7777)
@@ -120,13 +219,6 @@ def mount_point(line: bytes) -> str:
     """Where a file system is mounted, by a line of ``/proc/self/mountinfo``: in bytes, some of them octal."""
     field = line.split(b" ")[4]
     return os.fsdecode(re.sub(rb"\\([0-7]{3})", lambda match: bytes([int(match[1], 8)]), field))
-
-
-def _uncover(folders: list[str]) -> None:
-    """Take back what was laid over these folders, the last first."""
-    libc = ctypes.CDLL(None, use_errno=True)
-    for folder in reversed(folders):
-        libc.umount2(os.fsencode(folder), _MNT_DETACH)
 
 
 @contextmanager

@@ -1,8 +1,9 @@
-"""Trunk and branches: run each test once as the original, and fork at the first moment a mutant differs.
+"""Trunk and branches: run the suite once as the original, and fork at the first moment a mutant differs.
 
-At a site with live mutants the trunk forks one child per mutant, or per bunch of mutants that behave alike.
-The child inherits everything that came before, takes on its mutant, finishes the test it is in, reports, and
-leaves without taking down what it shares with the trunk. The trunk goes on as the original.
+At the first hit of a site the trunk forks one child for each of its mutants, or for each bunch of mutants
+that behave alike. The child inherits everything that came before, takes on its mutant, and goes on to the end
+of the session, as the whole suite would with the mutant in it; or until a test decides about it. The trunk
+goes on as the original.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from time import monotonic, perf_counter  # tests may replace those of the module
-from typing import Protocol
+from typing import Any, Protocol
 
 from mutabot.border.events import BranchDied, ForkEnded, TokensHeld, Unbranched, Undiverged
 from mutabot.border.job import Branching
@@ -24,7 +25,7 @@ from mutabot.model import Call, Mutant, Span
 
 from .bunch import Board, Bunch
 from .forkable import open_now, why_not
-from .isolate import Foot, isolate_files
+from .isolate import Apart, Foot
 from .lifeline import ALONE
 from .tokens import Tokens
 
@@ -33,8 +34,8 @@ from .tokens import Tokens
 DECIDED = 113
 #: exit code of a branch that could not report
 FAILED = ALONE
-#: exit code of a branch whose test leaves its mutant alive
-ALIVE = 114
+#: noted of a branch that has gone to the end of the session; its exit code is the suite's own
+FINISHED = 114
 #: exit code of a branch that stopped before it did what others would have noticed
 STOPPED = 116
 
@@ -51,24 +52,24 @@ class Child:
 
     Attributes:
         mutants: ids of the mutants that it began as.
-        test: the test it is in.
         fork: its number among those that were forked here.
         pid, pidfd: its process.
         until: moment (``time.monotonic``) at which its time is up.
-        limit: the seconds it was given.
+        limit: the seconds it was given for the test it is in.
         used: how much of them it has used.
+        tests: which tests its mutants were in when that began.
         overdue, where: whether its time was up, and where it was then.
         hindered, is_starved: as in ``BranchDied``.
     """
 
     mutants: tuple[str, ...]
-    test: str
     fork: int
     pid: int
     pidfd: int
     until: float
     limit: float
     used: TimeUsed
+    tests: tuple[int, ...]
     overdue: bool = False
     where: str | None = None
     hindered: str | None = None
@@ -93,8 +94,11 @@ class Branch(Protocol):
     def begin(self) -> None:
         """First of all, right after the fork."""
 
-    def become(self, bunch: Bunch) -> None:
-        """Last of all: go on from here as these mutants."""
+    def become(self, bunch: Bunch, folder: str) -> None:
+        """Last of all: go on from here as these mutants; ``folder`` is this process's own."""
+
+    def give_up(self, mutants: Sequence[str], reason: str) -> None:
+        """It cannot be kept apart from its trunk: leave."""
 
 
 @dataclass(slots=True)
@@ -103,8 +107,9 @@ class Trunk:
 
     Attributes:
         branching: what to branch.
+        tests: the tests of the session, in their order.
         pipe: the file of events.
-        log: device and inode of this process's log.
+        apart: how a branch is kept apart from this process.
         branch: what every branch does.
         where_is: tells where a process is, in words, or None.
         is_moment: whether a mutant acts at a call, given the call's number among those of its site in the
@@ -112,20 +117,20 @@ class Trunk:
     """
 
     branching: Branching
+    tests: tuple[str, ...]
     pipe: EventFile
-    log: tuple[int, int] | None
+    apart: Apart
     branch: Branch
     where_is: Callable[[int], str | None] = lambda _: None
     is_moment: Callable[[Mutant, int], bool] = lambda mutant, number: True
     _tokens: Tokens = field(init=False)
     _board: Board = field(init=False)
     _live: dict[Key, list[Mutant]] = field(default_factory=dict)
-    _tests: dict[str, frozenset[str]] = field(default_factory=dict)
-    _decided: set[str] = field(default_factory=set)
-    _branched: set[str] = field(default_factory=set)
+    _gone: set[str] = field(default_factory=set)
     _children: dict[int, Child] = field(default_factory=dict)
-    _known: frozenset[int] = frozenset()
+    _known: frozenset[tuple[int, str]] = frozenset()
     _test: str = ""
+    _number: int = 0
     _pid: int = field(default_factory=os.getpid)
     _forking: bool = False
     _copied: bool = False
@@ -135,7 +140,6 @@ class Trunk:
         os.register_at_fork(before=self._note_copy)
         reading, writing = self.branching.tokens
         self._tokens = Tokens(reading, writing, lambda held: self.pipe.send(TokensHeld(held)))
-        self._tests = {mutant: frozenset(tests) for mutant, tests in self.branching.tests.items()}
         self._board = Board(self.branching.mutants)
         self._known = open_now()
         for mutant in self.branching.mutants:
@@ -149,12 +153,11 @@ class Trunk:
 
     def start_test(self, test: str) -> None:
         """A test begins."""
-        self._test = test
-        self._branched.clear()
+        self._test, self._number = test, self.tests.index(test)
         self._copied = False
 
     def fork_at(self, span: Span, call: Call, number: int) -> None:
-        """Fork for every live mutant that acts at this call and has no branch in this test yet.
+        """Fork for every mutant that acts at this call and has no branch yet.
 
         In a branch this process is its mutant from here on.
         """
@@ -177,7 +180,7 @@ class Trunk:
 
     def places(self) -> dict[int, frozenset[int]]:
         """The alternatives of the program text that are live in the running test, by place."""
-        found = {place: [self._index(one) for one in self._judged_at(place)] for place in self._places}
+        found = {place: [self._index(one) for one in self._live_at(place)] for place in self._places}
         return {place: frozenset(indexes) for place, indexes in found.items() if indexes}
 
     def tell_undiverged(self, hits: Mapping[int, int]) -> None:
@@ -192,8 +195,8 @@ class Trunk:
             mutant.id: hits[place]
             for place in self._places
             if hits.get(place)
-            for mutant in self._judged_at(place)
-            if self._index(mutant) >= 0 and self._is_due(mutant)
+            for mutant in self._live_at(place)
+            if self._index(mutant) >= 0
         }
         if same:
             self.pipe.send(Undiverged(self._test, same))
@@ -202,8 +205,8 @@ class Trunk:
     def _places(self) -> list[int]:
         return [key for key in self._live if isinstance(key, int)]
 
-    def _judged_at(self, place: int) -> Iterator[Mutant]:
-        return (one for one in self._live[place] if self._test in self._tests.get(one.id, ()))
+    def _live_at(self, place: int) -> Iterator[Mutant]:
+        return (one for one in self._live[place] if one.id not in self._gone)
 
     def _index(self, mutant: Mutant) -> int:
         """Which alternative the mutant is; negative if it cannot wait until that changes something."""
@@ -216,19 +219,20 @@ class Trunk:
             self._fork_due(key, bunches)
 
     def _fork_due(self, key: Key, bunches: Sequence[Sequence[Mutant]]) -> None:
-        found = [[mutant for mutant in bunch if self._is_due(mutant)] for bunch in bunches]
+        found = [[mutant for mutant in bunch if mutant.id not in self._gone] for bunch in bunches]
         due = [bunch for bunch in found if bunch]
-        self._live[key] = [one for one in self._live[key] if one.id not in self._decided]
+        ids = [mutant.id for bunch in due for mutant in bunch]
+        self._gone.update(ids)
+        self._live[key] = [one for one in self._live[key] if one.id not in self._gone]
         if not due:
             return
-        ids = [mutant.id for bunch in due for mutant in bunch]
-        self._branched.update(ids)
         if self._may_fork(ids):
             self._fork_each(due)
 
     def _may_fork(self, mutants: Sequence[str]) -> bool:
         """Whether forking is safe; if not, it is told that these mutants are not branched here."""
-        reason = why_not((child.pid for child in self._children.values()), self._known)
+        own = (child.pid for child in self._children.values())
+        reason = self.apart.reason() or why_not(own, self._known)
         if reason is not None:
             self.pipe.send(Unbranched(self._test, tuple(mutants), reason))
         return reason is None
@@ -251,7 +255,7 @@ class Trunk:
                         return
                     fork = self.pipe.forks
                     _, status = os.waitpid(pid, 0)
-                    self.pipe.send(ForkEnded(fork, os.waitstatus_to_exitcode(status)))
+                    self._tell_end(fork, [one.id for one in parting], os.waitstatus_to_exitcode(status))
                     bunch.waited += perf_counter() - began
 
     def finish(self) -> None:
@@ -261,47 +265,57 @@ class Trunk:
             if self._reap(self._wait()):
                 self._tokens.give_back()
 
-    def _is_due(self, mutant: Mutant) -> bool:
-        if mutant.id in self._branched or self._test not in self._tests.get(mutant.id, ()):
-            return False
-        if self.branching.every_test:
-            return True
-        while mutant.id not in self._decided and self._is_running(mutant.id):
-            # its branch in an earlier test decides whether it needs another one
-            if self._reap(self._wait()):
-                self._tokens.give_back()
-        return mutant.id not in self._decided
-
-    def _is_running(self, mutant: str) -> bool:
-        return any(mutant in child.mutants for child in self._children.values())
-
     def _fork_each(self, bunches: Sequence[list[Mutant]]) -> None:
         for bunch in bunches:
             self._wait_while_paused()
             pid = self._fork_one(bunch)
             if pid == 0:
                 return
-            # those that part wait for each other
-            limit = self.branching.walls.get(self._test, self.branching.wall) * len(bunch)
             pidfd = os.pidfd_open(pid)
             ids = tuple(mutant.id for mutant in bunch)
-            used = TimeUsed.from_now()
+            limit, used = self._limit(ids), TimeUsed.from_now()
             until, fork = used.began + limit, self.pipe.forks
-            self._children[pidfd] = Child(ids, self._test, fork, pid, pidfd, until, limit, used)
+            self._children[pidfd] = Child(ids, fork, pid, pidfd, until, limit, used, self._tests_of(ids))
             self._take_token()
+
+    def _limit(self, mutants: Sequence[str]) -> float:
+        """Seconds for the test that a branch is in; those that part wait for each other."""
+        return max(self._wall(mutant) for mutant in mutants) * len(mutants)
+
+    def _wall(self, mutant: str) -> float:
+        return self.branching.walls.get(self._test_of(mutant), self.branching.wall)
+
+    def _test_of(self, mutant: str) -> str:
+        """The test that its branch was in when it was last heard of; the last one while the session ends."""
+        return self.tests[min(self._board.test(mutant), len(self.tests) - 1)]
+
+    def _tests_of(self, mutants: Sequence[str]) -> tuple[int, ...]:
+        return tuple(self._board.test(mutant) for mutant in mutants)
 
     def _fork_one(self, bunch: list[Mutant]) -> int:
         """Fork a branch; 0 in the branch, which is these mutants then."""
         for mutant in bunch:
-            self._board.clear(mutant.id)
+            self._board.begin(mutant.id, self._number if self._bunch is None else self._bunch.test)
         foot = Foot()
         self.pipe.forks += 1
-        self._forking = True
+        reading, writing = os.pipe()
+        self._note_forking(is_on=True)
         pid = os.fork()
-        self._forking = False
+        self._note_forking(is_on=False)
         if pid == 0:
+            os.close(reading)
             self._become_branch(bunch, foot)
+            os.close(writing)
+            return pid
+        os.close(writing)
+        with open(reading, "rb") as ready:  # what it inherits must not change before it has its own
+            ready.read()
         return pid
+
+    def _note_forking(self, *, is_on: bool) -> None:
+        self._forking = is_on
+        if self._bunch is not None:
+            self._bunch.is_parting = is_on
 
     def _note_copy(self) -> None:
         """This process is about to be forked, by whomever."""
@@ -311,7 +325,7 @@ class Trunk:
 
     def _become_branch(self, mutants: list[Mutant], foot: Foot) -> None:
         self.branch.begin()
-        self._known |= {self.pipe.go_on_apart()}
+        self.pipe.go_on_apart()
         for child in self._children.values():
             os.close(child.pidfd)
         self._children.clear()
@@ -319,12 +333,16 @@ class Trunk:
             self._tokens.close()
             if self.branching.gate is not None:
                 os.close(self.branching.gate)
-        isolate_files(self.log)
+        try:
+            self.apart = self.apart.go(self.pipe.name)
+        except OSError as error:
+            why = f"a fork cannot have files of its own: {error.strerror or error}"
+            self.branch.give_up([mutant.id for mutant in mutants], why)
         foot.restore()
         choices = {mutant.id: self.branching.choices.get(mutant.id, ()) for mutant in mutants}
         self._bunch = Bunch(mutants, choices, self._board, self.part_at_place)
         self._pid = os.getpid()
-        self.branch.become(self._bunch)
+        self.branch.become(self._bunch, self.apart.folder)
 
     def _wait_while_paused(self) -> None:
         """Branches at work end meanwhile, and what they held goes back; the trunk keeps its own token."""
@@ -341,8 +359,8 @@ class Trunk:
 
     def _take_token(self) -> None:
         """The trunk's token went to the branch: wait for another, from the pool or from a branch's end."""
-        while not self._tokens.take():
-            if self._reap(self._wait(self._tokens.reading)):
+        while self.branching.serial or not self._tokens.take():
+            if self._reap(self._wait(None if self.branching.serial else self._tokens.reading)):
                 return
 
     def _wait(self, other: int | None = None) -> list[int]:
@@ -363,6 +381,7 @@ class Trunk:
         """
         now = monotonic()
         for child in self._children.values():
+            self._note_progress(child, now)
             if child.is_out_of_time(now):
                 child.overdue = True
                 child.where = self.where_is(child.pid)
@@ -374,15 +393,28 @@ class Trunk:
                 return True
         return False
 
+    def _note_progress(self, child: Child, now: float) -> None:
+        """A branch whose time seems to be up may have begun another test meanwhile."""
+        tests = self._tests_of(child.mutants) if now >= child.until else child.tests
+        if tests != child.tests:
+            child.tests, child.used = tests, TimeUsed.from_now([child.pid])
+            child.limit = self._limit(child.mutants)
+            child.until = now + child.limit
+
     def _bury(self, child: Child) -> None:
         _, status = os.waitpid(child.pid, 0)
         os.close(child.pidfd)
         code = os.waitstatus_to_exitcode(status)
-        if not self.branching.every_test:
-            self._decided.update(one for one in child.mutants if self._board.code(one) != ALIVE)
+        overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None
+        self._tell_end(
+            child.fork, child.mutants, code, overdue=overdue,
+            where=child.where, hindered=child.hindered, is_starved=child.is_starved,
+        )  # fmt: skip
+
+    def _tell_end(self, fork: int, mutants: Sequence[str], code: int, **more: Any) -> None:
+        """How a branch has ended. Of several mutants nobody knows which of them made it die."""
+        is_told = code in (DECIDED, STOPPED) or (code >= 0 and self._board.code(mutants[0]) == FINISHED)
         died = None
-        if code not in (ALIVE, DECIDED, STOPPED) and len(child.mutants) == 1:  # of several, who knows
-            overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None
-            end = (overdue, child.where, child.hindered, child.is_starved)
-            died = BranchDied(child.mutants[0], child.test, code, *end)
-        self.pipe.send(ForkEnded(child.fork, code, died))
+        if len(mutants) == 1 and (not is_told or more.get("overdue")):
+            died = BranchDied(mutants[0], self._test_of(mutants[0]), code, **more)
+        self.pipe.send(ForkEnded(fork, code, died))

@@ -74,9 +74,7 @@ class Members:
         self._acted = self._acted or end.acted > 0
         if places := {place for one in here for place in one.places}:
             self._session.pipe.send(PlacesReached(end.test, tuple(sorted(places)), elsewhere=True))
-        if here and end.footprint is not None:
-            shared = tuple((one.began.pid, one.name) for one in here)
-            end = replace(end, footprint=replace(end.footprint, processes=shared))
+        end = replace(end, processes=tuple((one.began.pid, one.name) for one in here))
         for one in here:
             one.forget()
         return end if self.doubt is None else replace(end, failure=end.failure or self.doubt)

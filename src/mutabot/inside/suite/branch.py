@@ -1,124 +1,148 @@
-"""A branch: a process that was forked in the middle of a test, finishes it as its mutant, and leaves."""
+"""A branch: a process that was forked in the middle of a test, and goes on to the end as its mutant."""
 
 from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from mutabot.border.events import BranchEnd, Unbranched
+from mutabot.border.events import BranchEnd, BranchFinished, Unbranched
+from mutabot.border.job import write_job
 from mutabot.border.test_end import TestEnd
-from mutabot.inside.footprint.deeds import Deed
-from mutabot.inside.footprint.footprints import Footprints
 from mutabot.inside.fork.bunch import Bunch
 from mutabot.inside.fork.lifeline import die_with_parent
-from mutabot.inside.fork.trunk import ALIVE, DECIDED, FAILED, STOPPED
+from mutabot.inside.fork.trunk import DECIDED, FINISHED, STOPPED
+from mutabot.inside.processes.member import watch_forks
+from mutabot.inside.processes.members import Members
 from mutabot.inside.session import Session
 
 from . import classify
 
+_PROCESSES = {"subprocess.Popen", "os.posix_spawn", "os.system", "os.fork", "os.forkpty", "os.exec"}
 
-class BranchOfTest:
+
+class BranchOfSession:
     """What the trunk's process does where it turns out to be a branch; see ``inside.fork.trunk.Branch``.
 
     Args:
         session: the job at hand.
-        footprints: what tests leave.
         start_clocks: lets what the test takes count from now on.
 
     Attributes:
         item: the running test.
+        members: the processes below a branch; None if it has started none.
     """
 
-    def __init__(self, session: Session, footprints: Footprints, start_clocks: Callable[[], None]) -> None:
+    def __init__(self, session: Session, start_clocks: Callable[[], None]) -> None:
         self.item: pytest.Item | None = None
+        self.members: Members | None = None
         self._session = session
-        self._footprints = footprints
         self._start_clocks = start_clocks
         self._trunk = 0
         self._bunch: Bunch | None = None
         self._shared: float | None = None
+        self._hears = False
 
     def expect(self) -> None:
         """This process is a trunk from now on."""
         self._trunk = os.getpid()
 
+    @property
+    def is_one(self) -> bool:
+        """Whether this process is a branch."""
+        return self._bunch is not None
+
     def begin(self) -> None:
-        """Right after the fork: take down nothing that is shared when the test is over."""
+        """Right after the fork."""
         die_with_parent(self._trunk)
         self._start_clocks()
         meter = self._session.meter
         self._shared = meter.simulated if meter is not None else None
-        assert self.item is not None
-        keep_shared_fixtures(self.item)
-        self._footprints.files.on_deed = self._leave_before
         gc.freeze()  # what is never looked at stays shared with the trunk
-        # nobody reads a branch's traceback, and to lay one out takes longer than most branches
-        self.item.config.option.tbstyle = "value"
+        if self.item is not None:
+            # nobody reads a branch's traceback, and to lay one out takes longer than most branches
+            self.item.config.option.tbstyle = "value"
 
-    def become(self, bunch: Bunch) -> None:
-        """Go on from here as these mutants."""
-        self._bunch, self._trunk = bunch, os.getpid()  # from which others may part
+    def become(self, bunch: Bunch, folder: str) -> None:
+        """Go on from here as these mutants; ``folder`` is this process's own."""
+        self._bunch, self._trunk, self._folder = bunch, os.getpid(), folder  # from which others may part
+        cache = getattr(self.item.config, "cache", None) if self.item is not None else None
+        if cache is not None:  # what one process keeps there, others must not find
+            cache._cachedir = Path(folder, "cache")
+        if not self._hears:
+            self._hears = True
+            sys.addaudithook(self._hear)
         self._session.become(bunch)
 
-    def leave_if_it_is_one(self, end_of_test: Callable[[], TestEnd] | None) -> None:
-        """The test is over: a branch reports and goes, without running anything of the trunk's.
+    def start_test(self) -> None:
+        """A test begins, which is a branch's second at least."""
+        if self._bunch is not None:
+            self._bunch.next_test()
+            self._bunch.waited = 0.0
+            self._shared = None
 
-        ``end_of_test`` tells how the test has ended; None if it was torn off.
-        """
+    def end_test(self, end: TestEnd) -> None:
+        """A test is over: a branch tells so, and leaves if it decides about its mutant."""
         if self._bunch is None:
             return
-        code = FAILED
-        try:
-            if end_of_test is not None:
-                code = self._report(self._bunch, end_of_test())
-        finally:  # whatever happens, the trunk's code must not run on in this process
-            os._exit(code)
+        job = self._session.job
+        if job.branching is not None and end.is_decided and not job.branching.every_test:
+            try:
+                self._report(self._bunch, end, self._bunch.end(DECIDED))
+            finally:  # whatever happens, nothing must run on in this process
+                os._exit(DECIDED)
+        self._report(self._bunch, end, self._bunch.known)
 
-    def _report(self, bunch: Bunch, end: TestEnd) -> int:
-        """Say how the test of this branch ended; returns the exit code that tells the trunk."""
-        sites = self._session.recorder.sites_of_trace() if end.outcome != classify.FAILED else ()
+    def finish(self) -> None:
+        """The session is over: what its exit code is, the parent will tell."""
+        if self._bunch is not None:
+            self._bunch.next_test()
+            self._session.pipe.send(BranchFinished(tuple(self._bunch.end(FINISHED))))
+
+    def give_up(self, mutants: Sequence[str], reason: str) -> None:
+        """Leave its mutants to a process of their own."""
+        try:
+            self._session.pipe.send(Unbranched(self._session.test, tuple(mutants), reason))
+        finally:
+            os._exit(STOPPED)
+
+    def _report(self, bunch: Bunch, end: TestEnd, mutants: Sequence[str]) -> None:
+        """Say how a test of this branch ended."""
+        sites = self._session.recorder.sites_of(end.trace) if end.outcome != classify.FAILED else ()
         if end.outcome == classify.FAILED:  # only survivors are compared with the original
             end = replace(end, trace=(), returned=(), moments=())
-        code = DECIDED if end.is_decided else ALIVE
-        mutants = bunch.end(code)
         each = 1 / len(mutants)  # they share what it took
         end = replace(end, wall=(end.wall - bunch.waited) * each, cpu=end.cpu * each)
         for number, mutant in enumerate(mutants):  # the first one was simulated, for all of them
             self._session.pipe.send(BranchEnd(mutant, end, sites, end.simulated if number else self._shared))
-        return code
 
-    def _leave_before(self, deed: Deed) -> None:
-        """A branch is about to do what the original does not, and what others would notice: it leaves."""
-        mutants = self._bunch.end(STOPPED) if self._bunch is not None else [""]
-        try:
-            self._session.pipe.send(
-                Unbranched(self._session.test, tuple(mutants), f"with a mutant, it {deed}")
-            )
-        finally:
-            os._exit(STOPPED)
+    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+        """The program of a branch is about to start a process, which is to be the mutant as well."""
+        if event not in _PROCESSES or self._bunch is None or self._bunch.is_parting:
+            return
+        if self.members is None or os.getpid() != self._trunk:
+            if os.getpid() != self._trunk:  # a process that the test has forked
+                return
+            if len(self._bunch.mutants) > 1:
+                why = "mutants that behaved alike until then start a process"
+                self.give_up(self._bunch.end(STOPPED), why)
+            self.members = self._own_processes(self._bunch)
 
-
-class _Parent:
-    """Stands for a next test in the same place: nothing above the present test is taken down for it."""
-
-    def __init__(self, item: pytest.Item) -> None:
-        self._chain = item.listchain()[:-1]
-
-    def listchain(self) -> list[Any]:
-        return self._chain
-
-
-def keep_shared_fixtures(item: pytest.Item) -> None:
-    """Let the teardown of this test take down what is the test's own, and nothing that others share."""
-    state = item.session._setupstate
-    teardown = state.teardown_exact
-
-    def teardown_own(nextitem: pytest.Item | None) -> None:
-        teardown(_Parent(item))  # type: ignore[arg-type]  # only its chain is looked at
-
-    state.teardown_exact = teardown_own  # type: ignore[method-assign]  # in this process alone
+    def _own_processes(self, bunch: Bunch) -> Members:
+        session, job = self._session, self._session.job
+        text = job.instrumentation
+        if text is not None:
+            text = replace(text, active=tuple(bunch.choices[bunch.first.id]))
+        job = replace(job, mutant=bunch.first, branching=None, instrumentation=text)
+        write_job(self._folder, job)
+        session.job = replace(job, branching=session.job.branching)
+        members = Members(self._folder, session)
+        members.start_test(session.test)
+        watch_forks(members.folder, session)
+        return members

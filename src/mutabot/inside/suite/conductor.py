@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-import traceback
 from collections.abc import Generator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,8 +20,10 @@ from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.assertions import Assertions
 from mutabot.inside.checks.comparisons import Comparisons
 from mutabot.inside.event_file import EventFile, Held
-from mutabot.inside.footprint.footprints import Footprints
+from mutabot.inside.fork.event_loops import track_event_loops
+from mutabot.inside.fork.isolate import Apart
 from mutabot.inside.fork.lifeline import die_with_parent, nobody_listens
+from mutabot.inside.fork.private_files import PrivateFiles
 from mutabot.inside.fork.trunk import FAILED as BRANCH_FAILED
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import limit_memory
@@ -58,19 +59,18 @@ class Conductor:
 
     Attributes:
         running: the hooks for each of its tests.
-        footprints: what tests leave.
     """
 
     def __init__(self, job: Job, pipe: EventFile, server: CopyServer | None = None) -> None:
         self.locator = Locator(job.root, job.program, job.oracle)
         self._held = Held()
         self.session = Session(job, pipe if server is None else self._held, self.locator)
-        self.footprints = Footprints(job, self.locator)
-        self.running = Running(self.session, self.locator, self.footprints)
+        self.running = Running(self.session, self.locator)
         self._server = server
         self._collected: tuple[str, ...] = ()
         self._errors: list[str] = []
         self._not_private: str | None = None
+        self._files: PrivateFiles | None = None
 
     @property
     def job(self) -> Job:
@@ -111,7 +111,10 @@ class Conductor:
 
     def _make_private(self, job: Job, home: str) -> None:
         if job.private_files:
-            self._not_private = self.footprints.make_private(home)
+            root = os.path.realpath(job.root)
+            files = PrivateFiles(root, os.path.realpath(home), os.path.join(root, ".mutabot"))
+            self._not_private = files.make()
+            self._files = files if self._not_private is None else None
             die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
@@ -120,20 +123,25 @@ class Conductor:
         watch_forks(self.running.members.folder, self.session)
         if self.job.branching is not None:
             preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
-            self.grow(self.job.branching, os.path.join(home, LOG))
+            self.grow(self.job.branching, home)
 
-    def grow(self, branching: Branching, log_file: str) -> None:
-        """Be a trunk: fork a branch for every live mutant."""
-        log, pipe = os.stat(log_file), self.session.pipe
+    def grow(self, branching: Branching, home: str) -> None:
+        """Be a trunk: fork a branch for every mutant."""
+        log, pipe = os.stat(os.path.join(home, LOG)), self.session.pipe
         assert isinstance(pipe, EventFile)
-        file = os.path.join(os.path.dirname(log_file), stack.FILE)
+        file = os.path.join(home, stack.FILE)
+        track_event_loops()
+        why = self._not_private or (None if self._files is not None else "private_files is switched off")
+        apart = Apart(
+            (log.st_dev, log.st_ino), home, self._files, f"its files are not private: {why}" if why else None
+        )
         branch = self.running.branch
         branch.expect()
 
         def where_is(pid: int) -> str | None:
             return stack.ask(pid, file, self.job.root)
 
-        self.session.grow(Trunk(branching, pipe, (log.st_dev, log.st_ino), branch, where_is))
+        self.session.grow(Trunk(branching, self.job.tests or (), pipe, apart, branch, where_is))
 
     def look_at_checks(self) -> None:
         """Note what tests check."""
@@ -156,7 +164,6 @@ class Conductor:
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Keep the job's tests, in the job's order."""
         self._collected = tuple(node_id(item) for item in items)
-        self.footprints.has_others = len(items) > 1
         self._select(items)
 
     def _select(self, items: list[pytest.Item]) -> None:
@@ -215,30 +222,16 @@ class Conductor:
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:
         """All tests are collected: run them, or fork a copy of this process for every job."""
         commission = self._server.serve() if self._server is not None else None
-        if self._server is not None and commission is None:
-            session.items.clear()
-        if commission is None:
-            self.session.look_ahead()
-            seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
-            result = yield
-            drop_idle_plugins(session.config)
-            return result
-        return (yield from self._run_copy(session, commission))
-
-    def _run_copy(self, session: pytest.Session, commission: Commission) -> Generator[None, Any, Any]:
-        """A copy of the server runs its job and ends."""
-        from mutabot.inside.fork.copies import leave  # noqa: PLC0415  # see above
-
-        status = int(pytest.ExitCode.INTERNAL_ERROR)
-        try:
+        if commission is not None:
             self._take_on(session, commission)
-            yield
-            status = int(bool(session.testsfailed))
-            self._say_goodbye(status)
-        except BaseException as error:
-            status = self._say_why(error)
-        finally:
-            leave(status)
+        if self._server is not None:
+            session.items.clear()
+            return (yield)
+        self.session.look_ahead()
+        seeds.seed_all(seeds.derive(self.job.seed, self.job.round, "session"))
+        result = yield
+        drop_idle_plugins(session.config)
+        return result
 
     def _take_on(self, session: pytest.Session, commission: Commission) -> None:
         """Become the session of a job."""
@@ -255,19 +248,6 @@ class Conductor:
             cache._cachedir = Path(commission.home, "cache")
         _say_where_on_signal(commission.home)
         self._begin(commission.home)
-        self.session.look_ahead()
-        seeds.seed_all(seeds.derive(job.seed, job.round, "session"))
-
-    def _say_why(self, error: BaseException) -> int:
-        """A copy's tests were interrupted: its end, as pytest would tell it."""
-        status = int(getattr(error, "returncode", None) or pytest.ExitCode.INTERRUPTED)
-        if not isinstance(error, pytest.exit.Exception | pytest.Session.Interrupted | pytest.Session.Failed):
-            traceback.print_exception(error)
-            status = int(pytest.ExitCode.INTERNAL_ERROR)
-        elif isinstance(error, pytest.exit.Exception):
-            print(f"\n!!! {type(error).__module__}.{type(error).__qualname__}: {error}")
-        self._say_goodbye(status)
-        return status
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, exitstatus: int) -> None:
@@ -277,6 +257,10 @@ class Conductor:
 
     def _say_goodbye(self, status: int) -> None:
         """Say what is left to say, and goodbye."""
+        branch = self.running.branch
+        if branch.is_one:
+            branch.finish()
+            return
         members = self.running.members
         self.session.finish(members.texts_seen() if members is not None else ())
         if members is not None and members.doubt is not None:

@@ -12,21 +12,19 @@ from typing import Any
 import pytest
 
 from mutabot.border.events import TestStart
-from mutabot.border.footprint import Footprint
 from mutabot.border.test_end import TestEnd
 from mutabot.border.time_used import TimeUsed
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.looks import Looks
 from mutabot.inside.evidence import Evidence
-from mutabot.inside.footprint.footprints import Footprints
 from mutabot.inside.node_ids import node_id
 from mutabot.inside.processes.members import Members
 from mutabot.inside.readings.probes import Reading
 from mutabot.inside.session import Session
 from mutabot.inside.watchdogs import drop_idle_watchdog, watched, watched_by_faulthandler
 
-from .branch import BranchOfTest
+from .branch import BranchOfSession
 from .classify import (
     FAILED,
     PASSED,
@@ -36,6 +34,7 @@ from .classify import (
     outcome_so_far,
     unexpected_pass,
 )
+from .fixed_addresses import FixedAddresses
 
 #: parts that are looked at in what a fixture gives
 _MOST = 1000
@@ -47,24 +46,24 @@ class Running:
     Args:
         session: the job at hand.
         locator: whose file is whose.
-        footprints: what tests leave.
 
     Attributes:
-        branch: what to do if this process turns out to be a branch when the test is over.
+        branch: what to do if this process turns out to be a branch.
         members: processes below the tests; None as long as no job is known.
         looks: the checks that the test makes.
     """
 
-    def __init__(self, session: Session, locator: Locator, footprints: Footprints) -> None:
+    def __init__(self, session: Session, locator: Locator) -> None:
         self.session = session
         self.locator = locator
-        self.footprints = footprints
-        self.branch = BranchOfTest(session, footprints, self.start_clocks)
+        self.branch = BranchOfSession(session, self.start_clocks)
         self.members: Members | None = None
+        self.addresses = FixedAddresses()
         self.looks = Looks()
         self._ending: Ending | None = None
         self._expected: Ending | None = None
         self._outcome = PASSED
+        self._logged: bool | None = None
         self._reading = Reading()
         self._started = (0.0, 0.0)
         self._used = TimeUsed.from_now()
@@ -79,6 +78,8 @@ class Running:
         """One test, its fixtures included."""
         self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
         self.looks.clear()
+        self._logged = None
+        self.branch.start_test()
         self.session.pipe.send(TestStart(node_id(item)))
         limit = watched_by_faulthandler(item)
         if limit is not None:
@@ -86,25 +87,27 @@ class Running:
         job = self.session.job
         seeds.seed_all(seeds.derive(job.seed, job.round, node_id(item)))
         self.branch.item = item
-        self.footprints.start_test()
+        self.addresses.start_test()
         self.start_clocks()
-        if self.members is not None:
-            self.members.start_test(node_id(item))
+        if (members := self._members) is not None:
+            members.start_test(node_id(item))
         self.session.start_test(node_id(item), partial(objects_of_fixtures, item))
-        try:
-            result = yield
-        except BaseException:
-            self.branch.leave_if_it_is_one(None)
-            raise
-        self.branch.leave_if_it_is_one(lambda: self._test_end(node_id(item)))
+        result = yield
         end = self._test_end(node_id(item))
-        if self.members is not None:
-            end = self.members.merged(end)
+        if (members := self._members) is not None:
+            end = members.merged(end)
+        self.branch.end_test(end)
         self.session.end_test()
-        self.session.pipe.send(end)
+        if not self.branch.is_one:
+            self.session.pipe.send(end)
         if job.stop_at_kill and end.is_decided:
             item.session.shouldstop = "the mutant's verdict is known"
         return result
+
+    @property
+    def _members(self) -> Members | None:
+        """The processes below this one; those of a trunk are none of its branches'."""
+        return self.branch.members if self.branch.is_one else self.members
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
@@ -127,10 +130,9 @@ class Running:
             self.session.returns.begin_call()
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
-    def pytest_runtest_teardown(self, item: pytest.Item) -> Generator[None, Any, Any]:
+    def pytest_runtest_teardown(self) -> Generator[None, Any, Any]:
         """Before fixtures take the world down: take the probes."""
         self._reading = self.session.take_probes()
-        self.footprints.take_fixtures(item)
         return (yield)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -146,6 +148,11 @@ class Running:
             if is_expected_failure(report):
                 self._expected = self._classified(item, call)
         return report
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """A report counts for the suite: a plug-in that runs a test again does not report what it undoes."""
+        self._logged = bool(self._logged) or report.failed
 
     def _note_failure(self, ending: Ending) -> None:
         """The first failure counts; of several subtests, the first that is more than a refusal."""
@@ -172,6 +179,8 @@ class Running:
         return self._used.hindrance([os.getpid()]) if is_overdue else None
 
     def _test_end(self, test: str) -> TestEnd:
+        if self._outcome == FAILED and self._logged is False:
+            self._ending, self._outcome = None, PASSED
         session, evidence, ending = self.session, self.session.evidence, self._ending
         wall, cpu = perf_counter() - self._started[0], process_time() - self._started[1]
         meter, returns = session.meter, session.returns
@@ -213,7 +222,7 @@ class Running:
             prepared=returns.prepared if returns is not None else 0,
             probes=self._reading.values,
             unread=self._reading.unread,
-            footprint=self._footprint(),
+            exclusive=self.addresses.taken,
             moments=tuple(session.along.entries) if self.session.job.record else (),
             reading=session.rehearsal.seconds,
             not_along=session.rehearsal.why_not,
@@ -222,12 +231,6 @@ class Running:
             recording=session.recording.text(session.recorder.told()),
             hindered=self._hindered(ending),
         )
-
-    def _footprint(self) -> Footprint | None:
-        """What the test leaves; a branch that has failed has nothing to leave it to."""
-        if not self.session.job.record or (self.session.branch is not None and self._outcome == "failed"):
-            return None
-        return self.footprints.of_test()
 
 
 def is_no_program(evidence: Evidence, ending: Ending | None) -> bool:

@@ -85,7 +85,7 @@ class SessionText:
         """The test is over."""
         if self.hook.sightings is not None:
             self._tell_reached()
-        elif self.hook.alternatives.on_place is not None:
+        elif self.hook.alternatives.on_place is not None and not self.is_mutant:
             self.hook.alternatives.watch({})  # what is reached between tests belongs to none
 
     def finish(self, others: Iterable[TextsSeen] = ()) -> None:

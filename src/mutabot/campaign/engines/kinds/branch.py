@@ -1,7 +1,7 @@
-"""Branch: each test runs once as the original, and forks where a mutant differs; the fork ends as the mutant.
+"""Branch: the suite runs once as the original, and forks where a mutant differs; the fork goes on as that.
 
-Mutants whose tests share anything with others, or do what a forked process would share, are left to the next
-engine, as are those that act before any test.
+Mutants that are hit where it is not safe to fork are left to the next engine, as are those that act before
+any test, or in processes below the tests.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from mutabot.campaign.baseline.baseline import EARLY
 from mutabot.campaign.baseline.taking import REPETITIONS
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.engines.controls import Control, controls_in_branches, end_of
+from mutabot.campaign.engines.controls import Control, controls_of, end_of
 from mutabot.campaign.engines.engine import Engine, Remainder, Trial
 from mutabot.campaign.engines.fresh import Hindered, replay_alone
 from mutabot.campaign.engines.suspects import clear_up
@@ -30,19 +30,13 @@ class _Controls:
 
     @classmethod
     def of(cls, campaign: Campaign, trials: Iterable[Trial]) -> _Controls:
-        """Those not proven yet; for ladders in each round, since a threshold rests on single kills."""
-        trials = list(trials)
-        rounds = {0, *(round for mutant, round in trials if mutant.ladder)}
-        found = controls_in_branches(campaign.baseline, (mutant for mutant, _ in trials), sorted(rounds))
+        """Those not proven yet."""
+        found = controls_of(campaign.baseline, (mutant for mutant, _ in trials), forked=True)
         return cls({one.mutant.id: one for one in found if one not in campaign.proven})
 
     @property
     def trials(self) -> list[Trial]:
         return [(control.mutant, control.round) for control in self.by_id.values()]
-
-    @property
-    def tests(self) -> dict[str, tuple[str, ...]]:
-        return {mutant: control.tests for mutant, control in self.by_id.items()}
 
 
 class Branch:
@@ -60,7 +54,7 @@ class Branch:
         trunks = Trunks(campaign, left, self.name)
         by_id = {mutant.id: mutant for mutant, _ in trials}
         hindered = Hindered()
-        for outcome in trunks.run([*controls.trials, *trials], only=controls.tests):
+        for outcome in trunks.run([*controls.trials, *trials]):
             control = controls.by_id.get(outcome.mutant)
             why = trunks.hindered.get((outcome.mutant, outcome.round))
             if control is None and why is not None:
@@ -75,26 +69,26 @@ class Branch:
                 raise control.error(end.detail)
             campaign.proven.add(control)
         _tell(campaign, left)
-        clear_up(campaign, trunks.suspects, trunks.orders)
+        clear_up(campaign, trunks.suspects)
         left.trials = [trial for trial in left.trials if trial[0].id not in controls.by_id]
         yield from replay_alone(campaign, hindered)
 
     def try_controls(
         self, campaign: Campaign, mutants: Iterable[Mutant], left: Remainder
     ) -> Iterator[ControlEnd]:
-        """Identity in every test of the first round, fatal once per test file."""
+        """One pair for each way into the program."""
         mutants = list(mutants)
         controls = _Controls.of(campaign, [(mutant, 0) for mutant in mutants])
         baseline, progress = campaign.baseline, campaign.progress
         for mutant, round in ((one, round) for one in mutants for round in range(campaign.request.rounds)):
-            forbidding = baseline.why_not_branch(round, baseline.judges(round, mutant))
+            forbidding = baseline.why_not_fork(round, mutant)
             why = baseline.why_apart(mutant)
             if forbidding is not None:
                 left.leave(mutant, round, *forbidding)
             elif why is not None:
                 left.set_apart(mutant, round, why)
         progress.stage("controls", len(controls.by_id))
-        for outcome in Trunks(campaign, left, self.name).run(controls.trials, only=controls.tests):
+        for outcome in Trunks(campaign, left, self.name).run(controls.trials):
             control = controls.by_id[outcome.mutant]
             end = end_of(campaign, control, outcome)
             progress.advance(f"{control.name}, {control.subject}: {'as it must' if end.ok else end.detail}")

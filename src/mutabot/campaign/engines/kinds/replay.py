@@ -31,7 +31,7 @@ class Replay:
     def try_controls(
         self, campaign: Campaign, mutants: Iterable[Mutant], left: Remainder
     ) -> Iterator[ControlEnd]:
-        """One identity per selection of tests, one fatal per test file."""
+        """One pair for each way into the program."""
         yield from run_controls(campaign, mutants)
 
 

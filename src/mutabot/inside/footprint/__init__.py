@@ -1,1 +1,0 @@
-"""What a test shares with others: fixtures, state of the process, files."""

@@ -1,0 +1,13 @@
+import mission
+
+
+def test_pick(arm):
+    mission.pick(arm)
+
+
+def test_pick_again(arm):
+    mission.pick(arm)
+
+
+def test_angle(arm):
+    assert arm.angle > 0
