@@ -4,9 +4,9 @@
     python benchmarks/witness.py FOLDER --as RECORDED    the same mutants as in an earlier record
     python benchmarks/same_results.py RECORDED FOLDER    what differs
 
-``benchmarks/witness_records`` holds what commit 96189ca said, before the redesign; where a project is missing
-there, that commit can still be recorded. Install both versions as wheels to compare projects that use
-Hypothesis, which takes constants for its examples from every module that lies outside of site-packages.
+``benchmarks/witness_records`` holds what commit 96189ca said, before the redesign. Install both versions as
+wheels to compare projects that use Hypothesis, which takes constants for its examples from every module that
+lies outside of site-packages.
 
 Only the command line is used (``list``, ``run``, ``results``), so ``--command`` may name another version. Of
 each mutant and round a record keeps the verdict, what noticed the mutant, the test, the exception, its
@@ -49,11 +49,12 @@ ROS = {"ros1": "rospy", "ros2": "rclpy"}
 SMALL: Mapping[str, int] = {"robot": 60, "classical": 8}
 #: what is kept of an outcome; of ROS the first alone
 FACTS = ("verdict", "by", "test", "exception", "message", "hits", "acted", "divergence", "gaps", "example")
-#: what differs between equal runs: addresses, temporary folders, process numbers, times
+#: what differs between equal runs: addresses, temporary and installation folders, process numbers, times
 ACCIDENTS = (
     (re.compile(r"0x[0-9a-fA-F]{6,}"), "0x…"),
     (re.compile(r"pytest-\d+"), "pytest-…"),
     (re.compile(r"/tmp/[\w.-]+"), "/tmp/…"),
+    (re.compile(r"/[\w./-]+/(bin/python|src/mutabot|site-packages)\b"), r"…/\1"),
     (re.compile(r"\b(pid|process)[ =]\d+"), r"\1 …"),
     (re.compile(r"; it said last: .*", re.DOTALL), ""),
 )

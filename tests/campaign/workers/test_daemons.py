@@ -175,7 +175,7 @@ def test_the_tests_see_no_orphans_of_theirs(tmp_path: Path, heartbeat: Path) -> 
             assert arm.x == 0.5
         """
     folder = project(tmp_path, MISSION.replace("start_daemon()", "pass"), tests, heartbeat)
-    found = outcomes(run_campaign(request_for(folder, engine=REPLAY, rounds=1), Quiet()))
+    found = outcomes(run_campaign(request_for(folder, engine="replay", rounds=1), Quiet()))
     assert {one.verdict.value for one in found} == {"killed"}
 
 

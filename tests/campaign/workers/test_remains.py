@@ -15,7 +15,7 @@ from mutabot.border.processes import VARIABLE
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers.remains import end_abandoned, end_left_over
 from mutabot.model import Verdict
-from tests.campaign.project import REPLAY, Quiet, outcomes, request_for, write_project
+from tests.campaign.project import Quiet, outcomes, request_for, write_project
 
 MISSION = """
     def run(arm):
@@ -55,7 +55,7 @@ def test_nothing_is_left(tmp_path: Path) -> None:
     numbers = Path("/dev/shm", tmp_path.name + str(os.getpid()))  # workers see no others' changes in /tmp
     tests = TESTS.format(numbers=str(numbers))
     project = write_project(tmp_path / "project", MISSION, tests)
-    found = outcomes(run_campaign(request_for(project, engine=REPLAY, rounds=1), Quiet()))
+    found = outcomes(run_campaign(request_for(project, engine="replay", rounds=1), Quiet()))
     pids = [int(line) for line in numbers.read_text("ascii").splitlines()]
     numbers.unlink()
     # the worker was killed: nobody in it cleared up
