@@ -55,7 +55,7 @@ ACCIDENTS = (
     (re.compile(r"pytest-\d+"), "pytest-…"),
     (re.compile(r"/tmp/[\w.-]+"), "/tmp/…"),
     (re.compile(r"/[\w./-]+/(bin/python|src/mutabot|site-packages)\b"), r"…/\1"),
-    (re.compile(r"\b(pid|process)[ =]\d+"), r"\1 …"),
+    (re.compile(r"\b(pid|process|parent)[ =]\d+"), r"\1 …"),
     (re.compile(r"; it said last: .*", re.DOTALL), ""),
 )
 
