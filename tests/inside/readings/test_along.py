@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import threading
+import time
 from functools import partial
 from itertools import count
 from typing import Any
@@ -58,6 +59,21 @@ def test_a_reading_that_changes_nothing_can_be_repeated() -> None:
     assert found.why_not is None
     assert found.seconds is not None
     assert 0 <= found.seconds < 1
+
+
+def test_one_reading_that_happens_to_take_long_does_not_count() -> None:
+    number = count()
+
+    def read() -> Reading:
+        if next(number) == 1:
+            until = time.thread_time() + 0.5
+            while time.thread_time() < until:
+                pass
+        return Reading({"x": 1.0})
+
+    _, found = rehearse(read)
+    assert found.seconds is not None
+    assert found.seconds < 0.25
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,8 @@ from .probes import Reading
 FIRST, NEXT = 100, 50
 #: seconds beyond which a reading is too slow to be repeated
 _SLOW = 0.05
+#: how often reading the probes is timed: the least counts, since the system may do other things meanwhile
+_TIMES = 3
 
 
 @dataclass(slots=True)
@@ -91,15 +93,22 @@ def rehearse(read: Callable[[], Reading]) -> tuple[Reading, Rehearsal]:
         return first, Rehearsal()
     if took > _SLOW:
         return first, Rehearsal(None, f"reading them takes {1e3 * took:.0f} ms")
-    drawn, began = _random_state(), time.thread_time()
-    second = read()
-    seconds = time.thread_time() - began
+    drawn = _random_state()
+    timed = [_timed(read) for _ in range(_TIMES)]
+    second, seconds = timed[0][0], min(seconds for _, seconds in timed)
     if drawn != _random_state():
         return first, Rehearsal(None, "reading them draws random numbers")
     for key in first.values.keys() | second.values.keys():
         if not _is_same(first.values.get(key), second.values.get(key)):
             return first, Rehearsal(None, f"{key} changes when it is read twice")
     return first, Rehearsal(seconds)
+
+
+def _timed(read: Callable[[], Reading]) -> tuple[Reading, float]:
+    """The probes, and the seconds of processor time that reading them took."""
+    began = time.thread_time()
+    reading = read()
+    return reading, time.thread_time() - began
 
 
 def _is_same(one: Any, other: Any) -> bool:
