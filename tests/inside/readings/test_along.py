@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import threading
 import time
+from collections.abc import Callable
 from functools import partial
 from itertools import count
 from typing import Any
@@ -61,19 +62,33 @@ def test_a_reading_that_changes_nothing_can_be_repeated() -> None:
     assert 0 <= found.seconds < 1
 
 
-def test_one_reading_that_happens_to_take_long_does_not_count() -> None:
+@pytest.mark.parametrize("slow", range(2))
+@pytest.mark.parametrize("clock", [time.thread_time, time.perf_counter], ids=["at work", "waiting"])
+def test_one_reading_that_happens_to_take_long_does_not_count(slow: int, clock: Callable[[], float]) -> None:
     number = count()
 
     def read() -> Reading:
-        if next(number) == 1:
-            until = time.thread_time() + 0.5
-            while time.thread_time() < until:
+        if next(number) == slow:
+            until = clock() + 0.5
+            while clock() < until:
                 pass
         return Reading({"x": 1.0})
 
     _, found = rehearse(read)
+    assert found.why_not is None
     assert found.seconds is not None
     assert found.seconds < 0.25
+
+
+def test_readings_that_always_take_long_are_not_repeated() -> None:
+    def read() -> Reading:
+        time.sleep(0.06)
+        return Reading({"x": 1.0})
+
+    _, found = rehearse(read)
+    assert found.seconds is None
+    assert found.why_not is not None
+    assert found.why_not.startswith("reading them takes")
 
 
 @pytest.mark.parametrize(
