@@ -74,14 +74,12 @@ TESTS = """
         mission.run(arm)
         assert arm.x > 0
 """
-#: files are not private: else the pipe would be another one inside
 CONFIGURED = """
     program = ["mission.py"]
     vocabulary = ["robot.toml"]
     pytest_args = ["-p", "telling", "-o", "pythonpath=."]
-    private_files = false
 """
-REPORT, PLAN = "inside.suite.branch.BranchOfTest._report", "journal.journal.Journal.set_plan"
+REPORT, PLAN = "inside.suite.branch.BranchOfSession._report", "journal.journal.Journal.set_plan"
 #: travel -> the engine of its campaign, and what is called only by the processes that go it, in their order
 TRAVELS = {
     "A call through a mutant": ("replay", ["inside.calls.activation.Activation.perform"]),
@@ -105,10 +103,9 @@ def steps(travel: str) -> list[str]:
 
 def calls_of(engine: str, folder: Path) -> list[Called]:
     """All calls of ours in a campaign of one mutant."""
-    project, pipe = folder / "project", folder / "calls"
-    write_project(project, MISSION, TESTS, configuration=CONFIGURED, more={"telling.py": telling(pipe)})
-    with calls_told(pipe) as told:
-        assert main(["-C", str(project), "run", "--engine", engine, "--only", "*:reverse"]) == 0
+    with calls_told() as (told, pipe):
+        write_project(folder, MISSION, TESTS, configuration=CONFIGURED, more={"telling.py": telling(pipe)})
+        assert main(["-C", str(folder), "run", "--engine", engine, "--only", "*:reverse"]) == 0
     return told
 
 

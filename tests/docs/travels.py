@@ -19,14 +19,14 @@ TESTS = Path(__file__).parents[1]
 _OVER = "over\n"
 
 
-def telling(pipe: Path) -> str:
+def telling(pipe: str) -> str:
     """A plug-in of pytest's with which a worker tells its calls, from before its session begins."""
     return dedent(f"""
         import sys
         sys.path.insert(0, {str(TESTS)!r})
         from docs.travels import tell_calls
         sys.path.pop(0)
-        tell_calls({str(pipe)!r})
+        tell_calls({pipe!r})
     """)
 
 
@@ -49,10 +49,12 @@ def _hook_into(descriptor: int) -> Callable[[FrameType, str, Any], None]:
 
 
 @contextmanager
-def calls_told(pipe: Path) -> Iterator[list[Called]]:
-    """All calls of ours in this process and in those that tell them, complete when this is over."""
-    os.mkfifo(pipe)
-    reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)  # else it would wait for somebody who writes
+def calls_told() -> Iterator[tuple[list[Called], str]]:
+    """All calls of ours in this process and in those that tell them, complete when this is over.
+
+    They find the pipe as this process has it, since files in the folders that they see are their own.
+    """
+    reading, writing = os.pipe()
     told: list[Called] = []
 
     def read() -> None:
@@ -61,13 +63,11 @@ def calls_told(pipe: Path) -> Iterator[list[Called]]:
                 process, name = line.split()
                 told.append((int(process), name))
 
-    writing = os.open(pipe, os.O_WRONLY)
-    os.set_blocking(reading, True)
     reader = threading.Thread(target=read)
     reader.start()
     sys.setprofile(_hook_into(writing))
     try:
-        yield told
+        yield told, f"/proc/{os.getpid()}/fd/{writing}"
     finally:
         sys.setprofile(None)
         os.write(writing, _OVER.encode())
