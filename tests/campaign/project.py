@@ -153,7 +153,7 @@ def run(folder: Path, **changes: Any) -> dict[str, Outcome]:
 
 def by_branches(folder: Path, **changes: Any) -> dict[tuple[str, int], Outcome]:
     """Outcomes by mutant and round, of branches where these can be; that replay agrees is for the corpus."""
-    path = run_campaign(request_for(folder, engine="auto", **changes), Quiet())
+    path = run_campaign(request_for(folder, **{"engine": "auto", **changes}), Quiet())
     return {(outcome.mutant, outcome.round): outcome for outcome in outcomes(path)}
 
 

@@ -141,7 +141,9 @@ def _more(one: Outcome) -> tuple[Any, ...]:
 def test_branches_are_what_runs_mutants_that_act_in_a_test(ends: dict[str, Outcome]) -> None:
     replayed = {mutant for mutant, one in ends.items() if one.engine != "branch" and one.tests}
     assert replayed
-    assert all(":<module>:" in mutant for mutant in replayed)
+    # on a busy machine, what ran out of time is run once more by itself
+    again = {mutant for mutant in replayed if ends[mutant].verdict is Verdict.TIMEOUT}
+    assert all(":<module>:" in mutant for mutant in replayed - again)
 
 
 def test_a_check_kills(ends: dict[str, Outcome]) -> None:
@@ -409,7 +411,7 @@ def test_a_mutant_that_was_not_in_the_program_is_an_error() -> None:
     )
     ends = [TestEnd("t.py::test", "passed")]
     run = Run(mutant, 0, ("t.py::test",), ends, problem="m.py: it has changed since its mutants were made")
-    assert _ruling(run) == (Verdict.ERROR, None, "m.py: it has changed since its mutants were made")
+    assert _ruling(run, usual=0) == (Verdict.ERROR, None, "m.py: it has changed since its mutants were made")
 
 
 NONE = (None, None, "", "")

@@ -64,7 +64,9 @@ def project(folder: Path, text: str, name: str) -> Path:
 
 
 def run(folder: Path) -> tuple[dict[str, Outcome], Path]:
-    path = run_campaign(request_for(folder), Quiet())
+    # pytest's cache cannot write such names: with it, pytest itself fails when the session ends
+    pytest_args = ("-o", "pythonpath=.", "-p", "no:cacheprovider")
+    path = run_campaign(request_for(folder, pytest_args=pytest_args), Quiet())
     return {one.mutant: one for one in outcomes(path)}, path
 
 

@@ -71,6 +71,20 @@ def test_a_fault_that_is_seen_on_the_way_alone_is_told(tmp_path: Path) -> None:
     assert (negate.compared.calls, negate.compared.moments) == (3, 3)
 
 
+def test_a_fork_is_compared_on_the_way_in_the_tests_after_its_own_too(tmp_path: Path) -> None:
+    folder = project(tmp_path)
+    tests = folder / "tests" / "test_mission.py"
+    tests.write_text(tests.read_text() + "\n\ndef test_it_arrives_again():\n    test_it_arrives()\n")
+    only = ("*position#1:result:negate", "*move_by#1:dx:reverse")
+    forked = by_branches(folder, only=only)
+    replayed = by_branches(folder, only=only, engine="replay", fresh=True)
+    for pair, one in forked.items():
+        assert one.engine == "branch"
+        assert one.compared is not None
+        assert (one.compared.calls, one.compared.moments) == (6, 6)
+        assert (one.compared, one.way) == (replayed[pair].compared, replayed[pair].way)
+
+
 @pytest.mark.parametrize(
     ("body", "why"),
     [

@@ -347,8 +347,10 @@ class _Trunk:
             return
         died_in = branch.death.test if branch.death is not None else None
         forked = branch.forked if branch.forked is not None else self._numbers.get(died_in or "", 0)
-        if forked >= len(self._own_ends):
-            self._waiting.setdefault(forked, set()).add(mutant)
+        # a survivor is compared with the original in all tests: those that the trunk runs after the fork, too
+        last = forked if is_decided or branch.death is not None else len(self._tests) - 1
+        if last >= len(self._own_ends):
+            self._waiting.setdefault(last, set()).add(mutant)
             return
         before = {end.test: end for end in self._own_ends[:forked]}
         yield from self._judged(branch, {**before, **branch.ends})
@@ -359,6 +361,8 @@ class _Trunk:
         is_same = bool(branch.ends) and branch.forked is None and branch.death is None
         if is_same and len(self._own_ends) == len(self._tests) and not self._is_off:
             branch.exit_code = self._baseline.exits[self._round]
+            simulated = [one.simulated for one in self._own_ends if one.simulated is not None]
+            branch.shared = sum(simulated) if simulated else None
             yield from self._judged(branch, {**{one.test: one for one in self._own_ends}, **branch.ends})
 
     def _judged(self, branch: _Branch, ends: Mapping[str, TestEnd]) -> Iterator[Outcome]:
