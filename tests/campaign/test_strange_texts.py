@@ -59,14 +59,16 @@ MORE = """
 
 def project(folder: Path, text: str, name: str) -> Path:
     more = MORE.replace("TEXT", text)
-    write_project(folder, MISSION, TESTS.replace("TEXT", text), more={f"tests/{name}": more})
+    configuration = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\n'
+    # pytest's cache cannot write such names: with it, pytest itself fails when the session ends
+    configuration += 'pytest_args = ["-o", "pythonpath=.", "-p", "no:cacheprovider"]\n'
+    files = {f"tests/{name}": more}
+    write_project(folder, MISSION, TESTS.replace("TEXT", text), configuration=configuration, more=files)
     return folder
 
 
 def run(folder: Path) -> tuple[dict[str, Outcome], Path]:
-    # pytest's cache cannot write such names: with it, pytest itself fails when the session ends
-    pytest_args = ("-o", "pythonpath=.", "-p", "no:cacheprovider")
-    path = run_campaign(request_for(folder, pytest_args=pytest_args), Quiet())
+    path = run_campaign(request_for(folder), Quiet())
     return {one.mutant: one for one in outcomes(path)}, path
 
 
