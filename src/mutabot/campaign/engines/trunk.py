@@ -70,7 +70,7 @@ class Trunks:
         baseline = self._campaign.baseline
         for mutant, round in trials:
             # a control that may not have a test of its own is no mutant of any test
-            if mutant.family == CONTROL or baseline.judges(round, mutant):
+            if mutant.family == CONTROL or baseline.tests_reaching(round, mutant):
                 self._add(mutant, round)
             else:
                 yield without_tests(baseline, mutant, round)
@@ -190,8 +190,8 @@ class _Trunk:
         count = min(math.ceil(min(_PARTS * places, worth)), len(self._open) // _LEAST)
         if count < 2:
             return [self]
-        judges = self._baseline.judges
-        mutants = sorted(self.mutants, key=lambda one: (judges(self._round, one), one.id))
+        reaching = self._baseline.tests_reaching
+        mutants = sorted(self.mutants, key=lambda one: (reaching(self._round, one), one.id))
         found = [self._empty() for _ in range(count)]
         for number, mutant in enumerate(mutants):
             found[number * count // len(mutants)].add(mutant)
