@@ -113,14 +113,6 @@ class Baseline(Original):
         first = next((number for number, test in enumerate(suite) if test in reaching), len(suite))
         return suite[first:]
 
-    def why_not_fork(self, round: int, mutant: Mutant) -> tuple[str, str] | None:
-        """A test that reaches a mutant and has processes below it, and what to say of it; else None."""
-        for test in self.tests_reaching(round, mutant):
-            processes = self.ends[round, test].processes
-            if processes:
-                return test, f"it has processes below it, such as {processes[0][1]}"
-        return None
-
     def why_exclusive(self, round: int) -> tuple[str, str] | None:
         """A test of the suite that gets in the way of other processes, and how; None if there is none."""
         ends = ((test, self.ends[round, test].exclusive) for test in self.tests[round])
