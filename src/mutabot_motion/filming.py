@@ -78,10 +78,10 @@ def film(campaign: Campaign, mutant: Mutant, round: int, test: str, folder: Path
 def _leading_to(campaign: Campaign, mutant: Mutant, round: int, test: str) -> tuple[str, ...]:
     """The test, and before it the tests of which it may find something."""
     baseline = campaign.baseline
-    judges = baseline.judges(round, mutant)
+    judges = baseline.tests_judging(round, mutant)
     if test not in judges:
         listed = ", ".join(judges[:3]) or "no test does"
-        problem = f"{test} does not reach the mutant in round {round + 1}; these do: {listed}"
+        problem = f"{test} does not judge the mutant in round {round + 1}; these do: {listed}"
         raise SelectionError(problem, unknown=[test])
     suite = baseline.suite(round)
     return suite[: suite.index(test) + 1]

@@ -79,6 +79,8 @@ class Branching:
         wall: the same for tests that are missing there.
         choices: of mutants that are alternatives in the program text: which, by id.
         every_test: whether a branch goes on after a test that decided about its mutant.
+        at_start: test to ids of mutants that are branched before it begins, if they were not before: they may
+            be hit in processes below it.
         serial: whether the trunk waits for each branch, since two of them would get in each other's way.
     """
 
@@ -90,6 +92,7 @@ class Branching:
     choices: Mapping[str, tuple[Choice, ...]] = field(default_factory=dict)
     every_test: bool = False
     serial: bool = False
+    at_start: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,7 +40,7 @@ from mutabot.errors import JournalError
 from mutabot.journal.journal import Journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS
-from mutabot.model import LeftOut, Mutant
+from mutabot.model import LeftOut, Mutant, Outcome
 
 from .beginning import at_it, begin, plan_of, selected
 from .campaign import Campaign
@@ -216,11 +216,11 @@ def _collected(results: Sequence[Result]) -> set[str]:
     return {test for end in ends if end is not None for test in end.collected}
 
 
-def _key_of(journal: Journal, dependencies: Dependencies, plan: Plan) -> Callable[[str, int], str]:
+def _key_of(journal: Journal, dependencies: Dependencies, plan: Plan) -> Callable[[Outcome], str]:
     by_id = {mutant.id: mutant for mutant in plan.mutants}
 
-    def key_of(mutant: str, round: int) -> str:
-        key = dependencies.keys(by_id[mutant], round)[0]
+    def key_of(outcome: Outcome) -> str:
+        key = dependencies.key_of(outcome, by_id[outcome.mutant])
         journal.add_parts(dependencies.new_parts())
         return key
 

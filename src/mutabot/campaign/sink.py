@@ -9,7 +9,7 @@ from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 
 
-def _no_key(mutant: str, round: int) -> str:
+def _no_key(outcome: Outcome) -> str:
     return ""
 
 
@@ -19,13 +19,13 @@ class Sink:
 
     Attributes:
         journal: where they go.
-        key_of: what the outcome of a mutant, by its id, in a round depends on. The empty key says that nobody
-            knows, and that it is not to be reused.
+        key_of: what an outcome depends on. The empty key says that nobody knows, and that it is not to be
+            reused.
     """
 
     journal: Journal
-    key_of: Callable[[str, int], str] = _no_key
+    key_of: Callable[[Outcome], str] = _no_key
 
     def add_outcome(self, outcome: Outcome) -> None:
         """Add one outcome; a later one of the same mutant and round takes its place."""
-        self.journal.add_outcome(outcome, key=self.key_of(outcome.mutant, outcome.round))
+        self.journal.add_outcome(outcome, key=self.key_of(outcome))

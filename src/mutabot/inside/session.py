@@ -311,8 +311,6 @@ class Session:
         for door in self._doors:
             door.reset()
         trunk = self.trunk
-        if trunk is not None:
-            trunk.start_test(test)
         if self.text is not None:
             branch = trunk.fork_at_place if trunk is not None else None
             self.text.start_test(test, branch, trunk.places() if trunk is not None else {})

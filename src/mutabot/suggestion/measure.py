@@ -101,7 +101,7 @@ def _run_survivors(
     tasks = (
         task(campaign, mutant, round, baseline.suite(round))
         for mutant, round in trials
-        if baseline.judges(round, mutant)
+        if baseline.tests_reaching(round, mutant)
     )
     for result in campaign.executor.run(tasks):
         mutant, round = result.task.key

@@ -25,7 +25,7 @@ from mutabot.errors import BaselineError, JournalError, NothingToDoError, Select
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import Quiet, request_for, write_project
-from tests.campaign.scripted import CHECKED, Run, Script
+from tests.campaign.scripted import CHECKED, End, Run, Script
 from tests.journal.edited import edited
 
 MISSION = """
@@ -115,6 +115,12 @@ def real(tmp_path: Path) -> Project:
     return Project(tmp_path)
 
 
+def noticed_from_elsewhere(run: Run) -> End:
+    """A test of the one function notices mutants of the other."""
+    is_other = run.test.endswith("test_right") and run.mutant is not None and ":left:" in run.mutant.id
+    return CHECKED if is_other and run.mutant.id.endswith("reverse") else {}
+
+
 def of(function: str, pairs: set[Pair]) -> set[Pair]:
     return {pair for pair in pairs if f":{function}:" in pair[0]}
 
@@ -197,6 +203,42 @@ def test_a_test_counts_for_those_that_mention_it_and_conftest_for_all(project: P
     (project.folder / "tests" / "conftest.py").write_text("")
     assert project.run() == first
     assert "tests/conftest.py is new" in project.note
+
+
+def test_survivors_are_not_asked_again_by_tests_that_do_not_reach_them_and_that_is_told(
+    project: Project,
+) -> None:
+    first = project.run()
+    project.edit("tests/test_right.py")
+    assert project.run() == set()
+    assert "not asked again" not in "\n".join(project.progress.lines)  # a comment can have changed nothing
+    project.edit("tests/test_right.py", ASSERTS_MORE)
+    assert project.run() == of("right", first)
+    with Journal.open(project.journal) as journal:
+        kept = [one for one in journal.outcomes() if (one.mutant, one.round) in journal.reused()]
+    survivors = sum(one.verdict is Verdict.SURVIVED for one in kept)
+    assert 0 < survivors < len(kept)
+    assert (
+        f"{survivors} of them are survivors that tests do not reach which may have changed: these are not "
+        "asked again; `mutabot run --fresh` asks all"
+    ) in project.progress.lines
+    assert project.run() == set()
+    assert "not asked again" not in "\n".join(project.progress.lines)
+
+
+def test_what_a_test_has_noticed_that_does_not_reach_it_depends_on_all_tests(
+    project: Project, script: Script
+) -> None:
+    script.mutated = noticed_from_elsewhere
+    first = project.run()
+    noticed = {pair for pair in of("left", first) if pair[0].endswith("reverse")}
+    assert noticed
+    assert project.run() == set()
+    project.edit("tests/test_right.py", ASSERTS_MORE)
+    assert project.run() == of("right", first) | noticed
+    (project.folder / "tests" / "test_more.py").write_text("def test_more():\n    pass\n")
+    assert project.run() == noticed
+    assert "run again: test_more() in tests/test_more.py is new" in project.note
 
 
 def test_a_changed_operation_runs_its_own_mutants_again(project: Project) -> None:

@@ -20,7 +20,7 @@ from mutabot.errors import UsageError
 from mutabot.exit_codes import ExitCode
 from mutabot.journal.journal import Journal
 from tests.campaign.project import Quiet, fingerprint, request_for, write_project
-from tests.campaign.scripted import Script
+from tests.campaign.scripted import CHECKED, End, Run, Script
 
 MISSION = """
     def left(arm):
@@ -107,6 +107,24 @@ def test_since_takes_over_what_no_change_can_have_altered(project: Project) -> N
     assert project.run(since="HEAD") == of("right", first)
     assert f"{len(of('right', first))} to run: right() in mission.py changed" in project.notes()
     assert fingerprint(project.folder) == before
+
+
+def test_what_a_test_has_noticed_that_does_not_reach_it_is_run_after_each_change(
+    project: Project, script: Script
+) -> None:
+    def noticed(run: Run) -> End:
+        is_other = run.mutant is not None and ":left:" in run.mutant.id and run.test.endswith("test_right")
+        return CHECKED if is_other else {}
+
+    script.mutated = noticed
+    first = project.run()
+    project.edit("tests/test_right.py", lambda text: text + "    assert True\n")
+    assert project.run(since="HEAD") == first
+    script.mutated = lambda run: {}
+    project.run(fresh=True)
+    project.edit("tests/test_right.py", lambda text: text + "    assert 1 < 2\n")
+    assert project.run(since="HEAD") == of("right", first)
+    assert f"{len(of('left', first))} of them are survivors" in project.notes()
 
 
 def test_without_a_journal_only_altered_mutants_are_run_and_that_is_said(project: Project) -> None:

@@ -103,17 +103,15 @@ class Baseline(Original):
         """The tests that a mutant is run with, in their order: all that can be relied on."""
         return tuple(self.tests[round])
 
-    def judges(self, round: int, mutant: Mutant) -> tuple[str, ...]:
+    def tests_reaching(self, round: int, mutant: Mutant) -> tuple[str, ...]:
         """The tests that reach a mutant, quickest first."""
         return tuple(self.reaching.get((round, Place.of(mutant)), ()))
 
-    def why_not_fork(self, round: int, mutant: Mutant) -> tuple[str, str] | None:
-        """A test that reaches a mutant and has processes below it, and what to say of it; else None."""
-        for test in self.judges(round, mutant):
-            processes = self.ends[round, test].processes
-            if processes:
-                return test, f"it has processes below it, such as {processes[0][1]}"
-        return None
+    def tests_judging(self, round: int, mutant: Mutant) -> tuple[str, ...]:
+        """The tests that can notice a mutant, in their order: all from the first on that reaches it."""
+        reaching, suite = set(self.tests_reaching(round, mutant)), self.suite(round)
+        first = next((number for number, test in enumerate(suite) if test in reaching), len(suite))
+        return suite[first:]
 
     def why_exclusive(self, round: int) -> tuple[str, str] | None:
         """A test of the suite that gets in the way of other processes, and how; None if there is none."""

@@ -109,13 +109,12 @@ class Batches:
         """How many of these, from the first on, to run at once; 0 if not even one would end in time."""
         left = self.left
         wanted = left * (_SHARE if self._is_measured else _FIRST)
-        tests: set[tuple[int, str]] = set()
+        rounds: set[int] = set()
         count, cost = 0, 0.0
         for mutant, round in trials:
-            judges = self.campaign.baseline.judges(round, mutant)
-            tests.update((round, test) for test in judges)
-            cost += sum(self._wall(round, test) for test in judges) * self._factor
-            trunks = self._trunks(tests)
+            rounds.add(round)
+            cost += self._most(mutant, round) * self._factor
+            trunks = self._trunks(rounds)
             if cost + trunks > max(wanted, min(_WORTH * trunks, _MOST * left)) and count:
                 return count
             if cost + trunks > left:
@@ -125,25 +124,24 @@ class Batches:
 
     def took(self, trials: Sequence[Trial], seconds: float) -> None:
         """Learn from a batch what they really cost."""
-        tests = {
-            (round, test) for mutant, round in trials for test in self.campaign.baseline.judges(round, mutant)
-        }
-        whole = sum(
-            self._wall(round, test)
-            for mutant, round in trials
-            for test in self.campaign.baseline.judges(round, mutant)
-        )
+        whole = sum(self._most(mutant, round) for mutant, round in trials)
         if whole > 0:
-            self._factor = max(seconds - self._trunks(tests), 0.1 * seconds) / whole
+            trunks = self._trunks({round for _, round in trials})
+            self._factor = max(seconds - trunks, 0.1 * seconds) / whole
             self._is_measured = True
 
-    def _wall(self, round: int, test: str) -> float:
-        return max(self.campaign.baseline.ends[round, test].wall, 1e-3)
+    def _most(self, mutant: Mutant, round: int) -> float:
+        """What the tests of a mutant take that survives."""
+        return self._wall(round, self.campaign.baseline.tests_judging(round, mutant))
 
-    def _trunks(self, tests: set[tuple[int, str]]) -> float:
-        """What it takes to run each of these tests once more as the original, and to begin."""
-        wall = sum(self._wall(round, test) for round, test in tests)
-        return wall / self.campaign.request.jobs + (self.campaign.baseline.startup if tests else 0.0)
+    def _wall(self, round: int, tests: Iterable[str]) -> float:
+        return sum(max(self.campaign.baseline.ends[round, test].wall, 1e-3) for test in tests)
+
+    def _trunks(self, rounds: set[int]) -> float:
+        """What it takes to run the suite once more as the original in these rounds, and to begin."""
+        baseline = self.campaign.baseline
+        wall = sum(self._wall(round, baseline.suite(round)) for round in rounds)
+        return wall / self.campaign.request.jobs + baseline.startup
 
 
 def run_in_batches(

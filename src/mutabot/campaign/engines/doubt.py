@@ -100,7 +100,7 @@ class Doubts:
 
     def _judging(self, key: Key, outcome: Outcome) -> list[str]:
         """The tests that have had a say in an outcome: of those that ran, all that reach the mutant."""
-        judges = self.baseline.judges(key[1], self.mutants[key[0]])
+        judges = self.baseline.tests_reaching(key[1], self.mutants[key[0]])
         return [test for test in self._ran(key, outcome) if test in judges or test == outcome.test]
 
     def _ran(self, key: Key, outcome: Outcome) -> tuple[str, ...]:

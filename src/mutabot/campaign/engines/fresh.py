@@ -115,7 +115,7 @@ def _drain(outcomes: list[Outcome]) -> Iterator[Outcome]:
 
 def _tasks(campaign: Campaign, trials: Iterable[Trial], uncovered: list[Outcome]) -> Iterator[Task]:
     for mutant, round in trials:
-        if campaign.baseline.judges(round, mutant):
+        if campaign.baseline.tests_reaching(round, mutant):
             yield task(campaign, mutant, round, campaign.baseline.suite(round))
         else:
             uncovered.append(without_tests(campaign.baseline, mutant, round))

@@ -70,7 +70,7 @@ class Trunks:
         baseline = self._campaign.baseline
         for mutant, round in trials:
             # a control that may not have a test of its own is no mutant of any test
-            if mutant.family == CONTROL or baseline.judges(round, mutant):
+            if mutant.family == CONTROL or baseline.tests_reaching(round, mutant):
                 self._add(mutant, round)
             else:
                 yield without_tests(baseline, mutant, round)
@@ -94,11 +94,9 @@ class Trunks:
             self._trunks[round] = _Trunk(
                 self._campaign, round, self._left, self.suspects, self._engine, self.hindered
             )
-        why, forbidding = baseline.why_apart(mutant), baseline.why_not_fork(round, mutant)
+        why = baseline.why_apart(mutant)
         if why is not None:
             self._left.set_apart(mutant, round, why)
-        elif forbidding is not None:
-            self._left.leave(mutant, round, *forbidding)
         else:
             self._trunks[round].add(mutant)
 
@@ -190,8 +188,8 @@ class _Trunk:
         count = min(math.ceil(min(_PARTS * places, worth)), len(self._open) // _LEAST)
         if count < 2:
             return [self]
-        judges = self._baseline.judges
-        mutants = sorted(self.mutants, key=lambda one: (judges(self._round, one), one.id))
+        reaching = self._baseline.tests_reaching
+        mutants = sorted(self.mutants, key=lambda one: (reaching(self._round, one), one.id))
         found = [self._empty() for _ in range(count)]
         for number, mutant in enumerate(mutants):
             found[number * count // len(mutants)].add(mutant)
@@ -215,6 +213,7 @@ class _Trunk:
             choices={mutant: found for mutant, found in choices.items() if found},
             every_test=request.every_test,
             serial=baseline.why_exclusive(round) is not None,
+            at_start=self._at_start(),
         )
         factor = request.configuration.timeout_factor
         budgets = {test: baseline.budget(round, test, factor) for test in in_order}
@@ -230,6 +229,15 @@ class _Trunk:
         )
         patience = 2.0 * sum(walls.values()) + _PATIENCE  # it waits for branches that go to the end
         return Task(key, job, {}, patience, patience, is_trunk=True, may_share=True, alone=branching.serial)
+
+    def _at_start(self) -> dict[str, tuple[str, ...]]:
+        """Mutants by the tests that reach them and have processes below them."""
+        found: dict[str, list[str]] = {}
+        for mutant in self.mutants:
+            for test in self._baseline.tests_reaching(self._round, mutant):
+                if self._baseline.ends[self._round, test].processes:
+                    found.setdefault(test, []).append(mutant.id)
+        return {test: tuple(mutants) for test, mutants in found.items()}
 
     def take(self, line: Event) -> Iterator[Outcome]:
         """Sort in an event; yields the outcomes that it settles.

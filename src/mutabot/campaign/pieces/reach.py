@@ -189,6 +189,11 @@ class Reach:
             self._whole[reached] = _together(self._said(number) for number in reached)
         return self._whole[reached]
 
+    @property
+    def whole(self) -> str:
+        """What all pieces say, as a digest."""
+        return self.digest(self._everything)
+
     def files(self, reached: Reached, renaming: Renaming) -> dict[str, str]:
         """The files that hold these pieces, and what they were called, or where the pieces stood."""
         return {

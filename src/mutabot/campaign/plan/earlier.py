@@ -74,6 +74,6 @@ def _is_outdated(
         if mutant.family not in request.families:
             if not dependencies.still_hold(outcome.key, journal.parts(outcome.key.split()[1]) or {}):
                 return True
-        elif not dependencies.holds(outcome.key, mutant, round):
+        elif dependencies.holding(outcome.key, mutant, round) is None:
             return True
     return False

@@ -1,10 +1,13 @@
 """What an outcome depends on, by content: what is as it was need not be run again.
 
 An outcome has a *key* of four digests: of what all outcomes share (settings, versions, files that are no
-program text), of what those at its place share (the tests that judge it, all that these can reach, entries of
-the vocabulary), of the mutant's own, and of the Python files when it was found. The last one does not count:
-it tells where lines have gone since, and what has changed. All but the third stand for *parts*, names with a
-digest or a plain value each.
+program text), of what those at its place share (tests, all that these can reach, entries of the vocabulary),
+of the mutant's own, and of the Python files when it was found. The last one does not count: it tells where
+lines have gone since, and what has changed. All but the third stand for *parts*, names with a digest or a
+plain value each.
+
+The tests are those that reach the mutant. The others count only where one of them has noticed it: then all
+tests do.
 """
 
 from __future__ import annotations
@@ -30,7 +33,7 @@ from mutabot.campaign.pieces.project import Project
 from mutabot.campaign.pieces.reach import Reach, Reached
 from mutabot.campaign.pieces.renaming import Renaming
 from mutabot.campaign.request import Request
-from mutabot.model import Mutant, Vocabulary
+from mutabot.model import Mutant, Outcome, Vocabulary
 
 from .snapshot import _HASH, _digest_of
 from .state import State, read
@@ -42,7 +45,9 @@ Parts = Mapping[str, str]
 _TOOLS = {"black", "hatchling", "isort", "mypy", "pip", "pre-commit", "ruff", "setuptools", "uv", "wheel"}
 _CONFIGURATIONS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "setup.cfg", "conftest.py")
 #: parts of a place that are not looked at by name
-JUDGES, REACHED, ASIDE = "which tests reach it", "what its tests can reach", "which tests are set aside"
+REACHING, REACHED, ASIDE = "which tests reach it", "what its tests can reach", "which tests are set aside"
+#: in the place of the first, if a test that does not reach it has noticed it: all tests count
+SUITE = "which tests there are"
 
 
 def _digest(data: Any) -> str:
@@ -130,25 +135,26 @@ class Dependencies:
             **{k: v for one in self._operations.values() for k, v in one.items()},
         }
 
-    def keys(self, mutant: Mutant, round: int) -> tuple[str, ...]:
-        """Keys of outcomes that are still valid, the first being that of an outcome found now.
-
-        The second is that of tests that had turned out to pass only together with all others.
-        """
+    def key(self, mutant: Mutant, round: int, *, whole: bool = False) -> str:
+        """The key of an outcome that is found now; ``whole``: one that depends on all tests."""
         own = _digest([self._own(mutant, round)])
-        return tuple(
-            f"{self._common} {self._of_place(mutant, round, tests)} {own} {self.tree}"
-            for tests in self.judges(mutant, round)
-        )
+        return f"{self._common} {self._of_place(mutant, round, whole)} {own} {self.tree}"
 
-    def judges(self, mutant: Mutant, round: int) -> tuple[tuple[str, ...], ...]:
-        """The tests that judge a mutant, and those that would if they passed only with all others."""
-        selections = (self._baseline.judges(round, mutant), tuple(self._baseline.tests[round]))
-        return tuple(dict.fromkeys(selections))
+    def key_of(self, outcome: Outcome, mutant: Mutant) -> str:
+        """The key of this outcome."""
+        noticed = {outcome.test, *(kill.test for kill in outcome.kills)}
+        is_noticed = outcome.verdict.is_killed or outcome.test is not None
+        whole = is_noticed and not noticed.issubset(self._baseline.tests_reaching(outcome.round, mutant))
+        return self.key(mutant, outcome.round, whole=whole)
 
-    def holds(self, key: str, mutant: Mutant, round: int) -> bool:
-        """Whether an outcome with this key would come out the same now."""
-        return any(says_same(key, now) for now in self.keys(mutant, round))
+    def tests(self, mutant: Mutant, round: int, *, whole: bool) -> tuple[str, ...]:
+        """The tests that an outcome depends on."""
+        return self._baseline.suite(round) if whole else self._baseline.tests_reaching(round, mutant)
+
+    def holding(self, key: str, mutant: Mutant, round: int) -> str | None:
+        """The key of now for an outcome with this key, if it would come out the same; else None."""
+        both = (self.key(mutant, round, whole=whole) for whole in (False, True))
+        return next((now for now in both if says_same(key, now)), None)
 
     def holds_renamed(
         self, key: str, mutant: Mutant, round: int, renaming: Renaming, parts: Callable[[str], Parts | None]
@@ -159,12 +165,9 @@ class Dependencies:
         if common is None or of_place is None or _draws(mutant):
             return False
         own = {renaming.path(name): renaming.path(value) for name, value in self.common.items()}
-        if common != own or was[2] != self.keys(mutant, round)[0].split()[2]:
+        if common != own or was[2] != self.key(mutant, round).split()[2]:
             return False
-        return any(
-            of_place == self._place_parts(mutant, round, tests, renaming)
-            for tests in self.judges(mutant, round)
-        )
+        return of_place == self._place_parts(mutant, round, SUITE in of_place, renaming)
 
     def still_hold(self, key: str, of_place: Parts) -> bool:
         """Whether all that is known now of what a key stands for is as it was; the rest is taken for granted.
@@ -177,7 +180,7 @@ class Dependencies:
         now = self._roles({name: name for name in self.files})
         for parts in self._operations.values():
             now.update(parts)
-        unknown = {JUDGES, REACHED, ASIDE}
+        unknown = {REACHING, SUITE, REACHED, ASIDE}
         return bool(of_place) and all(
             now.get(name) == value for name, value in of_place.items() if name not in unknown
         )
@@ -224,17 +227,19 @@ class Dependencies:
         """The operations whose meaning counts: to a mutant that acts on none, any might refuse."""
         return (mutant.operation,) if mutant.operation else tuple(self._operations)
 
-    def _of_place(self, mutant: Mutant, round: int, tests: tuple[str, ...]) -> str:
+    def _of_place(self, mutant: Mutant, round: int, whole: bool) -> str:
+        tests = self.tests(mutant, round, whole=whole)
         aside = tuple(self._baseline.missing_judges(round, mutant)) if self._baseline.unstable else ()
-        key = (tests, self.reached(mutant, tests), self._operations_of(mutant), aside)
+        key = (whole, tests, self.reached(mutant, tests), self._operations_of(mutant), aside)
         found = self._places.get(key)
         if found is None:
-            found = self._places[key] = self._stored(self._place_parts(mutant, round, tests))
+            found = self._places[key] = self._stored(self._place_parts(mutant, round, whole))
         return found
 
     def _place_parts(
-        self, mutant: Mutant, round: int, tests: tuple[str, ...], renaming: Renaming | None = None
+        self, mutant: Mutant, round: int, whole: bool, renaming: Renaming | None = None
     ) -> dict[str, str]:
+        tests = self.tests(mutant, round, whole=whole)
         reached = self.reached(mutant, tests)
         aside = self._baseline.missing_judges(round, mutant)
         return {
@@ -244,7 +249,7 @@ class Dependencies:
                 for name, digest in self._operations.get(operation, {}).items()
             },
             **self._roles(self.reach.files(reached, renaming or Renaming())),
-            JUDGES: _HASH + _digest(sorted(tests)),
+            (SUITE if whole else REACHING): _HASH + _digest(sorted(tests)),
             **({ASIDE: _HASH + _digest(sorted(aside))} if aside else {}),
             REACHED: _HASH + self.reach.digest(reached, renaming),
         }

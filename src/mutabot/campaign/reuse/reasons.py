@@ -5,7 +5,7 @@ from __future__ import annotations
 from mutabot.journal.reader import JournalReader
 from mutabot.model import Mutant
 
-from .keys import ASIDE, JUDGES, REACHED, Dependencies, Parts, changes
+from .keys import ASIDE, REACHED, REACHING, SUITE, Dependencies, Parts, changes
 from .taken_over import Trees
 
 #: names that are given before it is said how many more there are
@@ -23,9 +23,13 @@ class Reasons:
 
     def of(self, old: str, mutant: Mutant, round: int) -> str:
         """In words."""
-        new = self._dependencies.keys(mutant, round)[0]
+        new = self._dependencies.key(mutant, round, whole=self.is_whole(old))
         names = self._changes(old, new, mutant, round)
         return shortened(names)
+
+    def is_whole(self, old: str) -> bool:
+        """Whether an outcome depends on all tests."""
+        return SUITE in self._parts(old.split()[1])
 
     def is_site_changed(self, old: str, mutant: Mutant) -> bool:
         """Whether what stands where a mutant acts says something else, or nobody knows."""
@@ -60,8 +64,9 @@ class Reasons:
         key = before[1], now[1], before[3]
         if key not in self._known:
             old, new = self._parts(before[1]), self._dependencies.parts[now[1]]
-            names = self._pieces(before[3], mutant, round) if old.get(REACHED) != new[REACHED] else []
-            unnamed = {REACHED, JUDGES, ASIDE} if names else set()
+            tests = self._dependencies.tests(mutant, round, whole=SUITE in new)
+            names = self._pieces(before[3], mutant, tests) if old.get(REACHED) != new[REACHED] else []
+            unnamed = {REACHED, REACHING, SUITE, ASIDE} if names else set()
             others = changes(
                 {name: value for name, value in old.items() if name not in unnamed},
                 {name: value for name, value in new.items() if name not in unnamed},
@@ -69,12 +74,11 @@ class Reasons:
             self._known[key] = [*names, *others]
         return self._known[key]
 
-    def _pieces(self, tree: str, mutant: Mutant, round: int) -> list[str]:
+    def _pieces(self, tree: str, mutant: Mutant, tests: tuple[str, ...]) -> list[str]:
         """The pieces that say something else."""
         old = self._trees.reach(self._journal, tree)
         if old is None:
             return []
-        tests = self._dependencies.judges(mutant, round)[0]
         now = self._dependencies.reach.says(self._dependencies.reached(mutant, tests))
         before = old.says(self._dependencies.reached(mutant, tests, old))
         return different(before, now)
@@ -92,11 +96,11 @@ def different(before: dict[str, tuple[str, ...]], now: dict[str, tuple[str, ...]
 
 def apart(then: Dependencies, now: Dependencies, mutant: Mutant, round: int) -> str:
     """What differs between two states of the files, as far as a mutant depends on it, in words."""
-    tests = now.judges(mutant, round)[0]
+    tests = now.tests(mutant, round, whole=False)
     names = different(
         then.reach.says(then.reached(mutant, tests)), now.reach.says(now.reached(mutant, tests))
     )
-    before, after = (one.keys(mutant, round)[0].split() for one in (then, now))
+    before, after = (one.key(mutant, round).split() for one in (then, now))
     for position in (1, 0):
         old, new = then.parts[before[position]], now.parts[after[position]]
         names += changes(

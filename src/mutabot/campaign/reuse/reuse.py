@@ -34,6 +34,7 @@ class Reused:
         first: of which there are none.
         before: what the others were that do not hold.
         sites: mutants at which something else stands than when they were run.
+        whole: of those whose outcomes do not hold, the ones that depended on all tests.
     """
 
     done: set[Pair] = field(default_factory=set)
@@ -42,6 +43,7 @@ class Reused:
     first: list[Pair] = field(default_factory=list)
     before: dict[Pair, Verdict] = field(default_factory=dict)
     sites: set[str] = field(default_factory=set)
+    whole: set[Pair] = field(default_factory=set)
 
 
 def reuse(
@@ -70,6 +72,11 @@ def reuse(
     journal.add_parts(dependencies.new_parts())
     journal.take_over(taken.rows)
     progress.note(text_of(found))
+    if taken.unasked:
+        progress.note(
+            f"{taken.unasked} of them are survivors that tests do not reach which may have changed: "
+            "these are not asked again; `mutabot run --fresh` asks all"
+        )
     return found
 
 
@@ -87,11 +94,11 @@ def _take(
     why: str | None = None
     for (source, kept), explained in zip(sources, reasons, strict=True):
         outcome = kept.get(pair)
-        holds = outcome is not None and dependencies.holds(outcome.key, mutant, round)
-        if outcome is not None and holds and not outcome.is_sound:
+        now = dependencies.holding(outcome.key, mutant, round) if outcome is not None else None
+        if outcome is not None and now is not None and not outcome.is_sound:
             found.unsound.add(pair)
-        elif outcome is not None and holds:
-            if taken.take(source, pair, outcome.key, dependencies.keys(mutant, round)):
+        elif outcome is not None and now is not None:
+            if taken.take(source, mutant, round, outcome.key, now):
                 found.done.add(pair)
             why = why or GONE
         elif taken.take_renamed(source, kept, mutant, round):
@@ -99,6 +106,8 @@ def _take(
         elif outcome is not None and why is None:
             why = explained.of(outcome.key, mutant, round)
             found.before[pair] = outcome.verdict
+            if explained.is_whole(outcome.key):
+                found.whole.add(pair)
             if explained.is_site_changed(outcome.key, mutant):
                 found.sites.add(mutant.id)
         if pair in found.done:

@@ -12,9 +12,9 @@ from mutabot.campaign.pieces.reach import Reach
 from mutabot.campaign.pieces.renaming import Renaming
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import Kept, Row
-from mutabot.model import Mutant
+from mutabot.model import Mutant, Verdict
 
-from .keys import Dependencies, says_same
+from .keys import SUITE, Dependencies
 
 
 class Trees:
@@ -38,6 +38,12 @@ class Trees:
             now = self._dependencies.reach.project
             self._renamings[tree] = renaming_between(old.project, now) if old is not None else Renaming()
         return self._renamings[tree]
+
+    def says_same(self, journal: JournalReader, tree: str) -> bool:
+        """Whether all files say what they say now, comments and layout aside."""
+        now = self._dependencies
+        old = self.reach(journal, tree) if tree != now.tree else now.reach
+        return old is not None and old.whole == now.reach.whole
 
     def _read(self, journal: JournalReader, tree: str) -> Reach | None:
         files = journal.parts(tree)
@@ -65,18 +71,21 @@ class TakenOver:
 
     Attributes:
         rows: those that can be taken over.
+        unasked: how many of them are survivors that some tests do not reach, while something has changed that
+            only these could notice.
     """
 
     def __init__(self, dependencies: Dependencies) -> None:
         self.rows: list[Row] = []
+        self.unasked = 0
         self._dependencies = dependencies
         self._trees = Trees(dependencies)
         self._lines: dict[str, Lines | None] = {}
         self._seen: dict[int, list[str]] = {}
 
-    def take(self, source: JournalReader, pair: Pair, key: str, now: tuple[str, ...]) -> bool:
+    def take(self, source: JournalReader, mutant: Mutant, round: int, key: str, now: str) -> bool:
         """Take one over; returns False if it names a line that nobody can find, or is none at all."""
-        row = source.row(*pair)
+        row = source.row(mutant.id, round)
         if row is None:
             return False
         tree = key.rsplit(maxsplit=1)[-1]
@@ -86,8 +95,14 @@ class TakenOver:
             if data is None:
                 return False
             row = replace(row, data=data)
-        self.rows.append(replace(row, key=next(one for one in now if says_same(one, key))))
+        self._add(source, tree, mutant, replace(row, key=now))
         return True
+
+    def _add(self, source: JournalReader, tree: str, mutant: Mutant, row: Row) -> None:
+        self.rows.append(row)
+        some, all = (self._dependencies.tests(mutant, row.round, whole=whole) for whole in (False, True))
+        if row.verdict == Verdict.SURVIVED and len(some) < len(all):
+            self.unasked += not self._trees.says_same(source, tree)
 
     def take_renamed(
         self, source: JournalReader, kept: Mapping[Pair, Kept], mutant: Mutant, round: int
@@ -106,8 +121,9 @@ class TakenOver:
             row = source.row(was, round)
             data = self._renamed(source, tree, row, mutant.id, renaming) if row is not None else None
             if row is not None and data is not None:
-                key = self._dependencies.keys(mutant, round)[0]
-                self.rows.append(replace(row, mutant=mutant.id, data=data, key=key))
+                whole = SUITE in (source.parts(row.key.split()[1]) or {})
+                key = self._dependencies.key(mutant, round, whole=whole)
+                self._add(source, tree, mutant, replace(row, mutant=mutant.id, data=data, key=key))
                 return True
         return False
 

@@ -57,7 +57,7 @@ def _cost(mutant: Mutant, baseline: Baseline) -> float:
     total = 0.0
     for round in range(len(baseline.tests)):
         total += _START
-        for test in baseline.judges(round, mutant):
+        for test in baseline.tests_judging(round, mutant):
             simulated, operations = cost(baseline.ends[round, test])
             total += simulated + _OPERATION * operations
     return total

@@ -169,7 +169,7 @@ class Altered:
             return cls(revision, {(mutant.id, round): reason for mutant, round in pairs})
         why = {}
         for mutant, round in pairs:
-            if not says_same(now.keys(mutant, round)[0], then.keys(mutant, round)[0]):
+            if not says_same(now.key(mutant, round), then.key(mutant, round)):
                 why[mutant.id, round] = apart(then, now, mutant, round)
         return cls(revision, why)
 
@@ -180,10 +180,11 @@ def only_altered(
     """The plan without mutants of which nothing is known nor run.
 
     What the changes cannot have altered is not run, also where no journal holds an outcome of it: ``found``
-    says so from then on.
+    says so from then on. An outcome that depends on all tests is run again as without a revision.
     """
     pairs = [(mutant.id, round) for round in range(rounds) for mutant in plan.mutants]
-    why = {**altered.why, **{pair: GONE for pair, reason in found.why.items() if reason == GONE}}
+    again = {pair: why for pair, why in found.why.items() if why == GONE or pair in found.whole}
+    why = {**altered.why, **again}
     left = [pair for pair in pairs if pair not in found.done and pair not in why]
     run = {pair: reason for pair, reason in why.items() if pair not in found.done}
     reasons = Counter(_why_not_taken(found, pair) for pair in left)

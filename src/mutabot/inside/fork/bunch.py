@@ -62,6 +62,7 @@ class Bunch:
         board: where to note how the branch ends.
         part: told a place, and the alternatives there, by the value that they have, that are about to differ
             from those of the first mutant: they go on in other processes.
+        part_all: from here on each goes on in a process of its own.
         is_copied: whether the test has forked copies of this process, in which mutants may have differed.
         waited: seconds that this process has waited, in the running test, for those that parted.
         is_parting: whether it is about to fork for them.
@@ -71,6 +72,7 @@ class Bunch:
     choices: Mapping[str, tuple[Choice, ...]]
     board: Board
     part: Callable[[int, Sequence[frozenset[int]]], None]
+    part_all: Callable[[], None]
     is_copied: bool = False
     waited: float = 0.0
     is_parting: bool = False

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import select
 import signal
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from time import monotonic, perf_counter  # tests may replace those of the module
 from typing import Any, Protocol
@@ -151,10 +151,14 @@ class Trunk:
         site = mutant.site.span, mutant.operation, mutant.pattern
         return [site, *(choice.place for choice in self.branching.choices.get(mutant.id, ()))]
 
-    def start_test(self, test: str) -> None:
-        """A test begins."""
+    def begin_test(self, test: str) -> None:
+        """A test is about to begin: fork for the mutants that may be hit in processes below it."""
         self._test, self._number = test, self.tests.index(test)
         self._copied = False
+        due = set(self.branching.at_start.get(test, ())) - self._gone
+        if due and os.getpid() == self._pid:
+            with alarm_held():
+                self._fork_due([[one] for one in self.branching.mutants if one.id in due])
 
     def fork_at(self, span: Span, call: Call, number: int) -> None:
         """Fork for every mutant that acts at this call and has no branch yet.
@@ -164,7 +168,7 @@ class Trunk:
         pattern = call.pattern.text if call.pattern is not None else None
         key = (span, call.operation.target, pattern)
         here = self._live.get(key, ())
-        self._fork(key, [[one] for one in here if one.moment is None or self.is_moment(one, number)])
+        self._fork([[one] for one in here if one.moment is None or self.is_moment(one, number)])
 
     def fork_at_place(self, place: int, alike: Sequence[frozenset[int]]) -> None:
         """The same at a place of the program text, for the mutants that are these alternatives.
@@ -176,7 +180,7 @@ class Trunk:
         for indexes in alike:
             found = [one for one in here if self._index(one) in indexes]
             bunches += [found] if min(indexes) >= 0 else [[one] for one in found]
-        self._fork(place, bunches)
+        self._fork(bunches)
 
     def places(self) -> dict[int, frozenset[int]]:
         """The alternatives of the program text that are live in the running test, by place."""
@@ -212,18 +216,19 @@ class Trunk:
         """Which alternative the mutant is; negative if it cannot wait until that changes something."""
         return self.branching.choices[mutant.id][0].index
 
-    def _fork(self, key: Key, bunches: Sequence[Sequence[Mutant]]) -> None:
+    def _fork(self, bunches: Sequence[Sequence[Mutant]]) -> None:
         if not any(bunches) or os.getpid() != self._pid:  # a copy that the test has forked for itself
             return
         with alarm_held():
-            self._fork_due(key, bunches)
+            self._fork_due(bunches)
 
-    def _fork_due(self, key: Key, bunches: Sequence[Sequence[Mutant]]) -> None:
+    def _fork_due(self, bunches: Sequence[Sequence[Mutant]]) -> None:
         found = [[mutant for mutant in bunch if mutant.id not in self._gone] for bunch in bunches]
         due = [bunch for bunch in found if bunch]
         ids = [mutant.id for bunch in due for mutant in bunch]
         self._gone.update(ids)
-        self._live[key] = [one for one in self._live[key] if one.id not in self._gone]
+        for key, here in self._live.items():
+            self._live[key] = [one for one in here if one.id not in self._gone]
         if not due:
             return
         if self._may_fork(ids):
@@ -243,11 +248,18 @@ class Trunk:
         One after the other, while this process waits: together they need the one token that they have.
         """
         bunch = self._bunch
-        if bunch is None or os.getpid() != self._pid:  # as above
-            return
+        if bunch is not None and os.getpid() == self._pid:  # as above
+            self._part(bunch, (bunch.take_out(place, indexes) for indexes in alike))
+
+    def part_all(self) -> None:
+        """The same for all of them: from here on each is in a process of its own."""
+        bunch = self._bunch
+        if bunch is not None and os.getpid() == self._pid:
+            self._part(bunch, ([bunch.mutants.pop()] for _ in bunch.mutants[1:]))
+
+    def _part(self, bunch: Bunch, parts: Iterable[list[Mutant]]) -> None:
         with alarm_held():
-            for indexes in alike:
-                parting = bunch.take_out(place, indexes)
+            for parting in parts:
                 if self._may_fork([mutant.id for mutant in parting]):
                     began = perf_counter()
                     pid = self._fork_one(parting)
@@ -340,7 +352,7 @@ class Trunk:
             self.branch.give_up([mutant.id for mutant in mutants], why)
         foot.restore()
         choices = {mutant.id: self.branching.choices.get(mutant.id, ()) for mutant in mutants}
-        self._bunch = Bunch(mutants, choices, self._board, self.part_at_place)
+        self._bunch = Bunch(mutants, choices, self._board, self.part_at_place, self.part_all)
         self._pid = os.getpid()
         self.branch.become(self._bunch, self.apart.folder)
 

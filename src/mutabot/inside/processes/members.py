@@ -38,12 +38,13 @@ class Members:
     Args:
         home: the home of the test process.
         session: its session.
+        has_acted: whether the mutant changed anything before.
 
     Attributes:
         folder: where the members write.
     """
 
-    def __init__(self, home: str, session: Session) -> None:
+    def __init__(self, home: str, session: Session, *, has_acted: bool = False) -> None:
         self.folder = os.path.join(home, FOLDER)
         os.makedirs(self.folder, exist_ok=True)
         _write_wake(self.folder, session.job)
@@ -54,7 +55,7 @@ class Members:
         self._present: list[ChildRecord] = []
         self._texts: list[TextsSeen] = []
         self._unseen: set[str] = set()
-        self._acted = False
+        self._acted = has_acted
         carry(self.folder)
         self._exits.watch()
         if session.job.inspect:

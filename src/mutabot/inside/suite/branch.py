@@ -47,7 +47,7 @@ class BranchOfSession:
         self._trunk = 0
         self._bunch: Bunch | None = None
         self._shared: float | None = None
-        self._hears = False
+        self._hears = self._has_acted = False
 
     def expect(self) -> None:
         """This process is a trunk from now on."""
@@ -91,6 +91,7 @@ class BranchOfSession:
         """A test is over: a branch tells so, and leaves if it decides about its mutant."""
         if self._bunch is None:
             return
+        self._has_acted |= end.acted > 0
         job = self._session.job
         if job.branching is not None and end.is_decided and not job.branching.every_test:
             try:
@@ -129,9 +130,7 @@ class BranchOfSession:
         if self.members is None or os.getpid() != self._trunk:
             if os.getpid() != self._trunk:  # a process that the test has forked
                 return
-            if len(self._bunch.mutants) > 1:
-                why = "mutants that behaved alike until then start a process"
-                self.give_up(self._bunch.end(STOPPED), why)
+            self._bunch.part_all()  # in those that part, it is another bunch
             self.members = self._own_processes(self._bunch)
 
     def _own_processes(self, bunch: Bunch) -> Members:
@@ -142,7 +141,7 @@ class BranchOfSession:
         job = replace(job, mutant=bunch.first, branching=None, instrumentation=text)
         write_job(self._folder, job)
         session.job = replace(job, branching=session.job.branching)
-        members = Members(self._folder, session)
+        members = Members(self._folder, session, has_acted=self._has_acted)
         members.start_test(session.test)
         watch_forks(members.folder, session)
         return members

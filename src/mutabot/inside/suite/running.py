@@ -87,6 +87,8 @@ class Running:
         job = self.session.job
         seeds.seed_all(seeds.derive(job.seed, job.round, node_id(item)))
         self.branch.item = item
+        if self.session.trunk is not None:
+            self.session.trunk.begin_test(node_id(item))
         self.addresses.start_test()
         self.start_clocks()
         if (members := self._members) is not None:

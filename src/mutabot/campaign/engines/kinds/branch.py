@@ -1,7 +1,7 @@
 """Branch: the suite runs once as the original, and forks where a mutant differs; the fork goes on as that.
 
 Mutants that are hit where it is not safe to fork are left to the next engine, as are those that act before
-any test, or in processes below the tests.
+any test.
 """
 
 from __future__ import annotations
@@ -81,11 +81,8 @@ class Branch:
         controls = _Controls.of(campaign, [(mutant, 0) for mutant in mutants])
         baseline, progress = campaign.baseline, campaign.progress
         for mutant, round in ((one, round) for one in mutants for round in range(campaign.request.rounds)):
-            forbidding = baseline.why_not_fork(round, mutant)
             why = baseline.why_apart(mutant)
-            if forbidding is not None:
-                left.leave(mutant, round, *forbidding)
-            elif why is not None:
+            if why is not None:
                 left.set_apart(mutant, round, why)
         progress.stage("controls", len(controls.by_id))
         for outcome in Trunks(campaign, left, self.name).run(controls.trials):
