@@ -94,8 +94,6 @@ def _take(
             if taken.take(source, pair, outcome.key, dependencies.keys(mutant, round)):
                 found.done.add(pair)
             why = why or GONE
-        elif taken.take_renamed(source, kept, mutant, round):
-            found.done.add(pair)
         elif outcome is not None and why is None:
             why = explained.of(outcome.key, mutant, round)
             found.before[pair] = outcome.verdict
