@@ -26,8 +26,8 @@ from mutabot.errors import ExtensionError
 from mutabot.extensions import Part, brought
 from mutabot.families import OF_CALLS
 from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting, Vocabulary
-from mutabot.model.graded.demand import Demand
-from mutabot.model.place import Place
+from mutabot.model.graded import Demand
+from mutabot.model.mutant import Place
 from mutabot.operators.rule import Rule
 
 

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from mutabot.border.events import TestEnd
 from mutabot.border.job import Job, Pictures
-from mutabot.border.test_end import TestEnd
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.fresh import task
 from mutabot.campaign.workers.task import Result, Task, death

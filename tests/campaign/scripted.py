@@ -25,11 +25,11 @@ from mutabot.border.events import (
     PlacesReached,
     SessionEnd,
     SiteSeen,
+    TestEnd,
     TestStart,
     TextsSeen,
 )
 from mutabot.border.job import Job
-from mutabot.border.test_end import TestEnd
 from mutabot.campaign.request import Request
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.task import Result, Task

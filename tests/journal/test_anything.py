@@ -20,7 +20,7 @@ from mutabot.analysis.gate import decide
 from mutabot.analysis.results import find_mutant, read_results
 from mutabot.analysis.stored.campaign import open as open_campaign
 from mutabot.analysis.thresholds.thresholds import thresholds_of
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.cli.app import main
 from mutabot.cli.report import FORMATS
 from mutabot.errors import JournalError

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from analysis import samples
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.errors import JournalError
 from mutabot.journal.database import connect, guarded
 from mutabot.journal.files import previous_of

@@ -51,7 +51,7 @@ PACKAGE = {
         from mutabot.extensions import INTERFACE, Extension
         from mutabot.faults import FaultProvider, Planned, Planted
         from mutabot.model import Mutant, Site
-        from mutabot.model.place import Place
+        from mutabot.model.mutant import Place
         from mutabot.operators.rule import Rule
 
         EXTENSION = Extension(interface=INTERFACE, faults={"toy": "toy_world:Parameters"})

@@ -31,7 +31,7 @@ from mutabot.journal.records import (
     Verification,
 )
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
-from mutabot.model.selector import fits
+from mutabot.model.mutant import fits
 
 from .divergence import explain, is_indistinguishable, quantity_of, rank, worst_of
 from .score import Group, KillRate, RoundScores, groups_of

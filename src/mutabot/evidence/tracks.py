@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import acos, degrees, dist, inf, isnan
 
-from mutabot.model.seen.diverged import Apart, Near
+from mutabot.model.outcome import Apart, Near
 
 from .path import Point, aside, simple
 from .recording import Block, Kind, Recording, Track

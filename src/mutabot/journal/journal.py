@@ -17,7 +17,7 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.model import LeftOut, Mutant, Outcome
 
 from .database import guarded

@@ -22,7 +22,7 @@ from typing import Any
 
 import mutabot
 from mutabot.border.codec import to_data
-from mutabot.border.idle import Idle
+from mutabot.border.job import Idle
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.pieces.mentions import names_in
 from mutabot.campaign.pieces.project import Project

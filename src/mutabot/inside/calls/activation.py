@@ -9,7 +9,7 @@ from functools import partial
 from random import Random
 from typing import Any
 
-from mutabot.border.idle import Idle
+from mutabot.border.job import Idle
 from mutabot.errors import OperatorError
 from mutabot.inside.evidence import REFUSALS, Evidence
 from mutabot.inside.exception_groups import leaves

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from mutabot.border.signals import ANYBODY
+from mutabot.border.processes import ANYBODY
 
 #: options of Python by which it leaves out the environment, or what is loaded at its start
 _APART = {"-I": "the option -I", "-E": "the option -E", "-S": "the option -S"}

@@ -37,7 +37,7 @@ from mutabot.border.events import (
     Used,
 )
 from mutabot.border.job import Job, read_job
-from mutabot.border.signals import ANYBODY
+from mutabot.border.processes import ANYBODY
 from mutabot.inside import FOLDER as OURS
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.event_file import EventFile

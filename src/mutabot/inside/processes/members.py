@@ -15,12 +15,12 @@ from mutabot.border.events import (
     Problem,
     Remark,
     Signalled,
+    TestEnd,
     TextsSeen,
 )
 from mutabot.border.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
 from mutabot.border.job import Job
 from mutabot.border.processes import FOLDER
-from mutabot.border.test_end import TestEnd
 from mutabot.extensions import brought
 from mutabot.inside.session import Session
 
