@@ -28,7 +28,7 @@ from mutabot.families import OF_CALLS
 from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting, Vocabulary
 from mutabot.model.graded import Demand
 from mutabot.model.mutant import Place
-from mutabot.operators.rule import Rule
+from mutabot.operators.operator import Rule
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,8 +17,8 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.fresh import task
 from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.errors import SelectionError
-from mutabot.evidence.film import Film
 from mutabot.evidence.recording import Recording, bytes_of, from_bytes
+from mutabot.evidence.tape import Film
 from mutabot.model import Mutant
 
 #: wall-clock seconds that a picture may take, beside those of the test; pictures per simulated second

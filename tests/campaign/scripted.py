@@ -36,7 +36,7 @@ from mutabot.campaign.workers.task import Result, Task
 from mutabot.families import CONTROL
 from mutabot.model import By, Mutant, Operation, Quantity, Span, TextPlace
 from mutabot.model.alternative import Sighting
-from mutabot.operators.control import Fatal
+from mutabot.operators.command import Fatal
 
 #: what a robot answers that is asked for a number
 READING = 0.5

@@ -52,7 +52,7 @@ PACKAGE = {
         from mutabot.faults import FaultProvider, Planned, Planted
         from mutabot.model import Mutant, Site
         from mutabot.model.mutant import Place
-        from mutabot.operators.rule import Rule
+        from mutabot.operators.operator import Rule
 
         EXTENSION = Extension(interface=INTERFACE, faults={"toy": "toy_world:Parameters"})
         VALUES = %r

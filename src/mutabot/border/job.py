@@ -98,7 +98,7 @@ class Pictures:
 
     Attributes:
         test: its node id.
-        file: absolute path of the film, see ``evidence.film``.
+        file: absolute path of the film, see ``evidence.tape``.
     """
 
     test: str

@@ -22,10 +22,9 @@ from mutabot.model.graded import Demand
 from mutabot.model.mutant import EVERY
 
 from .demands import check_demands
-from .document import Document
+from .document import Document, overridden
 from .families import known_families, why_unknown
 from .mistakes import Check, raise_errors
-from .overrides import overridden
 from .table import Table
 from .toml_lines import KeyPath
 

@@ -24,7 +24,7 @@ from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.mutant import Place
-from mutabot.operators.control import Fatal, Identity
+from mutabot.operators.command import Fatal, Identity
 
 from .fresh import run_of, task
 from .judge import judge

@@ -24,9 +24,7 @@ from mutabot.border.processes import FOLDER
 from mutabot.extensions import brought
 from mutabot.inside.session import Session
 
-from .environment import carry, write_wake
-from .exits import Exits, watch_unseen
-from .now import Now
+from .environment import Exits, Now, carry, watch_unseen, write_wake
 
 #: what processes of interest load
 _JOIN = "mutabot.inside.processes.member"
