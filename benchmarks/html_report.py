@@ -24,12 +24,12 @@ from typing import Any
 
 import mutabot
 from mutabot.analysis.stored.evidence import StoredEvidence
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Track, to_bytes
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model import By, Check, Looked, Mutant, Outcome, Role, Site, Span, Verdict
-from mutabot.model.seen.diverged import Apart, Diverged
+from mutabot.model.outcome import Apart, Diverged
 from mutabot.report.html.folder import Contents, Written, write_folder
 from mutabot.report.texts import portable
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from mutabot.analysis.thresholds.interval import median_between
 from mutabot.campaign.search.search import LadderSearch
-from mutabot.model.graded.ladder import Bracket, Seen, bracket_of
+from mutabot.model.graded import Bracket, Seen, bracket_of
 
 CAMPAIGNS = 2000
 ROUNDS = (3, 5, 10, 20)

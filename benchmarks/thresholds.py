@@ -34,7 +34,7 @@ from unittest.mock import patch
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
-from mutabot.model.graded.ladder import Bracket, Seen, bracket_of, seen
+from mutabot.model.graded import Bracket, Seen, bracket_of, seen
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 

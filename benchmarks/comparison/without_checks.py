@@ -21,7 +21,7 @@ import pytest
 import wrapt
 
 from mutabot.inside.calls.locate import Locator
-from mutabot.inside.targets.names import is_named
+from mutabot.inside.targets.target import is_named
 from mutabot.inside.text import loading
 from mutabot.model import Role
 

@@ -26,9 +26,9 @@ from mutabot.errors import ExtensionError
 from mutabot.extensions import Part, brought
 from mutabot.families import OF_CALLS
 from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting, Vocabulary
-from mutabot.model.graded.demand import Demand
-from mutabot.model.place import Place
-from mutabot.operators.rule import Rule
+from mutabot.model.graded import Demand
+from mutabot.model.mutant import Place
+from mutabot.operators.operator import Rule
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,6 +30,7 @@ from mutabot.border.events import (
     PlacesReached,
     Serving,
     SiteSeen,
+    TestEnd,
     TestStart,
     Unbranched,
     Undiverged,
@@ -37,7 +38,6 @@ from mutabot.border.events import (
     event_to_data,
 )
 from mutabot.border.job import Job
-from mutabot.border.test_end import TestEnd
 from mutabot.campaign.workers.task import Result, Task
 from mutabot.evidence.recording import bytes_of, from_bytes
 

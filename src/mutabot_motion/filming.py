@@ -11,14 +11,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from mutabot.border.events import TestEnd
 from mutabot.border.job import Job, Pictures
-from mutabot.border.test_end import TestEnd
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.fresh import task
 from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.errors import SelectionError
-from mutabot.evidence.film import Film
 from mutabot.evidence.recording import Recording, bytes_of, from_bytes
+from mutabot.evidence.tape import Film
 from mutabot.model import Mutant
 
 #: wall-clock seconds that a picture may take, beside those of the test; pictures per simulated second

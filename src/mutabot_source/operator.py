@@ -2,7 +2,8 @@
 
 An operator looks at one node of the concrete syntax tree and says what could stand there instead. What it
 keeps of the original it hands on as nodes, so that these keep their place, their line and their meaning.
-What it shares with operators on calls, and where its file belongs, stands in ``mutabot/operators/rule.py``.
+What it shares with operators on calls, and where its file belongs, stands in
+``mutabot/operators/operator.py``.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import ClassVar
 import libcst as cst
 
 from mutabot.model.alternative import Alternative
-from mutabot.operators.rule import Rule
+from mutabot.operators.operator import Rule
 
 from .extension import CLASSICAL
 

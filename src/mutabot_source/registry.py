@@ -8,8 +8,8 @@ from importlib import import_module
 from pathlib import Path
 
 from mutabot.errors import OperatorError, unknown_name_text
+from mutabot.operators.operator import in_order
 from mutabot.operators.registry import classes_in, modules_in
-from mutabot.operators.rule import in_order
 
 from .extension import OF_TEXT
 from .operator import ClassicalOperator

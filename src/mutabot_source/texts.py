@@ -18,7 +18,7 @@ from mutabot.languages.python import FRONT_END as PYTHON
 from mutabot.languages.python import extent_of
 from mutabot.languages.registry import front_end_of
 from mutabot.model.alternative import Alternative, Extent, ProgramText, TextPlace
-from mutabot.model.site import Span
+from mutabot.model.mutant import Span
 
 from . import registry
 from .extension import CLASSICAL

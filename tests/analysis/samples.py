@@ -7,7 +7,7 @@ from pathlib import Path as File
 from typing import Any
 
 from mutabot.border.codec import to_data
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.journal.journal import Journal
 from mutabot.model import (
     By,

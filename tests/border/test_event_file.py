@@ -25,6 +25,7 @@ from mutabot.border.events import (
     ForkEnded,
     SessionEnd,
     SiteSeen,
+    TestEnd,
     TestStart,
     TextsSeen,
     TokensHeld,
@@ -32,11 +33,10 @@ from mutabot.border.events import (
 )
 from mutabot.border.processes import SESSION, SUFFIX, UNWRITTEN
 from mutabot.border.storable import MOST_CHARACTERS, MOST_DEPTH
-from mutabot.border.test_end import TestEnd
 from mutabot.campaign.workers.processes import EventStream, Home
 from mutabot.inside.event_file import EventFile, plain
 from mutabot.model import Span
-from mutabot.model.verdict import By
+from mutabot.model.outcome import By
 
 KEY = "0123456789abcdef"
 END = TestEnd(

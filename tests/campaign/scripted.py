@@ -25,18 +25,18 @@ from mutabot.border.events import (
     PlacesReached,
     SessionEnd,
     SiteSeen,
+    TestEnd,
     TestStart,
     TextsSeen,
 )
 from mutabot.border.job import Job
-from mutabot.border.test_end import TestEnd
 from mutabot.campaign.request import Request
 from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.task import Result, Task
 from mutabot.families import CONTROL
 from mutabot.model import By, Mutant, Operation, Quantity, Span, TextPlace
 from mutabot.model.alternative import Sighting
-from mutabot.operators.control import Fatal
+from mutabot.operators.command import Fatal
 
 #: what a robot answers that is asked for a number
 READING = 0.5

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.campaign.check import check
 from mutabot.campaign.engines.judge import Run, _ruling
 from mutabot.campaign.run import plan_only, run_campaign

@@ -13,7 +13,7 @@ from analysis.thresholds.journals import Rungs
 from mutabot.analysis.gate import decide
 from mutabot.cli.app import main
 from mutabot.exit_codes import ExitCode
-from mutabot.model.seen.figure import Figure
+from mutabot.model.outcome import Figure
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.summary import print_summary
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mutabot.evidence import Feed, tape
-from mutabot.evidence.film import Film, FilmWriter
+from mutabot.evidence.tape import Film, FilmWriter
 
 
 def picture(pixels: bytes, height: int, width: int, depth: int = 3) -> memoryview:

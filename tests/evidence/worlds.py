@@ -9,7 +9,7 @@ from mutabot.evidence.divergence import diverged
 from mutabot.evidence.feed import Feed
 from mutabot.evidence.recording import Recording, Told
 from mutabot.evidence.tracks import Seen
-from mutabot.model.seen.diverged import Diverged
+from mutabot.model.outcome import Diverged
 
 Place = tuple[float, float, float]
 SHELF: Place = (0.0, 0.0, 0.525)

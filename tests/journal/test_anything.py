@@ -20,18 +20,17 @@ from mutabot.analysis.gate import decide
 from mutabot.analysis.results import find_mutant, read_results
 from mutabot.analysis.stored.campaign import open as open_campaign
 from mutabot.analysis.thresholds.thresholds import thresholds_of
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.cli.app import main
 from mutabot.cli.report import FORMATS
 from mutabot.errors import JournalError
 from mutabot.exit_codes import ExitCode
-from mutabot.journal.database import decode
+from mutabot.journal.database import COLUMNS, decode
 from mutabot.journal.fitting import inflated
 from mutabot.journal.journal import Journal
 from mutabot.journal.marks import mark_of
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import REACHING
-from mutabot.journal.schema import COLUMNS
 from mutabot.report.choice import format_of
 from mutabot.report.format import Material
 from mutabot.report.terminal.campaign import print_results

@@ -16,14 +16,12 @@ from typing import Any
 import pytest
 
 from analysis import samples
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.errors import JournalError
-from mutabot.journal.database import connect, guarded
-from mutabot.journal.files import previous_of
+from mutabot.journal.database import SCHEMA_VERSION, connect, guarded
+from mutabot.journal.files import is_written, previous_of
 from mutabot.journal.journal import Journal
-from mutabot.journal.lock import is_written
 from mutabot.journal.records import Kept
-from mutabot.journal.schema import SCHEMA_VERSION
 from mutabot.journal.store import Store
 from mutabot.model import By, Outcome, Verdict
 

@@ -13,8 +13,8 @@ import pytest
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
 from mutabot.errors import JournalError
-from mutabot.journal.tracked import refuse_tracked
-from mutabot.settings.shard import Shard
+from mutabot.journal.files import refuse_tracked
+from mutabot.settings.options import Shard
 from tests.campaign.project import Quiet, request_for, write_project
 
 from .edited import edited

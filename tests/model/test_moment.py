@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mutabot.model import Moment
-from mutabot.model.moment import When
+from mutabot.model.mutant import When
 
 
 @pytest.mark.parametrize("text", ["3", "from 10", "once", "2-2.5 s", "0-1 s"])

@@ -13,7 +13,7 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Call, Reply
 from mutabot.model.values.quantity import same_values
 from mutabot.operators import Example, names, operator
-from mutabot.operators.control import CONTROLS
+from mutabot.operators.command import CONTROLS
 from mutabot.operators.passage import Passage, rehearse
 
 CASES = [(name, index) for name in [*names(), *CONTROLS] for index in range(len(operator(name).examples))]

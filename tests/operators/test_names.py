@@ -12,7 +12,7 @@ import pytest
 import mutabot
 from mutabot import operators
 from mutabot.campaign.faults.providers import operators_of_packages
-from mutabot.operators.control import CONTROLS
+from mutabot.operators.command import CONTROLS
 
 SOURCE = Path(mutabot.__file__).parent
 ROOMS = {"operators"}

@@ -51,8 +51,8 @@ PACKAGE = {
         from mutabot.extensions import INTERFACE, Extension
         from mutabot.faults import FaultProvider, Planned, Planted
         from mutabot.model import Mutant, Site
-        from mutabot.model.place import Place
-        from mutabot.operators.rule import Rule
+        from mutabot.model.mutant import Place
+        from mutabot.operators.operator import Rule
 
         EXTENSION = Extension(interface=INTERFACE, faults={"toy": "toy_world:Parameters"})
         VALUES = %r

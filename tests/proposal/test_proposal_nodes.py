@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from mutabot.campaign.check import check
-from mutabot.inside.watching.told_apart import ToldApart
+from mutabot.inside.watching.described import ToldApart
 from mutabot.model import Kind
 from mutabot.proposal import propose
 from mutabot.vocabulary import load

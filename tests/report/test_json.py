@@ -15,7 +15,7 @@ from analysis import samples
 from mutabot.analysis.results import read_results
 from mutabot.journal.journal import Journal
 from mutabot.model import Diverged, Outcome, Verdict
-from mutabot.model.seen.diverged import Apart, Near
+from mutabot.model.outcome import Apart, Near
 from mutabot.report.as_json import dumps, results_data
 from mutabot.report.terminal.listing import plan_data
 

@@ -8,7 +8,7 @@ import pytest
 
 from mutabot.errors import ConfigurationError
 from mutabot.model import Kind
-from mutabot.model.graded.demand import Demand
+from mutabot.model.graded import Demand
 from mutabot.settings.configuration import load_configuration
 
 GOOD = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\n'

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mutabot.errors import UsageError
-from mutabot.settings.duration import in_words, seconds_of
+from mutabot.settings.options import in_words, seconds_of
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from mutabot.exit_codes import ExitCode
 from mutabot.families import GRADED
 from mutabot.journal.records import ShardOf
 from mutabot.model import Outcome, Verdict
-from mutabot.model.graded.demand import Demand
+from mutabot.model.graded import Demand
 
 from .results import Results
 from .thresholds.demands import Held, rulings

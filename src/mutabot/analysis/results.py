@@ -8,7 +8,7 @@ from typing import Any
 
 from mutabot.border.codec import from_data
 from mutabot.errors import SelectionError, unknown_name_text
-from mutabot.journal.lock import is_written
+from mutabot.journal.files import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
     ALTERED,
@@ -31,7 +31,7 @@ from mutabot.journal.records import (
     Verification,
 )
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
-from mutabot.model.selector import fits
+from mutabot.model.mutant import fits
 
 from .divergence import explain, is_indistinguishable, quantity_of, rank, worst_of
 from .score import Group, KillRate, RoundScores, groups_of

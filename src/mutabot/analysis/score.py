@@ -17,7 +17,7 @@ from .statistics import Interval, crossed, sampled, wilson
 class Score:
     """What a number of outcomes comes to.
 
-    Which verdict stands where in the score is decided in ``model.verdict`` alone.
+    Which verdict stands where in the score is decided in ``model.outcome`` alone.
 
     Attributes:
         counts: outcomes per verdict; verdicts that did not occur are missing.

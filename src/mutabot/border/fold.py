@@ -15,6 +15,7 @@ from mutabot.model.outcome import added
 
 from .event_file import EventReader
 from .events import (
+    TRACE_LIMIT,
     Acted,
     Began,
     BranchDied,
@@ -28,13 +29,12 @@ from .events import (
     Raised,
     SessionEnd,
     SiteSeen,
+    TestEnd,
     Untrusted,
     Used,
 )
 from .job import Job
-from .processes import FOLDER, NOW, SUFFIX
-from .signals import ANYBODY, OWN_FAULT
-from .test_end import TRACE_LIMIT, TestEnd
+from .processes import ANYBODY, FOLDER, NOW, OWN_FAULT, SUFFIX
 
 #: seconds that a process may take to write what it has begun to write, and between two looks at it
 _PATIENCE, _PAUSE = 1.0, 0.002

@@ -1,6 +1,8 @@
-"""Where the processes of a job tell what they do, and find what concerns them: one folder of files."""
+"""Where the processes of a job tell what they do, and which signals say what about their ends."""
 
 from __future__ import annotations
+
+import signal
 
 #: this folder, in the home of the test process
 FOLDER = "processes"
@@ -17,3 +19,9 @@ TESTS = "tests"
 SUFFIX, SESSION = ".jsonl", "session"
 #: exit code of a test process, or of a fork of it, that could not write what it had to tell
 UNWRITTEN = 117
+
+
+#: a program dies of these by its own fault; others come from outside
+OWN_FAULT = {signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL}
+#: stands for any process, as in kill(2)
+ANYBODY = -1

@@ -15,7 +15,7 @@ from mutabot.errors import SelectionError
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import Replayed
 from mutabot.model import Mutant
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place
 
 from .beginning import open_executor, plan_of
 from .campaign import Campaign

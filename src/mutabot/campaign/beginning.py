@@ -19,7 +19,7 @@ from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Result
 from mutabot.errors import NothingToDoError
-from mutabot.journal.lock import at_work
+from mutabot.journal.files import at_work
 
 from .campaign import Campaign
 from .evidence import Evidence

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.errors import JournalError
 from mutabot.evidence.divergence import diverged, noise_between
 from mutabot.evidence.recording import bytes_of, from_bytes

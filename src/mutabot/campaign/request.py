@@ -19,8 +19,7 @@ from mutabot.faults import Project
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
 from mutabot.settings.configuration import Configuration
-from mutabot.settings.sample import Sample
-from mutabot.settings.shard import Shard
+from mutabot.settings.options import Sample, Shard
 
 
 class Preview(Protocol):

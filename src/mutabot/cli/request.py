@@ -43,9 +43,7 @@ def request_of(
     """
     from mutabot.campaign.request import Request
     from mutabot.settings.configuration import load_configuration
-    from mutabot.settings.duration import seconds_of
-    from mutabot.settings.sample import Sample
-    from mutabot.settings.shard import Shard
+    from mutabot.settings.options import Sample, Shard, seconds_of
     from mutabot.vocabulary import load
 
     if unknown := given.keys() - Running.__annotations__.keys():

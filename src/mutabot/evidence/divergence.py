@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from math import inf, isclose
 from typing import Any
 
-from mutabot.model.seen.diverged import Apart, Diverged
+from mutabot.model.outcome import Apart, Diverged
 from mutabot.model.values.quantity import is_number, told_apart, value_text
 
 from .recording import Told

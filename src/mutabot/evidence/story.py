@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from mutabot.model.seen.diverged import Apart, Near
+from mutabot.model.outcome import Apart, Near
 
 from .recording import Block, Moment, Recording
 from .tracks import TURNED, Seen

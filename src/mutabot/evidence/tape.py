@@ -1,18 +1,143 @@
-"""The tape of the running test: what feeds write on, and the session reads.
+"""The tape of the running test: what feeds write on, and the session reads; and its film.
 
-There is one per process. Outside a campaign, and between tests, there is none and feeds do nothing.
+There is one tape per process. Outside a campaign, and between tests, there is none and feeds do nothing. A
+film holds pictures of one test, one after the other in a file, each as what differs from the one before,
+compressed: most of a work cell stands still.
 """
 
 from __future__ import annotations
 
+import os
+import struct
 import time
+import zlib
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, nullcontext, suppress
-from typing import Any
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
 
-from .film import MOST_PICTURES, FilmWriter
 from .recording import Block, Kind, Moment, Recording, Track
+
+#: before each picture: its time in s, height, width, and bytes that follow
+_HEAD = struct.Struct("<dIII")
+#: pictures from which on no more are taken: four minutes at 25 per second
+MOST_PICTURES = 6000
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """One picture.
+
+    Attributes:
+        time: s, on the same clock as the recording of the test.
+        height, width: pixels.
+        pixels: red, green and blue, a byte each, row by row from the top.
+    """
+
+    time: float
+    height: int
+    width: int
+    pixels: bytes
+
+
+class FilmWriter:
+    """Takes pictures down, until it is closed or its process ends.
+
+    Attributes:
+        count: how many there are.
+    """
+
+    def __init__(self, path: str) -> None:
+        self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC, 0o600)
+        self._before = b""
+        self.count = 0
+
+    def add(self, time: float, picture: Any) -> None:
+        """Add one. Raises ValueError for what is no picture, TypeError for what holds no numbers.
+
+        Args:
+            time: s.
+            picture: shape (height, width, 3) or (height, width, 4), of bytes; the fourth of each is left out.
+        """
+        height, width, pixels = pixels_of(picture)
+        data = zlib.compress(_differing(pixels, self._before), 1)
+        left = memoryview(_HEAD.pack(time, height, width, len(data)) + data)
+        while left:
+            left = left[os.write(self._file, left) :]
+        self._before = pixels
+        self.count += 1
+
+    def close(self) -> None:
+        """No more come."""
+        os.close(self._file)
+
+
+class Film:
+    """A film that was written; of one whose process was killed it has the pictures that are whole.
+
+    Args:
+        path: its file. One that does not exist has no pictures.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    @property
+    def times(self) -> list[float]:
+        """When its pictures were taken, s."""
+        return [head[0] for head, _ in self._heads()]
+
+    def pictures(self) -> Iterator[Picture]:
+        """All of them, one after the other."""
+        before = b""
+        for (at, height, width, size), file in self._heads():
+            before = _differing(zlib.decompress(file.read(size)), before)
+            yield Picture(at, height, width, before)
+
+    def _heads(self) -> Iterator[tuple[tuple[float, int, int, int], BinaryIO]]:
+        """What stands before each picture, and the file at its beginning."""
+        if not self._path.is_file():
+            return
+        length = self._path.stat().st_size
+        with self._path.open("rb") as file:
+            while len(head := file.read(_HEAD.size)) == _HEAD.size:
+                time, height, width, size = _HEAD.unpack(head)
+                after = file.tell() + size
+                if after > length:
+                    return
+                yield (time, height, width, size), file
+                file.seek(after)
+
+
+def pixels_of(picture: Any) -> tuple[int, int, bytes]:
+    """Height, width and the pixels of a picture; raises as ``FilmWriter.add``."""
+    view = memoryview(picture)
+    if view.ndim != 3 or view.shape is None or view.shape[2] not in (3, 4) or view.format != "B":
+        raise ValueError(
+            f"a picture has the shape (height, width, 3) and numbers of the type uint8, not {view.shape} "
+            f"of the type {view.format!r}"
+        )
+    height, width, depth = view.shape
+    if not height or not width:
+        raise ValueError(f"a picture of {width} by {height} pixels")
+    data = view.tobytes()
+    if depth == 3:
+        return height, width, data
+    pixels = bytearray(height * width * 3)
+    for colour in range(3):
+        pixels[colour::3] = data[colour::4]
+    return height, width, bytes(pixels)
+
+
+def _differing(pixels: bytes, before: bytes) -> bytes:
+    """What differs from a picture of the same size, bit by bit; applied twice it gives the picture back."""
+    if len(pixels) != len(before):
+        return pixels
+    both = int.from_bytes(pixels, "little") ^ int.from_bytes(before, "little")
+    return both.to_bytes(len(pixels), "little")
+
 
 #: moments from which on only every second one is kept, and half as many are taken from then on
 _MOST_MOMENTS = 4000

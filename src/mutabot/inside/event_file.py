@@ -12,10 +12,10 @@ from mutabot.border.events import (
     Event,
     ForkEnded,
     Serving,
+    TestEnd,
     TestStart,
 )
 from mutabot.border.processes import FOLDER, SESSION, SUFFIX, UNWRITTEN
-from mutabot.border.test_end import TestEnd
 
 #: what the controller is to hear of at once; it finds all else when it looks
 _PROMPT = (TestStart, TestEnd, ForkEnded, Serving)

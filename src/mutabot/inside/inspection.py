@@ -11,9 +11,7 @@ from mutabot.border.events import Event, Problem, Remark
 from mutabot.errors import PathError
 from mutabot.inside.readings.probes import is_bound, needed_arguments
 from mutabot.inside.targets.callables import not_imported
-from mutabot.inside.targets.interception import Interception
-from mutabot.inside.targets.names import NotFoundError, resolve
-from mutabot.inside.targets.target import Finding
+from mutabot.inside.targets.target import Finding, Interception, NotFoundError, resolve
 from mutabot.model import Call, Operation, Vocabulary
 from mutabot.model.values.quantity import Value
 

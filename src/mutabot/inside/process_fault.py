@@ -17,7 +17,7 @@ from mutabot.border.job import InProcess
 from mutabot.inside.evidence import Evidence
 from mutabot.inside.readings.plain import opaque
 from mutabot.model import Mutant
-from mutabot.operators.control import FatalFault
+from mutabot.operators.command import FatalFault
 
 
 class ProcessFault(ABC):

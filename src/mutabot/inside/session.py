@@ -22,14 +22,12 @@ from mutabot.inside.calls.refusing import Made
 from mutabot.inside.calls.trace import Recorder
 from mutabot.inside.fork.bunch import Bunch
 from mutabot.inside.fork.trunk import Trunk
-from mutabot.inside.readings.along import Along, Rehearsal, rehearse
 from mutabot.inside.readings.clock import ClockReader, ProgramTime
 from mutabot.inside.readings.instances import Instances
-from mutabot.inside.readings.probes import Reading, take
+from mutabot.inside.readings.probes import Along, Reading, Rehearsal, rehearse, take
 from mutabot.inside.readings.recording import TestRecording
 from mutabot.inside.targets.callables import Callables
-from mutabot.inside.targets.interception import Interception
-from mutabot.inside.targets.target import Finding, Handler
+from mutabot.inside.targets.target import Finding, Handler, Interception
 from mutabot.inside.text.call_sites import CallSites
 from mutabot.inside.text.returns import Returns
 from mutabot.inside.text.session_text import SessionText

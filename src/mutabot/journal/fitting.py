@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from mutabot.border.codec import from_data
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.model import By, LeftOut, Mutant, Outcome, Verdict, Vocabulary
 
 from .records import (

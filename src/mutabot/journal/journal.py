@@ -17,14 +17,10 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.model import LeftOut, Mutant, Outcome
 
-from .database import guarded
-from .lock import WriterLock
-from .reader import JournalReader
-from .records import ALTERED, Row
-from .schema import (
+from .database import (
     ADOPT,
     ATTEMPT_KEY,
     FINISHED_KEY,
@@ -32,10 +28,12 @@ from .schema import (
     SCHEMA_VERSION,
     TAKE,
     VERSION_KEY,
+    guarded,
 )
-from .store import Store, dump
-from .succession import keep_copy, make_way
-from .tracked import refuse_tracked
+from .files import WriterLock, refuse_tracked
+from .reader import JournalReader
+from .records import ALTERED, Row
+from .store import Store, dump, keep_copy, make_way
 
 
 class Journal(JournalReader):

@@ -13,6 +13,7 @@ from typing import Any, Self, TypeVar
 from mutabot.border.codec import from_data
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
 
+from .database import ATTEMPT_KEY, FINISHED_KEY, LAST
 from .fitting import (
     UNFIT,
     baseline_test_in,
@@ -29,7 +30,6 @@ from .fitting import (
 )
 from .marks import name_of, word_for
 from .records import BaselineTest, ControlEnd, Kept, Row
-from .schema import ATTEMPT_KEY, FINISHED_KEY, LAST
 from .store import Store
 
 T = TypeVar("T")

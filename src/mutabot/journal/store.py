@@ -1,6 +1,9 @@
 """One opened journal file: rows in and out, as JSON where they hold more than words and numbers.
 
-What is asked of it and what is written stands in ``reader`` and ``journal``.
+What is asked of it and what is written stands in ``reader`` and ``journal``. A file may come from anybody. A
+view or a trigger in it would be evaluated with each question, for as long as whoever wrote it liked, so there
+may be none: only the tables that this version makes. What lies where a journal is to be written is taken
+over, kept beside it, or refused.
 """
 
 from __future__ import annotations
@@ -8,20 +11,87 @@ from __future__ import annotations
 import json
 import sqlite3
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, closing, contextmanager
+from contextlib import AbstractContextManager, closing, contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
 from mutabot.border.codec import to_data
 from mutabot.border.storable import storable
+from mutabot.errors import JournalError
 
-from .database import OF_ONE_ROW, Execute, connect_to_read, guarded, loaded, stored
-from .fitting import load
-from .lock import WriterLock
-from .marks import remove_unmarked
-from .mirrored import Mirrored
-from .sound import check_schema, no_journal
-from .tracked import refuse_tracked
+from .database import (
+    OF_ONE_ROW,
+    SCHEMA_VERSION,
+    SUFFIXES,
+    TABLES,
+    VERSION_KEY,
+    Execute,
+    connect,
+    connect_to_read,
+    guarded,
+    loaded,
+    stored,
+    write_anew,
+)
+from .files import WriterLock, previous_of, refuse_tracked
+from .fitting import UNFIT, load
+from .marks import Mirrored, remove_unmarked
+
+#: things in a file that are looked at: a journal has fewer
+_MOST = 100
+_MOST_VERSIONS = 1_000_000
+_Thing = tuple[str, str, str | None]
+
+
+@cache
+def _made() -> frozenset[_Thing]:
+    """What this version makes."""
+    with closing(sqlite3.connect(":memory:")) as connection:
+        connection.executescript(TABLES)
+        return frozenset(connection.execute("SELECT type, name, sql FROM sqlite_master"))
+
+
+def check_schema(path: Path, connection: sqlite3.Connection) -> None:
+    """Raise JournalError if this is no journal of this version."""
+    question = "SELECT type, name, sql FROM main.sqlite_master LIMIT ?"
+    found: set[_Thing] = set(connection.execute(question, (_MOST,)))
+    if not found:  # of a campaign that was killed before it had begun
+        raise no_journal(path)
+    tables = {name for kind, name, _ in found if kind == "table"}
+    if not {"meta", "outcome"} <= tables:
+        raise JournalError(f"{path} is a database, but not a journal of mutabot", path=str(path))
+    strange = sorted(f"{kind} {name}" for kind, name, _ in found - _made())
+    if "table meta" not in strange:
+        version = _version(connection)
+        # a version that cannot be read is one row that is damaged, if all tables are ours
+        if version != SCHEMA_VERSION and (version is not None or strange):
+            raise JournalError(
+                f"{path} was written by another version of mutabot (journal version {version or '?'}, "
+                f"this one reads {SCHEMA_VERSION}); run the campaign again",
+                path=str(path),
+                version=version,
+            )
+    if strange or _made() - found:
+        what = f"holds what no journal has ({', '.join(strange[:3])})" if strange else "lacks a table"
+        raise JournalError(
+            f"{path} {what}, so something else than mutabot has changed it; run the campaign again",
+            path=str(path),
+        )
+
+
+def _version(connection: sqlite3.Connection) -> int | None:
+    row = connection.execute("SELECT value FROM main.meta WHERE key = ?", (VERSION_KEY,)).fetchone()
+    with suppress(*UNFIT):
+        found = load(row[0]) if row is not None else None
+        return found if isinstance(found, int) and abs(found) < _MOST_VERSIONS else None
+    return None
+
+
+def no_journal(path: Path) -> JournalError:
+    """There is nothing there."""
+    return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it", path=str(path))
+
 
 #: characters of a value that are shown
 _SHOWN = 100
@@ -150,3 +220,65 @@ def dump(value: Any) -> str:
     except (ValueError, RecursionError):  # what no other process said: the names of files, for instance
         return json.dumps(storable(value, str), ensure_ascii=False)
     return text
+
+
+def make_way(path: Path) -> Path | None:
+    """Move aside what lies there and is no journal of this version; returns where to.
+
+    A journal of another version gets that as part of its name, so that no later campaign overwrites it;
+    a damaged one takes the place of the previous one.
+
+    Raises JournalError for a file that is not ours.
+    """
+    for half in (path, previous_of(path)):  # of a campaign that was killed meanwhile
+        half.with_name(f"{half.name}.new").unlink(missing_ok=True)
+    if not path.exists():
+        return None
+    with path.open("rb") as file:
+        start = file.read(16)
+    if start and not start.startswith(b"SQLite format 3"):
+        raise JournalError(f"{path} is in the way: it is not a journal of mutabot", path=str(path))
+    kept = previous_of(path)
+    try:
+        if _is_journal(path):
+            return None
+    except JournalError as error:
+        if error.version is None:
+            raise
+        kept = path.with_name(f"{path.stem}.version-{error.version}{path.suffix}")
+    if _is_empty(path):  # of a campaign that was killed before it had begun
+        return None
+    for suffix in SUFFIXES:
+        old, new = path.with_name(path.name + suffix), kept.with_name(kept.name + suffix)
+        new.unlink(missing_ok=True)
+        if old.exists():
+            old.replace(new)
+    return kept
+
+
+def keep_copy(store: Store) -> None:
+    """Keep the campaign of an opened journal as it is, as ``previous_of`` its path."""
+    with guarded(store.path):
+        write_anew(store.connection, previous_of(store.path))
+
+
+def _is_empty(path: Path) -> bool:
+    with suppress(sqlite3.DatabaseError), closing(connect(path)) as connection:
+        return connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None
+    return False
+
+
+def _is_journal(path: Path) -> bool:
+    """Whether it is a sound journal of this version. Raises JournalError for one of another version."""
+    try:
+        with closing(connect(path)) as connection:
+            check_schema(path, connection)
+            (sound,) = connection.execute("PRAGMA quick_check(1)").fetchone()
+    except (JournalError, sqlite3.DatabaseError) as error:
+        cause = error.__cause__ if isinstance(error, JournalError) else error
+        if isinstance(cause, sqlite3.OperationalError):
+            raise  # it is not the content that is wrong: a full disk, a folder that cannot be written
+        if isinstance(error, JournalError) and error.version is not None:
+            raise
+        return False
+    return bool(sound == "ok")

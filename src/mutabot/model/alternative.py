@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from .site import Role, Site, Span
+from .mutant import Role, Site, Span
 
 #: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes), as in ``ast``
 Extent = tuple[int, int, int, int]

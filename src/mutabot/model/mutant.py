@@ -1,15 +1,198 @@
-"""Mutants: one operator applied at one site, to one quantity or to the whole call."""
+"""Mutants: a fault at a site, the moments at which it acts, and what people choose them by.
+
+Without a moment it acts at each call of its site. In a control loop that is no fault any robot has: a policy
+that is wrong at 300 of 300 steps is noticed by every test.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from random import Random
 from typing import Any
 
 from mutabot.families import CALLS
+from mutabot.limits import shortened
 from mutabot.model.values.notation import Notation
 
-from .moment import Moment
-from .site import Site
+
+class When(StrEnum):
+    """The kinds of moments, by the words that select them."""
+
+    #: at the n-th call of a test alone
+    NTH = "nth"
+    #: at the n-th call of a test and all after it
+    FROM = "from"
+    #: at one call of a test, drawn anew for each round
+    ONCE = "once"
+    #: at the calls that begin in a window of the test's simulated time
+    BETWEEN = "between"
+
+
+#: the word for no moment
+EVERY = "every"
+_NUMBER = r"\d{1,9}(?:\.\d{0,9})?"
+_FORMS: Mapping[When, re.Pattern[str]] = {
+    When.NTH: re.compile(r"(?P<first>[1-9]\d{0,8})"),
+    When.FROM: re.compile(r"from (?P<first>[1-9]\d{0,8})"),
+    When.ONCE: re.compile(r"once"),
+    When.BETWEEN: re.compile(rf"(?P<first>{_NUMBER}) ?s? ?(?:-|–|to) ?(?P<last>{_NUMBER}) ?s"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """At which calls a mutant acts.
+
+    Attributes:
+        when: the kind of moment.
+        first: the number of the call, from 1; or where the window begins, s after the test's first tick.
+        last: where the window ends, s, that moment excluded; 0 for other kinds.
+        calls: for a drawn call, how many calls the site has in the baseline, by round and test
+            (``"0 tests/test_a.py::test"``).
+    """
+
+    when: When
+    first: float = 0.0
+    last: float = 0.0
+    calls: Mapping[str, int] = field(default_factory=dict)
+
+    @classmethod
+    def parse(cls, text: str) -> Moment:
+        """A moment as configuration and command line write it: ``3``, ``from 10``, ``once``, ``2-2.5 s``.
+
+        Raises ValueError, which says what would be right.
+        """
+        for when, form in _FORMS.items():
+            found = form.fullmatch(text.strip())
+            if found is None:
+                continue
+            numbers = found.groupdict()
+            moment = cls(when, float(numbers.get("first") or 0), float(numbers.get("last") or 0))
+            if when is When.BETWEEN and not moment.first < moment.last:
+                raise ValueError(f"{text!r} ends before it begins")
+            return moment
+        raise ValueError(
+            f'{shortened(text)!r} is no moment; write "every", the number of a call ("3"), "from 3", "once", '
+            'or a window of simulated time ("2-2.5 s")'
+        )
+
+    @classmethod
+    def parse_any(cls, text: str) -> Moment | None:
+        """The same, with None for every call."""
+        return None if text.strip() == EVERY else cls.parse(text)
+
+    @property
+    def text(self) -> str:
+        """The moment as it is written."""
+        if self.when is When.NTH:
+            return f"{self.first:g}"
+        if self.when is When.FROM:
+            return f"from {self.first:g}"
+        if self.when is When.ONCE:
+            return "once"
+        return f"{self.first:g}-{self.last:g} s"
+
+    @property
+    def words(self) -> str:
+        """The moment in a sentence about what the mutant does."""
+        if self.when is When.NTH:
+            return f"at call {self.first:g} only"
+        if self.when is When.FROM:
+            return f"from call {self.first:g} on"
+        if self.when is When.ONCE:
+            return "at one call, drawn for each round"
+        return f"from {self.first:g} to {self.last:g} s of simulated time"
+
+    @property
+    def asks_time(self) -> bool:
+        """Whether it needs a clock."""
+        return self.when is When.BETWEEN
+
+    def drawn(self, round: int, test: str, seed: int) -> Moment:
+        """The same moment in a test: a call that is to be drawn is drawn, from ``seed`` alone.
+
+        A test in which the baseline made no such call has none.
+        """
+        if self.when is not When.ONCE:
+            return self
+        calls = self.calls.get(f"{round} {test}", 0)
+        return replace(self, first=float(Random(seed).randint(1, calls)) if calls else 0.0)
+
+    def holds(self, call: int, time: float | None) -> bool:
+        """Whether a call is meant: the ``call``-th of its site in the test, at ``time`` (s, if known)."""
+        if self.when is When.BETWEEN:
+            return time is not None and self.first <= time < self.last
+        return call >= self.first if self.when is When.FROM else call == self.first
+
+
+class Role(StrEnum):
+    """Whose call it is. The two are never mixed in one score."""
+
+    PROGRAM = "program"
+    ORACLE = "oracle"
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Span:
+    """The exact place of an expression, as the interpreter reports it.
+
+    Attributes:
+        file: path relative to the project's root, with forward slashes.
+        line, end_line: 1-based; 0 for what does not stand in the program text, such as a parameter.
+        column, end_column: 0-based, in UTF-8 bytes, as in ``ast`` and ``code.co_positions()``.
+        function: qualified name of the enclosing code object (``<module>`` at the top level).
+    """
+
+    file: str
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+    function: str
+
+    @property
+    def place(self) -> str:
+        """``file:line``; what stands in no line is told by its file alone."""
+        return f"{self.file}:{self.line}" if self.line else self.file
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Site:
+    """Where a fault acts: mostly a call expression in the source.
+
+    Attributes:
+        span: its exact place.
+        text: the callee as written, such as ``arm.translate``.
+        occurrence: 1-based number among the expressions with this text in this function.
+        role: whose call it is.
+    """
+
+    span: Span
+    text: str
+    occurrence: int
+    role: Role
+
+    @classmethod
+    def of_parameter(cls, owner: str, name: str) -> Site:
+        """A parameter, which stands nowhere in the program text: ``of_parameter("world", "gravity")``."""
+        return cls(Span(owner, 0, 0, 0, 0, ""), name, 1, Role.PROGRAM)
+
+    @property
+    def id(self) -> str:
+        """The part of a mutant's id that names the site; stable under edits elsewhere."""
+        if not self.span.line:
+            return f"{self.span.file}:{self.text}"
+        return f"{self.span.file}:{self.span.function}:{self.text}#{self.occurrence}"
+
+    @property
+    def place(self) -> str:
+        """``file:line:column`` with the 1-based column that editors show."""
+        if not self.span.line:
+            return f"{self.span.file}:{self.text}"
+        return f"{self.span.file}:{self.span.line}:{self.span.column + 1}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,3 +259,84 @@ class Mutant:
     def pattern_name(self) -> str:
         """The pattern without format specifications; empty if there is none."""
         return Notation.compile(self.pattern).short if self.pattern is not None else ""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Place:
+    """Where and what a mutant can act on.
+
+    Attributes:
+        site: where.
+        operation: the operation that is called there; empty where the place is none of a call.
+        pattern: the text command.
+    """
+
+    site: Site
+    operation: str
+    pattern: str | None = None
+
+    @classmethod
+    def of(cls, mutant: Mutant) -> Place:
+        """Where a mutant of the first order acts."""
+        return cls(mutant.site, mutant.operation, mutant.pattern)
+
+    @property
+    def key(self) -> str:
+        """The same place in words, equal between processes."""
+        span = self.site.span
+        columns = f"{span.line}:{span.column}-{span.end_line}:{span.end_column}"
+        return f"{span.file}:{columns} {self.operation} {self.pattern or ''}".rstrip()
+
+
+#: numbers with more digits than these are of nothing
+_NUMBERS = re.compile(r"\d{1,9}(-\d{1,9})?(,\d{1,9}(-\d{1,9})?)*")
+_LINE = re.compile(r"(.+):(\d{1,9}(?:-\d{1,9})?)")
+
+
+def fits(pattern: str, mutant: Mutant) -> bool:
+    """Whether a word of ``--only`` or ``--skip`` means this mutant."""
+    if means_numbers(pattern):
+        return any(mutant.number in _range(part) for part in pattern.split(","))
+    line = line_of(pattern)
+    if line is not None and _is_at(mutant, *line):
+        return True
+    names = (mutant.operator, mutant.family, mutant.site.role.value)
+    file = mutant.site.span.file
+    return (
+        pattern in names
+        or is_like(pattern, mutant.id)
+        or is_like(pattern, file)
+        or file.startswith(pattern.rstrip("/") + "/")
+    )
+
+
+def means_numbers(pattern: str) -> bool:
+    """Whether a word means numbers of mutants."""
+    return _NUMBERS.fullmatch(pattern) is not None
+
+
+def line_of(pattern: str) -> tuple[str, range] | None:
+    """The file and the lines that a word means; None if it means something else."""
+    line = _LINE.fullmatch(pattern)
+    return (line[1], _range(line[2])) if line is not None else None
+
+
+def _range(text: str) -> range:
+    """The numbers that ``7`` or ``3-7`` means."""
+    first, _, last = text.partition("-")
+    return range(int(first), int(last or first) + 1)
+
+
+def _is_at(mutant: Mutant, file: str, lines: range) -> bool:
+    """Whether a mutant stands in these lines of a file, whose first folders may be left out."""
+    span = mutant.site.span
+    is_here = is_like(file, span.file) or span.file.endswith("/" + file.removeprefix("…/"))
+    return is_here and span.line < lines.stop and span.end_line >= lines.start
+
+
+def is_like(pattern: str, text: str) -> bool:
+    """Whether a text fits a pattern, in which ``*`` and ``?`` are wild and brackets are just brackets."""
+    parts = re.split(r"([*?])", pattern)
+    wild = {"*": ".*", "?": "."}
+    expression = "".join(wild.get(part, re.escape(part)) for part in parts)
+    return pattern == text or re.fullmatch(expression, text) is not None

@@ -1,16 +1,206 @@
-"""Outcomes: how a mutant ended in one round, and with what evidence."""
+"""Outcomes: the one named end of a mutant in a round, its place in the score, and what was seen of it."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import Any
 
-from .seen.check import Looked
-from .seen.diverged import Diverged
-from .seen.figure import Figure, improvement
-from .verdict import By, Verdict
+
+class By(StrEnum):
+    """What noticed a killed mutant."""
+
+    CHECK = "check"  # an assertion of the test, or a monitor
+    EXCEPTION = "exception"  # anything else that ended the test
+
+
+class Verdict(StrEnum):
+    """How a mutant ended in a round. Beside each: its place in the score."""
+
+    KILLED = "killed"  # valid, killed
+    SURVIVED = "survived"  # valid, not killed
+    TIMEOUT = "timeout"  # valid, killed, but shown apart
+    REFUSED = "refused"  # outside: the robot refused the mutated command itself
+    INVALID = "invalid"  # outside: no program or no command
+    NO_EFFECT = "no effect"  # outside: it changed no value at any hit
+    NOT_COVERED = "not covered"  # valid, not killed
+    UNSTABLE = "unstable"  # outside: repeats that must agree disagree
+    ERROR = "error"  # outside, never a kill: the tool, a worker or the simulator failed
+
+    @property
+    def is_valid(self) -> bool:
+        """Whether it stands in the denominator of the score."""
+        return self in VALID
+
+    @property
+    def is_killed(self) -> bool:
+        """Whether it stands in the numerator of the score."""
+        return self in KILLED
+
+
+VALID = frozenset({Verdict.KILLED, Verdict.SURVIVED, Verdict.TIMEOUT, Verdict.NOT_COVERED})
+KILLED = frozenset({Verdict.KILLED, Verdict.TIMEOUT})
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One check of a test.
+
+    Attributes:
+        place: ``file:line`` of it.
+        text: what the test says there.
+        seen: the values that it compared; of a check that was made several times, those that were nearest to
+            fail. Empty if they are no plain values.
+        spare: how far the two sides of the comparison were apart, in their unit: by so much it held. None if
+            it is no matter of more or less.
+        times: how often it was made.
+    """
+
+    place: str
+    text: str
+    seen: str = ""
+    spare: float | None = None
+    times: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Looked:
+    """A test that ran a mutant and passed.
+
+    Attributes:
+        test: node id.
+        acted: whether the mutant changed something in it.
+        checks: the checks that it made, in the order in which it made them first.
+        more: how many further checks it made.
+    """
+
+    test: str
+    acted: bool
+    checks: tuple[Check, ...] = ()
+    more: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Apart:
+    """How far one thing was from where it is in the original at the same time.
+
+    Attributes:
+        name: which thing, such as ``box``; ``box turned`` for its orientation.
+        unit: of the numbers: m, deg, or that of a value.
+        first: when it was apart first by more than the tolerance, s.
+        largest: greatest difference, and ``at`` when, s.
+        final: difference at the end.
+        aside: of a position, the greatest distance from the path of the original, whenever that was there; of
+            a value, how far it left the original's range; None for orientations.
+        tolerance: difference up to which it counts as the same.
+    """
+
+    name: str
+    unit: str
+    first: float
+    largest: float
+    at: float
+    final: float
+    aside: float | None = None
+    tolerance: float = 0.0
+
+    @property
+    def worst(self) -> float:
+        """What cannot be mere delay, in multiples of the tolerance."""
+        return max(self.final, self.aside or 0.0) / self.tolerance
+
+    @property
+    def is_delay(self) -> bool:
+        """Whether it may have gone the same way at other times."""
+        return self.worst <= 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Near:
+    """How near something came to something that never moves.
+
+    Attributes:
+        body, obstacle: which.
+        distance: m; 0 if they overlapped. Boxes are taken as they stand, whichever way they are turned.
+        at: when, s.
+        original: the least distance in the original, m.
+    """
+
+    body: str
+    obstacle: str
+    distance: float
+    at: float
+    original: float
+
+
+@dataclass(frozen=True, slots=True)
+class Diverged:
+    """How the world of one test differs from the original's.
+
+    Attributes:
+        test: node id.
+        at: the first moment at which the world, or what the program commands or reads, differs, s; None
+            without a clock.
+        what: what differed then.
+        story: what happened, in a sentence.
+        apart: what was apart by more than its tolerance, worst first.
+        near: closest approaches that are closer than in the original, closest first.
+        fault: when the mutant changed something for the first time, s; None if that is not known.
+        is_simulated: whether times are simulated; else they are of the wall clock.
+    """
+
+    test: str
+    at: float | None
+    what: str
+    story: str
+    apart: tuple[Apart, ...] = ()
+    near: tuple[Near, ...] = ()
+    fault: float | None = None
+    is_simulated: bool = True
+
+    @property
+    def worst(self) -> float:
+        """How far the world was from the original's at the worst moment, in multiples of the tolerance."""
+        return max((one.worst for one in self.apart), default=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A figure of merit that a mutant changed by more than its tolerance.
+
+    Attributes:
+        probe: what is read, as the vocabulary names it.
+        before, after: in the original and in the mutant.
+        better: ``less`` or ``more``: which way it gets better.
+        test: node id.
+    """
+
+    probe: str
+    before: float
+    after: float
+    better: str
+    test: str = ""
+
+    @property
+    def is_better(self) -> bool:
+        """Whether the mutant did better than the original."""
+        return self.after < self.before if self.better == "less" else self.after > self.before
+
+    @property
+    def text(self) -> str:
+        """``Cell.cycle_time 11.2 instead of 12.5``."""
+        return f"{self.probe.partition(':')[2]} {self.after:.4g} instead of {self.before:.4g}"
+
+
+def improvement(figures: Sequence[Figure]) -> str:
+    """What got better, in words; empty if nothing did, or if anything got worse."""
+    if not figures or not all(one.is_better for one in figures):
+        return ""
+    best = max(figures, key=lambda one: abs(one.after - one.before) / max(abs(one.before), 1e-12))
+    more = f" and {len(figures) - 1} more" if len(figures) > 1 else ""
+    return f"{best.text}{more}"
 
 
 @dataclass(frozen=True, slots=True)

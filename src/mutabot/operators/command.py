@@ -1,4 +1,4 @@
-"""The shape of operators that do something with a call as a whole."""
+"""The shape of operators that do something with a call as a whole, and the two controls of every campaign."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from dataclasses import replace
 from random import Random
 from typing import Any, ClassVar
 
+from mutabot.families import CONTROL
 from mutabot.model import Call, Middleware, Operation, Pattern, Proceed, Reply
 from mutabot.model.named import COMING, Form
 from mutabot.model.values.quantity import Value
 
-from .context import Context, Unchanged
 from .magnitudes import Ladder, sized
-from .operator import Operator, Subject
+from .operator import Context, Example, Operator, Subject, Unchanged
 
 #: how descriptions call what goes its way under a form
 _CALLED = {
@@ -100,3 +100,43 @@ def idle_of(call: Call) -> Reply:
     if call.idle is None:
         raise LookupError(f"nobody knows what {call.operation.name} answers to doing nothing")
     return call.idle
+
+
+_HOME = Operation("robot:Arm.home")
+
+
+class FatalFault(BaseException):
+    """Raised by the fatal control. Not an ``Exception``, so that no program handles it by mistake."""
+
+
+class Identity(CommandOperator):
+    """Goes through all the machinery and changes nothing."""
+
+    name = "identity"
+    family = CONTROL
+    summary = "Control: proceeds unchanged, so it must survive."
+    fault = "unchanged"
+    examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), away="that is its purpose"),)
+
+    def fits(self, whole: Subject) -> bool:
+        return True
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        return await proceed(call)
+
+
+class Fatal(Identity):
+    """Raises instead of proceeding."""
+
+    name = "fatal"
+    does_nothing = True
+    summary = "Control: the operation raises, so it must die."
+    fault = "fails"
+    examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), raises=FatalFault),)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        raise FatalFault(f"control: {call.operation.name} fails")
+
+
+#: both, by name; they make no mutants of their own
+CONTROLS: Mapping[str, type[Operator]] = {kind.name: kind for kind in (Identity, Fatal)}

@@ -8,9 +8,8 @@ from typing import Any
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
 
-from .context import quantity_of
 from .magnitudes import Ladder, sized
-from .operator import Example, Subject
+from .operator import Example, Subject, quantity_of
 
 X = Quantity(".x", Path.parse(".x", rooted=False), Kind.POSITION, "x", "m", "world")
 LOCATE = Operation("camera:locate", result=(X,), command=False)

@@ -1,29 +1,98 @@
-"""The contract of a mutation operator on calls.
+"""The contract of a mutation operator, and what it knows when it is at work.
 
-An operator answers four questions: where could it act, what does it do there, what does that look like
+An operator is one class, and nothing else has to be edited: the registries find it. A file holds those of one
+kind of fault. What every operator declares, whatever it acts on, says ``Rule``.
+
+- One that acts on **calls** is a subclass of ``Operator`` in a file of a folder below this file's, with its
+  name as text: workers load only files in whose text the name is that they look for.
+- What acts on anything else belongs to a provider of its own (``mutabot/faults.py``), which says where its
+  operators are and what else they have to declare.
+
+What several share has a name that begins with ``_``, be it a class or a file. A third party names its class
+in its ``mutabot.extensions.Extension``; that goes for operators on calls. Engines, plan, reports and
+documentation know no operator by name: whatever they need to know of one stands here or in the contract of
+its provider.
+
+An ``Operator`` answers four questions: where could it act, what does it do there, what does that look like
 to an engineer, and which examples show it. It sees quantities and their values, never Python syntax or
 a vendor's API, so that whatever can be turned into a ``Call`` can be mutated. What it needs for that it
-declares as a set of ``needs``, which the plan checks; ``rule.py`` says where its class belongs.
-
-Nearly all operators have one of two shapes: they change a value (``value.py``), or do something with the call
-as a whole (``command.py``). ``robot/commands.py`` has the shortest ones.
+declares as a set of ``needs``, which the plan checks. Nearly all have one of two shapes: they change a value
+(``value.py``), or do something with the call as a whole (``command.py``). ``robot/commands.py`` has the
+shortest ones.
 """
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from array import array
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from random import Random
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple, TypeVar
 
 from mutabot.families import ROBOT
-from mutabot.model import Middleware, Operation, Pattern, Quantity
+from mutabot.model import Call, Middleware, Operation, Pattern, Quantity
 from mutabot.model.values.quantity import Value
 
-from .rule import Rule
+#: how often each class of bugs was counted in public studies, by which operators say what they stand for
+_STUDIES = "of the bugs on commands and readings in studies of ROS and PX4/ArduPilot software"
+TIMING = f"timing and order are 28 {_STUDIES}"
+SENSORS = f"sensor dropouts and misreadings are 20 {_STUDIES}"
+PARAMETERS = f"parameters are 14 {_STUDIES}"
+COMMANDS = f"missing and duplicated commands are 13 {_STUDIES}"
+FRAMES = f"frames are 9 {_STUDIES}"
+SIGNS = f"signs are 4 {_STUDIES}"
+UNITS = f"units are 2 {_STUDIES}"
+
+
+class Published(NamedTuple):
+    """A row of the table of published operators that an operator makes.
+
+    Attributes:
+        row: 1-based place in that table.
+        original, mutant: the row's two columns, in words.
+    """
+
+    row: int
+    original: str
+    mutant: str
+
+
+class Rule(ABC):
+    """What operators of all kinds declare.
+
+    Class attributes:
+        name: how ids, reports and selections call it.
+        family: the family of its mutants (``mutabot.families``), or one of its own for a plug-in.
+        summary: one sentence for the documentation.
+        examples: worked examples; they are tests and documentation at once.
+        rank: its place in the documentation and in the numbering of mutants: smaller first, then by name.
+            Without one it comes after those that have one.
+        published: rows of the table of published operators that it makes; empty for all others.
+        stands_for: the bug class that it stands for and the evidence of it, in one sentence; may be empty for
+            those that are published.
+        where: where it applies, in the words of vocabularies.
+        has_sizes: whether it plants each fault in several magnitudes, of which a threshold is sought.
+    """
+
+    name: ClassVar[str]
+    family: ClassVar[str]
+    summary: ClassVar[str]
+    examples: ClassVar[tuple[Any, ...]] = ()
+    rank: ClassVar[int] = 1000
+    published: ClassVar[tuple[Published, ...]] = ()
+    stands_for: ClassVar[str] = ""
+    where: ClassVar[str] = ""
+    has_sizes: ClassVar[bool] = False
+
+
+R = TypeVar("R", bound=Rule)
+
+
+def in_order(rules: Iterable[R]) -> list[R]:
+    """The operators in the order of the documentation."""
+    return sorted(rules, key=lambda rule: (rule.rank, rule.name))
 
 
 class Need(Enum):
@@ -270,3 +339,73 @@ def map_numbers(value: Value, change: Any) -> Value | None:
             changed[index] = change(changed[index])
         return changed
     return None
+
+
+_BITS = 64
+
+
+class Draws:
+    """Numbers drawn for one call, whatever other calls draw.
+
+    A draw is keyed by the mutant's own seed, in which are campaign, round, test and site, and by the number
+    of the call. From a stream a program that reads once more would shift all later draws, and one magnitude
+    of a fault could not be compared with another (common random numbers: L'Ecuyer 1994; keyed generators:
+    Salmon et al. 2011).
+
+    Args:
+        random: the mutant's generator for this round and test; one number is taken of it, now.
+    """
+
+    def __init__(self, random: Random) -> None:
+        self._key = random.getrandbits(_BITS)
+
+    def of(self, number: int) -> Random:
+        """The generator of the call of this number, from 1; a new one each time."""
+        return Random(f"{self._key}:{number}")
+
+
+@dataclass(slots=True)
+class Context:
+    """One mutant at work in one test.
+
+    Attributes:
+        subject: what it acts on.
+        random: its generator for this round and test; ``draw`` is the one of a call.
+        option: what the operator's table of variants says of the subject's; None if that has none.
+        call: the call of the value that it is about to change, for operators on values.
+        number: of the call, from 1.
+        memory: what the operator keeps from one call for later ones.
+    """
+
+    subject: Subject
+    random: Random
+    option: Any = None
+    call: Call = field(init=False)
+    number: int = 0
+    memory: list[Any] = field(default_factory=list)
+    _draws: Draws | None = None
+
+    @property
+    def quantity(self) -> Quantity:
+        """The subject's quantity, for operators on values."""
+        return quantity_of(self.subject)
+
+    def draw(self) -> Random:
+        """The call's own generator; a new one each time."""
+        self._draws = self._draws or Draws(self.random)
+        return self._draws.of(self.number)
+
+    def by_chance(self) -> None:
+        """Raises Unchanged unless chance wants this call; the option is how likely that is."""
+        if self.draw().random() >= self.option:
+            raise Unchanged("chance spares it")
+
+
+def quantity_of(subject: Subject) -> Quantity:
+    """The subject's quantity; an operator on values never gets a subject without one."""
+    assert subject.quantity is not None
+    return subject.quantity
+
+
+class Unchanged(Exception):  # noqa: N818  # no error: a reason
+    """Why an operator leaves a call, or what it reads, as it is."""

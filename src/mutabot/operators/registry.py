@@ -13,9 +13,8 @@ from typing import Any
 from mutabot.errors import ExtensionError, OperatorError, unknown_name_text
 from mutabot.extensions import Part, brought
 
-from .control import CONTROLS
-from .operator import Operator
-from .rule import in_order
+from .command import CONTROLS
+from .operator import Operator, in_order
 
 _HERE = Path(__file__).parent
 

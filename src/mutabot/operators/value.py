@@ -1,4 +1,4 @@
-"""The shape of operators that change values of one call, written or read."""
+"""The shapes of operators that change values of one call, written or read."""
 
 from __future__ import annotations
 
@@ -9,13 +9,15 @@ from dataclasses import replace
 from random import Random
 from typing import Any, ClassVar, TypeVar
 
+from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Middleware, Operation, Pattern, Proceed, Quantity, Reply
 from mutabot.model.values.quantity import Value
-from mutabot.model.values.sameness import is_same
+from mutabot.model.values.rotation import Quaternion, distance, from_rotation_vector, inverse, product
+from mutabot.model.values.sameness import SAME_ORIENTATION, TURNED_ROUND, is_same
+from mutabot.model.values.units import convert
 
-from .context import Context, Unchanged, quantity_of
 from .magnitudes import Ladder, sized
-from .operator import Operator, Subject
+from .operator import Context, Operator, Subject, Unchanged, map_numbers, quantity_of
 
 CallOrReply = TypeVar("CallOrReply", Call, Reply)
 _NAMES = re.compile(r"[._]")
@@ -219,3 +221,67 @@ def _allowed(quantity: Quantity, value: Value) -> bool:
     if hasattr(value, "__len__") and not isinstance(value, str | bytes):
         return all(quantity.allows(item) for item in value)
     return quantity.allows(value)
+
+
+def the_other_way(quantity: Quantity, value: Value) -> Value | None:
+    """The inverse rotation, written like the value; the value itself where that is the same orientation."""
+    return _changed(quantity, value, inverse, TURNED_ROUND)
+
+
+def disturbed(quantity: Quantity, value: Value, random: Random, deviation: float) -> Value | None:
+    """The orientation turned by a random rotation vector of this standard deviation in each part."""
+    sigma = convert(deviation, quantity.unit or "rad", "rad")
+    turn = from_rotation_vector([random.gauss(0.0, sigma) for _ in range(3)])
+    return _changed(quantity, value, lambda orientation: product(turn, orientation))
+
+
+def _changed(
+    quantity: Quantity,
+    value: Value,
+    change: Callable[[Quaternion], Quaternion],
+    least: float = SAME_ORIENTATION,
+) -> Value | None:
+    before = quantity.orientation(value)
+    if before is None:
+        return None
+    after = change(before)
+    if distance(before, after) < least:
+        return value
+    parts = iter(quantity.numbers(after))
+    return map_numbers(value, lambda _: next(parts) + 0.0)  # no −0
+
+
+class Exchange(ValuesOperator):
+    """Exchanges two values of one kind; the variant names the second."""
+
+    family = CATALOGUE
+
+    @abstractmethod
+    def pairs(self, whole: Subject) -> Iterable[tuple[Quantity, Quantity]]:
+        """The pairs of a call whose values could be exchanged."""
+
+    def subjects(self, operation: Operation, pattern: Pattern | None) -> Iterator[Subject]:
+        whole = Subject(operation, pattern)
+        for one, other in self.pairs(whole):
+            yield replace(whole, quantity=one, variant=other.name.lstrip("."))
+
+    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        one, other = context.quantity.name, _other_of(context.subject).name
+        first, second = given(values, one), given(values, other)
+        return {one: second, other: first}
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        one, other = quantity_of(subject), _other_of(subject)
+        told = f"{label(one)} {one.text(before)} and {label(other)} {other.text(after)} exchanged"
+        return told if subject.is_written else f"reads {told}"
+
+
+def _other_of(subject: Subject) -> Quantity:
+    """The second quantity of a pair."""
+    name = subject.variant.partition("+")[0]
+    return next(one for one in subject.side if one.name.lstrip(".") == name)
+
+
+def is_alike(one: Quantity, other: Quantity) -> bool:
+    """Whether the values of two quantities mean the same, but for where they stand."""
+    return (one.kind, one.unit, one.mode, one.frame) == (other.kind, other.unit, other.mode, other.frame)

@@ -18,14 +18,13 @@ from mutabot.families import USUAL
 from mutabot.faults import families_brought, need_vocabulary
 from mutabot.limits import shortened
 from mutabot.model import Moment
-from mutabot.model.graded.demand import Demand
-from mutabot.model.moment import EVERY
+from mutabot.model.graded import Demand
+from mutabot.model.mutant import EVERY
 
 from .demands import check_demands
-from .document import Document
+from .document import Document, overridden
 from .families import known_families, why_unknown
 from .mistakes import Check, raise_errors
-from .overrides import overridden
 from .table import Table
 from .toml_lines import KeyPath
 

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from mutabot.errors import unknown_name_text
 from mutabot.model import Kind
-from mutabot.model.graded.demand import OFFSET, Demand, parse_amount
+from mutabot.model.graded import OFFSET, Demand, parse_amount
 from mutabot.model.values.quantity import DIMENSIONS, MEASURED, WHOLE
 from mutabot.model.values.units import UNITS, Dimension, dimension_of
 

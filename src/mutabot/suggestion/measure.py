@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.campaign.again import as_it_is_now
 from mutabot.campaign.baseline.taking import take_baseline
 from mutabot.campaign.beginning import open_executor

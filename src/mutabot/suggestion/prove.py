@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.campaign.beginning import open_executor
 from mutabot.campaign.engines.choice import first_engine
 from mutabot.campaign.request import Progress, Request

@@ -18,8 +18,7 @@ from .named.entries import is_named, read_named
 from .named.names import NAMING
 from .patterns import read_patterns
 from .quantities import read_arguments, read_result
-from .schema import ClockTable, OperationTable, ProbeTable, WaitTable
-from .targets import is_name, read_idle, target_fault
+from .schema import ClockTable, OperationTable, ProbeTable, WaitTable, is_name, read_idle, target_fault
 
 
 def read_operations(check: Check, raw: Any, place: KeyPath) -> list[Operation]:

@@ -14,8 +14,7 @@ from mutabot.settings.toml_lines import KeyPath
 from mutabot.vocabulary.cases.when import cases_of, name_of
 
 from .quantities import read_arguments, read_quantity, read_result
-from .schema import PatternTable, QuantityTable
-from .targets import read_idle
+from .schema import PatternTable, QuantityTable, read_idle
 
 
 def read_patterns(

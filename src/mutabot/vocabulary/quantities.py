@@ -11,9 +11,8 @@ from mutabot.model.values.path import Step
 from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
 
-from .axes import slice_of, split_axes, spread
 from .cases.when import ModeChoice, Undecided, read_mode_choice
-from .rules import SIDES, default_unit, default_values, faults, steps_of
+from .rules import SIDES, default_unit, default_values, faults, slice_of, split_axes, spread, steps_of
 from .schema import QuantityTable
 
 

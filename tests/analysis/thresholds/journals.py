@@ -14,8 +14,8 @@ from mutabot.border.codec import to_data
 from mutabot.families import GRADED
 from mutabot.journal.journal import Journal
 from mutabot.model import By, Mutant, Outcome, Verdict, Vocabulary
-from mutabot.model.seen.figure import Figure
-from mutabot.model.site import Site
+from mutabot.model.mutant import Site
+from mutabot.model.outcome import Figure
 
 SIZES = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 #: what a letter stands for; a blank or a dot is a magnitude that was not run

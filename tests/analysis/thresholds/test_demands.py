@@ -13,7 +13,7 @@ from mutabot.analysis.gate import decide
 from mutabot.analysis.thresholds.demands import Held, rulings, suggested
 from mutabot.exit_codes import ExitCode
 from mutabot.model import Kind
-from mutabot.model.graded.demand import Demand, parse_amount, wanted_magnitudes
+from mutabot.model.graded import Demand, parse_amount, wanted_magnitudes
 
 TEN = Demand(10.0, "mm")
 

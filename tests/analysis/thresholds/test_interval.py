@@ -20,7 +20,7 @@ from mutabot.analysis.thresholds.interval import (
     share_noticed,
     upper_limit,
 )
-from mutabot.model.graded.ladder import Seen, bracket_of
+from mutabot.model.graded import Seen, bracket_of
 
 LADDER = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 

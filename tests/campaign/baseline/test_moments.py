@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.comparing.moments import strides_of
 from mutabot.campaign.comparing.observation import Event, Observation, compare

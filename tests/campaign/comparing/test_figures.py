@@ -6,7 +6,7 @@ import pytest
 
 from mutabot.campaign.comparing.observation import Observation, compare
 from mutabot.model import Probe
-from mutabot.model.seen.figure import Figure, improvement
+from mutabot.model.outcome import Figure, improvement
 
 TIME = "cell:Cell.cycle_time"
 

@@ -9,7 +9,7 @@ import pytest
 
 from mutabot.analysis.chance import false_kills
 from mutabot.analysis.results import Results, read_results
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.engines import repeats
 from mutabot.campaign.engines.doubt import Doubts
@@ -17,7 +17,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import Repeated
 from mutabot.model import By, Mutant, Outcome, Role, Site, Span, Verdict
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
 from tests.campaign.scripted import CHECKED, Script
 

@@ -7,8 +7,8 @@ from mutabot.campaign.plan.plan import Plan, make_plan
 from mutabot.families import MIDDLEWARE, ROBOT
 from mutabot.faults import Project
 from mutabot.model import Operation, Role, Site, Span, Vocabulary
+from mutabot.model.mutant import Place
 from mutabot.model.named import Form
-from mutabot.model.place import Place
 from mutabot.operators.middleware._examples import (
     ADVERTISE,
     HEARD_FRAME,

@@ -17,7 +17,7 @@ from mutabot.errors import UsageError
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import DRAWING, Drawing
 from mutabot.model import Mutant, Role
-from mutabot.settings.sample import Sample
+from mutabot.settings.options import Sample
 from tests.campaign.project import Quiet, request_for, write_project
 
 SIZES = ("10%", "33 %", "0.01%", "100%", "1", "7", "50", "100000")

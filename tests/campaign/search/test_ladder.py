@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mutabot.campaign.search.search import LadderSearch
-from mutabot.model.graded.ladder import Seen, bracket_of
+from mutabot.model.graded import Seen, bracket_of
 
 SIZE = 7
 #: the first step that is noticed in a round; SIZE if none is

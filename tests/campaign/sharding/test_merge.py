@@ -16,7 +16,7 @@ from mutabot.errors import MergeError, UsageError
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import Recordings, recordings_path
 from mutabot.model import Outcome
-from mutabot.settings.shard import Shard
+from mutabot.settings.options import Shard
 from tests.campaign.project import Quiet, request_for, write_project
 from tests.campaign.test_evidence import MISSION, ROBOT, TESTS, VOCABULARY
 from tests.journal.edited import edited

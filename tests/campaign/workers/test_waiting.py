@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border import demand
+from mutabot.border import time_used
 from mutabot.border.processes import VARIABLE
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers import waiting
@@ -82,7 +82,7 @@ def running(*codes: str, on: int | None = None, mark: Path | None = None) -> Ite
                 os.sched_setaffinity(processes[-1].pid, {on})
         yield [process.pid for process in processes]
     finally:
-        below = demand.below([process.pid for process in processes], demand.children())
+        below = time_used.below([process.pid for process in processes], time_used.children())
         for pid in below:
             os.kill(pid, 9)
         for process in processes:
@@ -177,9 +177,9 @@ def test_what_a_worker_and_those_below_it_ask_for_counts(
 def test_a_worker_that_gets_no_processor_does_not_wait(tmp_path: Path) -> None:
     processor = min(os.sched_getaffinity(0))
     with running(LOOP, LOOP, *[LOOP] * 8, on=processor) as (one, two, *_):
-        before = demand.accounts_of([one])
+        before = time_used.accounts_of([one])
         assert not is_lent([Process(one, tmp_path), Process(two, tmp_path / "none")], 20 * PERIOD)
-        after = demand.accounts_of([one])
+        after = time_used.accounts_of([one])
     assert before is not None
     assert after is not None
     ran = after[one].ran - before[one].ran
@@ -215,7 +215,7 @@ def test_nothing_is_lent_where_the_kernel_keeps_no_accounts(
 
 
 def test_what_the_kernel_tells_of_the_load() -> None:
-    assert demand.accounts_of([os.getpid()])
-    demand.is_crowded()
-    total = demand.shortage()
+    assert time_used.accounts_of([os.getpid()])
+    time_used.is_crowded()
+    total = time_used.shortage()
     assert total is None or total >= 0.0

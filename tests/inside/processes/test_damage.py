@@ -18,7 +18,7 @@ from mutabot.border.fold import Children
 from mutabot.border.processes import FOLDER, SUFFIX
 from mutabot.campaign.run import run_campaign
 from mutabot.inside.event_file import EventFile
-from mutabot.inside.processes.now import Now
+from mutabot.inside.processes.environment import Now
 from mutabot.model import Verdict
 from tests.campaign.project import Quiet, outcomes, request_for, write_project
 

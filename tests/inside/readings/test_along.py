@@ -12,8 +12,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.inside.readings.along import FIRST, Along, rehearse
-from mutabot.inside.readings.probes import Reading
+from mutabot.inside.readings.probes import FIRST, Along, Reading, rehearse
 
 
 def read_after(commands: int, stride: int) -> list[int]:

@@ -20,8 +20,7 @@ import pytest_timeout
 from hypothesis import strategies
 
 from mutabot.inside.calls.locate import Locator
-from mutabot.inside.evidence import Evidence
-from mutabot.inside.exception_groups import is_due_to, leaves
+from mutabot.inside.evidence import Evidence, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
 from mutabot.inside.suite.classify import Ending, classify
 from mutabot.model import By, Vocabulary

@@ -10,8 +10,7 @@ from unittest import mock
 import pytest
 
 from mutabot.inside.targets.callables import Callables
-from mutabot.inside.targets.names import NotFoundError, is_named, named_class, resolve
-from mutabot.inside.targets.target import Finding
+from mutabot.inside.targets.target import Finding, NotFoundError, is_named, named_class, resolve
 
 
 class Base:

@@ -14,9 +14,8 @@ from unittest.mock import MagicMock
 import pytest
 
 from mutabot.inside.watching.described import Leaves
-from mutabot.inside.watching.watch import Watch
-from mutabot.inside.watching.watched_text import METHOD, NAME, READ
-from mutabot.inside.watching.watched_text import watch as watch_tree
+from mutabot.inside.watching.watch import METHOD, NAME, READ, Watch
+from mutabot.inside.watching.watch import watch as watch_tree
 
 ORDINARY = Path(__file__).parents[2] / "packages" / "source" / "ordinary.py"
 

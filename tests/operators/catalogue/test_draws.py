@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from random import Random
 
-from mutabot.operators.context import Draws
+from mutabot.operators.operator import Draws
 
 
 def test_a_hit_draws_the_same_however_much_the_hits_before_it_drew() -> None:

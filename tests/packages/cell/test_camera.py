@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 from mutabot.evidence import tape
-from mutabot.evidence.film import Film
+from mutabot.evidence.tape import Film
 from mutabot_cell import Cell
 
 CODE = """
 import sys
 from mutabot_cell import Cell
 from mutabot.evidence import tape
-from mutabot.evidence.film import FilmWriter
+from mutabot.evidence.tape import FilmWriter
 
 cell = Cell(1)
 before = cell.simulation.model.vis.quality.shadowsize, cell.simulation.model.vis.quality.offsamples

@@ -106,7 +106,7 @@ ATTACKS = (
 FORGER = """
 from dataclasses import replace
 from mutabot.border.events import BranchEnd, SessionEnd
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot_dask import far
 from mutabot_dask.unit import Answer, Unit
 from mutabot.campaign.workers.task import Result

@@ -22,16 +22,16 @@ from mutabot.border.events import (
     ForkEnded,
     SessionEnd,
     SiteSeen,
+    TestEnd,
     TestStart,
     event_to_data,
 )
 from mutabot.border.job import Branching, Job
-from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.observed import observation
 from mutabot.campaign.comparing.observation import compare
 from mutabot.campaign.workers.task import Result, Task
 from mutabot.model import Mutant, Role, Site, Span, Vocabulary
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place
 from mutabot_dask.bundle import Bundle
 from mutabot_dask.dispatch import Dispatch
 from mutabot_dask.far import Session

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from mutabot.errors import UsageError
-from mutabot.evidence.film import Film, FilmWriter
+from mutabot.evidence.tape import Film, FilmWriter
 from packages.motion.sample import recording, shown
 
 av = pytest.importorskip("av")

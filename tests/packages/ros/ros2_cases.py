@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from mutabot.border.events import Problem
-from mutabot.border.idle import Idle
+from mutabot.border.job import Idle
 from mutabot.inside.calls.answers import LOST
 from mutabot.model.values.answer import keep, restore
 from tests.inside.stage import Make, Stage

@@ -13,7 +13,7 @@ from analysis import samples
 from mutabot.analysis.stored.evidence import StoredEvidence
 from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Track, to_bytes
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
-from mutabot.model.seen.diverged import Apart, Diverged, Near
+from mutabot.model.outcome import Apart, Diverged, Near
 from mutabot.report.html.folder import Contents, Written, write_folder
 from mutabot.report.texts import Cleaner, portable
 from report.material import with_text

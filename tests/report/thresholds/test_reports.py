@@ -19,7 +19,7 @@ from mutabot.analysis.thresholds.comparing import compare
 from mutabot.analysis.thresholds.thresholds import SORTS, Thresholds, thresholds_of
 from mutabot.cli.thresholds import _SORTS
 from mutabot.model import Operation, Role, Vocabulary
-from mutabot.model.seen.figure import Figure
+from mutabot.model.outcome import Figure
 from mutabot.report.as_json import dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.thresholds.data import compared_data, suggested_toml, thresholds_data

@@ -9,7 +9,7 @@ from enum import StrEnum
 
 from mutabot.analysis.results import Results
 from mutabot.analysis.statistics import Mean, mean_of
-from mutabot.model.graded.demand import is_same
+from mutabot.model.graded import is_same
 
 from .ladders import Ladder, ladders_of
 from .rounds import Above, LadderRound

@@ -10,9 +10,8 @@ from enum import StrEnum
 from mutabot.errors import unknown_name_text
 from mutabot.families import GRADED
 from mutabot.model import Kind, Outcome, Verdict
-from mutabot.model.graded.demand import Demand, is_at_least, is_same
-from mutabot.model.graded.ladder import Seen, seen
-from mutabot.model.selector import is_like
+from mutabot.model.graded import Demand, Seen, is_at_least, is_same, seen
+from mutabot.model.mutant import is_like
 
 from .interval import lower_limit, rounds_for, upper_limit
 from .ladders import Ladder

@@ -11,8 +11,7 @@ from itertools import pairwise
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.statistics import Interval
 from mutabot.model import Mutant, Outcome, Quantity
-from mutabot.model.graded.demand import OFFSET, is_same
-from mutabot.model.graded.ladder import Seen, seen
+from mutabot.model.graded import OFFSET, Seen, is_same, seen
 from mutabot.model.values.units import UNITS
 
 from .interval import Between, exact, median_between, share_noticed

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from mutabot.model import By, Outcome, Verdict
-from mutabot.model.graded.ladder import Bracket, Seen, bracket_of, seen
+from mutabot.model.graded import Bracket, Seen, bracket_of, seen
 
 #: what ends a ladder without a word about the tests
 _NOTHING_THERE = frozenset({Verdict.NO_EFFECT, Verdict.INVALID})

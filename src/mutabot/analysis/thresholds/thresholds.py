@@ -19,8 +19,7 @@ from mutabot.analysis.thresholds.ladders import Ladder, ladders_of, looseness
 from mutabot.analysis.thresholds.rounds import LadderRound
 from mutabot.analysis.thresholds.words import amount
 from mutabot.model import Quantity
-from mutabot.model.graded.demand import OFFSET
-from mutabot.model.graded.ladder import seen
+from mutabot.model.graded import OFFSET, seen
 from mutabot.model.values.units import UNITS, convert_difference
 
 #: a check that is not wider than so many standard deviations fails now and then without a fault

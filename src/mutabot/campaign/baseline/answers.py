@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.border.idle import Idle
+from mutabot.border.job import Idle
 from mutabot.errors import MutabotError
 from mutabot.model import Operation, Pattern
 from mutabot.model.values.answer import is_plain

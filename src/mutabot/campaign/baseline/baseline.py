@@ -10,13 +10,12 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.border.events import Remark
+from mutabot.border.events import Remark, TestEnd
 from mutabot.border.job import Budget, RefusedAt
-from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.observation import Observation, as_steady
 from mutabot.faults import Original, Planned, Preparation
 from mutabot.model import Mutant, Vocabulary
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place
 
 from .answers import RecordedAnswers
 from .planted import PlantedFaults

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mutabot.border.events import SiteSeen
+from mutabot.border.events import SiteSeen, TestEnd
 from mutabot.border.job import RefusedAt
-from mutabot.border.test_end import TestEnd
 from mutabot.campaign.comparing.observation import Event, Observation
 from mutabot.campaign.workers.task import Result
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place
 
 from .site_names import Sources
 

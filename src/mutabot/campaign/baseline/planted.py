@@ -9,8 +9,8 @@ from mutabot.border.job import InProcess
 from mutabot.families import CALLS, CONTROL, MESSAGES
 from mutabot.faults import Planned, Planted
 from mutabot.model import FATAL, IDENTITY, Choice, Instrumentation, Mutant, ProgramText
-from mutabot.model.place import Place
-from mutabot.operators.control import Identity
+from mutabot.model.mutant import Place
+from mutabot.operators.command import Identity
 
 #: what a control is at a place of a fault that is put in place by its provider's own code
 _CONTROLS = "mutabot.inside.process_fault"

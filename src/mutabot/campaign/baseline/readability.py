@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from mutabot.border.events import Problem
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import Problem, TestEnd
 from mutabot.campaign.request import Progress
 from mutabot.model import Probe, Vocabulary
 from mutabot.vocabulary import problem_error

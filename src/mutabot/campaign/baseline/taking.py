@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from mutabot.border.events import Event, Remark
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import Event, Remark, TestEnd
 from mutabot.campaign.comparing.moments import moments_in, note_moments, strides_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.workers.executor import Executor
@@ -16,7 +15,7 @@ from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
 from mutabot.model import Instrumentation, ProgramText
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 

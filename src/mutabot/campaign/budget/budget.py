@@ -23,7 +23,7 @@ from mutabot.campaign.sink import Sink
 from mutabot.campaign.workers.interruption import OutOfTimeError, limited
 from mutabot.journal.records import BUDGET, Budgeted
 from mutabot.model import Mutant, Outcome, Verdict
-from mutabot.settings.duration import in_words
+from mutabot.settings.options import in_words
 
 Pair = tuple[str, int]
 

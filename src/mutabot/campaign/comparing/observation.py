@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.model import Compared, Operation, Probe
-from mutabot.model.seen.figure import Figure
+from mutabot.model.outcome import Figure
 from mutabot.model.values.quantity import is_number, told_apart, value_text
 
 from .orientations import Angles, Command, Turned, turned_parts, values_apart

@@ -23,8 +23,8 @@ from mutabot.errors import ControlError
 from mutabot.families import CONTROL
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
-from mutabot.model.place import Place
-from mutabot.operators.control import Fatal, Identity
+from mutabot.model.mutant import Place
+from mutabot.operators.command import Fatal, Identity
 
 from .fresh import run_of, task
 from .judge import judge

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.observed import observation, places_of
 from mutabot.campaign.baseline.site_names import Sources

@@ -7,14 +7,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from mutabot.border.signals import OWN_FAULT
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd
+from mutabot.border.processes import OWN_FAULT
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.observation import Observation, compare, farthest
 from mutabot.errors import MutabotError
 from mutabot.model import By, Kill, Looked, Mutant, Outcome, Verdict
-from mutabot.model.outcome import added
-from mutabot.model.seen.figure import Figure
+from mutabot.model.outcome import Figure, added
 
 #: tests of a survivor whose checks are kept
 _MOST_LOOKED = 20

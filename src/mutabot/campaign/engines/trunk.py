@@ -17,12 +17,12 @@ from mutabot.border.events import (
     BranchFinished,
     Event,
     SiteSeen,
+    TestEnd,
     Unbranched,
     Undiverged,
     Untrusted,
 )
 from mutabot.border.job import Branching
-from mutabot.border.test_end import TestEnd
 from mutabot.campaign.baseline.observed import observation, place_of
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.moments import moments_in
@@ -30,7 +30,7 @@ from mutabot.campaign.comparing.observation import Observation
 from mutabot.campaign.workers.task import Result, Task, at, death, how_ended
 from mutabot.families import CONTROL
 from mutabot.model import Instrumentation, Mutant, Outcome
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place
 
 from .engine import Remainder, Trial
 from .fresh import not_run, wall_limit, without_tests

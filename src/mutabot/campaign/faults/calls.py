@@ -15,7 +15,7 @@ from mutabot.errors import OperatorError
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, ROBOT
 from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparation, Project
 from mutabot.model import Call, Kind, Middleware, Mutant, Operation, Reply, Role, Site, Vocabulary
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place
 from mutabot.model.values.quantity import is_reading_of
 from mutabot.operators import Need, Operator, Subject, load_all
 from mutabot.operators.operator import with_operation

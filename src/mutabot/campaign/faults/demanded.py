@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from mutabot.faults import Planted, Project
 from mutabot.model import Kind, Mutant, Vocabulary
-from mutabot.model.graded.demand import Demand, is_same, wanted_magnitudes
+from mutabot.model.graded import Demand, is_same, wanted_magnitudes
 
 from .ladders import Ladder, apart
 

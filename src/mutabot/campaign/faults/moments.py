@@ -9,8 +9,7 @@ from dataclasses import replace
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.faults import Planted
 from mutabot.model import Moment, Mutant, Vocabulary
-from mutabot.model.moment import When
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place, When
 from mutabot.operators import Need, operator
 
 

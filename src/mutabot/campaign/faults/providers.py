@@ -7,9 +7,9 @@ from collections.abc import Collection, Iterator
 from mutabot.errors import ExtensionError, unknown_name_text
 from mutabot.families import OF_CALLS, ROBOT
 from mutabot.faults import FaultProvider, Preparation, Project, brought_providers
+from mutabot.operators.operator import Rule
 from mutabot.operators.registry import names as operators_on_calls
 from mutabot.operators.registry import operator as operator_on_calls
-from mutabot.operators.rule import Rule
 
 from .calls import CallFaults, MessageFaults
 

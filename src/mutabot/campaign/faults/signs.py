@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place
 from mutabot.model.values.quantity import is_number
 from mutabot.operators import Subject
 

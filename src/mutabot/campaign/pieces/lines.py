@@ -5,11 +5,11 @@ from __future__ import annotations
 import ast
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from functools import cached_property
 
 from .piece import Piece
 from .project import Project
-from .renaming import Renaming
 
 #: a place as outcomes name it: ``file:line``, or ``file:line:column-line:column``
 _PLACE = re.compile(r"(?<![\w./-])([\w./-]+\.py):(\d+)(?::(\d+)-(\d+):(\d+))?")
@@ -17,21 +17,15 @@ _PLACE = re.compile(r"(?<![\w./-])([\w./-]+\.py):(\d+)(?::(\d+)-(\d+):(\d+))?")
 Extent = tuple[int, ...]
 
 
-_Place = tuple[str, Extent]
-
-
 class Lines:
     """From the lines of an old project to those of a new one.
 
     Args:
         old, new: the projects.
-        renaming: how files and functions of the new one were called in the old one.
     """
 
-    def __init__(self, old: Project, new: Project, renaming: Renaming | None = None) -> None:
+    def __init__(self, old: Project, new: Project) -> None:
         self._old, self._new = old, new
-        self._renaming = renaming or Renaming()
-        self._known: Mapping[str, Mapping[Extent, _Place | None]] | None = None
 
     def moved(self, text: str) -> str | None:
         """The text with the places that it names as they are now; None if one of them is gone."""
@@ -40,43 +34,35 @@ class Lines:
         def place(match: re.Match[str]) -> str:
             nonlocal gone
             file = match[1]
-            if file not in self._old.texts or (
-                self._new.digests.get(file) == self._old.digests[file] and not self._renaming
-            ):
+            if file not in self._old.texts or self._new.digests.get(file) == self._old.digests[file]:
                 return match[0]
             extent = tuple(int(part) for part in match.groups()[1:] if part is not None)
             found = self._map.get(file, {}).get(extent)
             gone = gone or found is None
-            return match[0] if found is None else f"{found[0]}:{_shown(found[1])}"
+            return match[0] if found is None else f"{file}:{_shown(found)}"
 
         text = _PLACE.sub(place, text)
         return None if gone else text
 
-    @property
-    def _map(self) -> Mapping[str, Mapping[Extent, _Place | None]]:
-        if self._known is None:
-            self._known = self._compared()
-        return self._known
-
-    def _compared(self) -> dict[str, dict[Extent, _Place | None]]:
-        before = _by_name(self._old, lambda piece: f"{piece.file}:{piece.name}")
-        now = _by_name(self._new, lambda piece: self._renaming.target(f"{piece.file}:{piece.name}"))
-        found: dict[str, dict[Extent, _Place | None]] = defaultdict(dict)
-        for name, olds in before.items():
-            for old, new in zip(olds, now.get(name, ()), strict=False):
-                if self._old.digest(old) != self._new.digest(new, self._renaming):
+    @cached_property
+    def _map(self) -> Mapping[str, Mapping[Extent, Extent | None]]:
+        """By file, where each extent is now; None where that is not clear."""
+        now = _by_name(self._new)
+        found: dict[str, dict[Extent, Extent | None]] = defaultdict(dict)
+        for (file, name), olds in _by_name(self._old).items():
+            for old, new in zip(olds, now.get((file, name), ()), strict=False):
+                if self._old.digest(old) != self._new.digest(new):
                     continue
                 for was, is_now in _lines(old, new):
-                    place = (new.file, is_now)
-                    if found[old.file].setdefault(was, place) != place:
-                        found[old.file][was] = None
+                    if found[file].setdefault(was, is_now) != is_now:
+                        found[file][was] = None
         return found
 
 
-def _by_name(project: Project, name_of: Callable[[Piece], str]) -> dict[str, list[Piece]]:
-    found: dict[str, list[Piece]] = defaultdict(list)
+def _by_name(project: Project) -> dict[tuple[str, str], list[Piece]]:
+    found: dict[tuple[str, str], list[Piece]] = defaultdict(list)
     for piece in project.pieces:
-        found[name_of(piece)].append(piece)
+        found[piece.file, piece.name].append(piece)
     return found
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -77,42 +77,13 @@ class Piece:
             case Kind.FILE:
                 return self.file
 
-    def digest(
-        self, bound: Iterable[tuple[str, tuple[str, ...]]], words: Mapping[str, str] | None = None
-    ) -> str:
+    def digest(self, bound: Iterable[tuple[str, tuple[str, ...]]]) -> str:
         """What it says, as a digest.
 
         Args:
             bound: names in it that stand for something elsewhere, and for what.
-            words: identifiers that are to be read as others; None to read them as they are.
         """
         if self.kind is Kind.FILE:
             return self.text
-        whole = [said(node, words or {}) for node in self.nodes]
+        whole = [ast.dump(node) for node in self.nodes]
         return hashlib.blake2b(repr((whole, sorted(bound))).encode(), digest_size=12).hexdigest()
-
-
-#: fields that hold identifiers
-_IDENTIFIERS = {"id", "attr", "arg", "name", "asname", "module", "names", "kwd_attrs", "rest"}
-
-
-def said(node: object, words: Mapping[str, str]) -> str:
-    """A syntax tree as text, like ``ast.dump``, with other identifiers."""
-    if isinstance(node, ast.AST):
-        fields = (
-            f"{name}={_word(value, words) if name in _IDENTIFIERS else said(value, words)}"
-            for name, value in ast.iter_fields(node)
-            if value is not None and value != []
-        )
-        return f"{type(node).__name__}({', '.join(fields)})"
-    if isinstance(node, list):
-        return f"[{', '.join(said(one, words) for one in node)}]"
-    return repr(node)
-
-
-def _word(value: object, words: Mapping[str, str]) -> str:
-    if isinstance(value, str):
-        return repr(".".join(words.get(part, part) for part in value.split(".")))
-    if isinstance(value, list) and value and isinstance(value[0], str):
-        return repr([words.get(part, part) for part in value])
-    return said(value, words)

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 
 from .piece import Kind, Piece
-from .renaming import Renaming
 from .taken_apart import Module, pure_classes, take_apart
 
 #: what another file must not be taken for
@@ -65,20 +64,9 @@ class Project:
         for module in self.modules.values():
             self.pieces += self._passed_on(module, words, handed)
 
-    def digest(self, piece: Piece, renaming: Renaming | None = None) -> str:
-        """What a piece says; as it was called before, if that is given."""
-        renaming = renaming or Renaming()
-        bound = [
-            (renaming.dotted(name), tuple(renaming.target(target) for target in targets))
-            for name, targets in self._bindings(piece)
-        ]
-        return piece.digest(bound, renaming.words)
-
-    def is_only_moved(self, piece: Piece, renaming: Renaming) -> bool:
-        """Whether it passes on what stood there before."""
-        here = f"{piece.file}:{piece.name}"
-        targets = {renaming.target(one) for one in self._resolve(piece.file, piece.name)}
-        return piece.kind is Kind.PASSED and targets == {renaming.target(here)}
+    def digest(self, piece: Piece) -> str:
+        """What a piece says."""
+        return piece.digest(self._bindings(piece))
 
     @property
     def around(self) -> dict[str, str]:

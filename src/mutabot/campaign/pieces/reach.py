@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterable
 from .mentions import STARTS
 from .piece import Kind, Piece
 from .project import Project
-from .renaming import Renaming
 
 #: methods that others may call although the project nowhere mentions them beside the object
 _PROTOCOLS = {
@@ -177,14 +176,8 @@ class Reach:
                 return True
         return False
 
-    def digest(self, reached: Reached, renaming: Renaming | None = None) -> str:
+    def digest(self, reached: Reached) -> str:
         """What all these pieces say, as a digest."""
-        if renaming:
-            return _together(
-                (renaming.target(f"{piece.file}:{piece.name}"), self.project.digest(piece, renaming))
-                for piece in self._of(reached)
-                if not self.project.is_only_moved(piece, renaming)
-            )
         if reached not in self._whole:
             self._whole[reached] = _together(self._said(number) for number in reached)
         return self._whole[reached]
@@ -194,12 +187,9 @@ class Reach:
         """What all pieces say, as a digest."""
         return self.digest(self._everything)
 
-    def files(self, reached: Reached, renaming: Renaming) -> dict[str, str]:
-        """The files that hold these pieces, and what they were called, or where the pieces stood."""
-        return {
-            piece.file: renaming.target(f"{piece.file}:{piece.name}").partition(":")[0]
-            for piece in self._of(reached)
-        }
+    def files(self, reached: Reached) -> set[str]:
+        """The files that hold these pieces."""
+        return {self.project.pieces[number].file for number in reached if number != _TEXT}
 
     def says(self, reached: Reached) -> dict[str, tuple[str, ...]]:
         """What each of these pieces says, by the piece in words."""
@@ -208,9 +198,6 @@ class Reach:
             shown = self.project.pieces[number].shown if number != _TEXT else "the text of some file"
             found[shown].append(self._said(number)[1])
         return {name: tuple(sorted(said)) for name, said in found.items()}
-
-    def _of(self, reached: Reached) -> Iterable[Piece]:
-        return (self.project.pieces[number] for number in reached if number != _TEXT)
 
     def _said(self, number: int) -> tuple[str, str]:
         if number == _TEXT:

@@ -16,7 +16,7 @@ from mutabot.campaign.faults.providers import asked_for
 from mutabot.faults import Preparation, Project
 from mutabot.journal.records import Drawing, Stratum
 from mutabot.model import LeftOut, Mutant
-from mutabot.settings.sample import Sample
+from mutabot.settings.options import Sample
 
 
 @dataclass(frozen=True, slots=True)

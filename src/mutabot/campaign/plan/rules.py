@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 from mutabot.campaign.faults.providers import rules_of
-from mutabot.operators.rule import Rule, in_order
+from mutabot.operators.operator import Rule, in_order
 from mutabot.settings.families import known_families
 
 

@@ -16,8 +16,7 @@ from mutabot.campaign.request import Request
 from mutabot.errors import SelectionError, nearest_name
 from mutabot.languages.registry import program_files
 from mutabot.model import LeftOut, Mutant
-from mutabot.model.selector import fits, is_like, line_of, means_numbers
-from mutabot.model.site import Role
+from mutabot.model.mutant import Role, fits, is_like, line_of, means_numbers
 from mutabot.operators import registry
 from mutabot.settings.families import known_families
 

@@ -8,7 +8,7 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.faults.providers import provider
 from mutabot.journal.records import Reaching
 from mutabot.model import Mutant
-from mutabot.model.place import Place
+from mutabot.model.mutant import Place
 
 
 def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:

@@ -25,13 +25,11 @@ from typing import Any
 
 import mutabot
 from mutabot.border.codec import to_data
-from mutabot.border.idle import Idle
+from mutabot.border.job import Idle
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.pieces.mentions import names_in
 from mutabot.campaign.pieces.project import Project
 from mutabot.campaign.pieces.reach import Reach, Reached
-from mutabot.campaign.pieces.renaming import Renaming
 from mutabot.campaign.request import Request
 from mutabot.model import Mutant, Outcome, Vocabulary
 
@@ -102,7 +100,7 @@ class Dependencies:
             **self.reach.project.around,
             **_pytest_parts(request, read),
             **_settings(request),
-            **self._roles({name: name for name in self.files if name not in self.texts}),
+            **self._roles(name for name in self.files if name not in self.texts),
             **_vocabulary_parts(request.vocabulary),
             **versions(),
         }
@@ -156,19 +154,6 @@ class Dependencies:
         both = (self.key(mutant, round, whole=whole) for whole in (False, True))
         return next((now for now in both if says_same(key, now)), None)
 
-    def holds_renamed(
-        self, key: str, mutant: Mutant, round: int, renaming: Renaming, parts: Callable[[str], Parts | None]
-    ) -> bool:
-        """The same, where things were called otherwise; ``parts``: what digests in that key stand for."""
-        was = key.split()
-        common, of_place = parts(was[0]), parts(was[1])
-        if common is None or of_place is None or _draws(mutant):
-            return False
-        own = {renaming.path(name): renaming.path(value) for name, value in self.common.items()}
-        if common != own or was[2] != self.key(mutant, round).split()[2]:
-            return False
-        return of_place == self._place_parts(mutant, round, SUITE in of_place, renaming)
-
     def still_hold(self, key: str, of_place: Parts) -> bool:
         """Whether all that is known now of what a key stands for is as it was; the rest is taken for granted.
 
@@ -177,7 +162,7 @@ class Dependencies:
         words = key.split()
         if words[0] != self._common or words[3:] != [self.tree]:
             return False
-        now = self._roles({name: name for name in self.files})
+        now = self._roles(self.files)
         for parts in self._operations.values():
             now.update(parts)
         unknown = {REACHING, SUITE, REACHED, ASIDE}
@@ -236,9 +221,7 @@ class Dependencies:
             found = self._places[key] = self._stored(self._place_parts(mutant, round, whole))
         return found
 
-    def _place_parts(
-        self, mutant: Mutant, round: int, whole: bool, renaming: Renaming | None = None
-    ) -> dict[str, str]:
+    def _place_parts(self, mutant: Mutant, round: int, whole: bool) -> dict[str, str]:
         tests = self.tests(mutant, round, whole=whole)
         reached = self.reached(mutant, tests)
         aside = self._baseline.missing_judges(round, mutant)
@@ -248,30 +231,21 @@ class Dependencies:
                 for operation in self._operations_of(mutant)
                 for name, digest in self._operations.get(operation, {}).items()
             },
-            **self._roles(self.reach.files(reached, renaming or Renaming())),
+            **self._roles(self.reach.files(reached)),
             (SUITE if whole else REACHING): _HASH + _digest(sorted(tests)),
             **({ASIDE: _HASH + _digest(sorted(aside))} if aside else {}),
-            REACHED: _HASH + self.reach.digest(reached, renaming),
+            REACHED: _HASH + self.reach.digest(reached),
         }
 
-    def _roles(self, files: Mapping[str, str]) -> dict[str, str]:
-        """Which of these files are program and which are oracle; by what they were called."""
-        found = {}
-        for file, was in files.items():
-            role = role_of(file, self.request)
-            if role:
-                found[f"role of {was}"] = role
-        return found
+    def _roles(self, files: Iterable[str]) -> dict[str, str]:
+        """Which of these files are program and which are oracle."""
+        roles = {f"role of {file}": role_of(file, self.request) for file in files}
+        return {name: role for name, role in roles.items() if role}
 
     def _stored(self, parts: Parts) -> str:
         digest = _digest(parts)
         self.parts[digest] = parts
         return digest
-
-
-def _draws(mutant: Mutant) -> bool:
-    """Whether a mutant draws numbers, which follow from its id."""
-    return mutant.moment is not None or provider(mutant.provider).draws(mutant.operator)
 
 
 def changes(old: Parts, new: Parts) -> list[str]:

@@ -101,8 +101,6 @@ def _take(
             if taken.take(source, mutant, round, outcome.key, now):
                 found.done.add(pair)
             why = why or GONE
-        elif taken.take_renamed(source, kept, mutant, round):
-            found.done.add(pair)
         elif outcome is not None and why is None:
             why = explained.of(outcome.key, mutant, round)
             found.before[pair] = outcome.verdict

@@ -24,7 +24,7 @@ from mutabot.campaign.engines.engine import Trial
 from mutabot.campaign.faults.ladders import Ladder
 from mutabot.campaign.sink import Sink
 from mutabot.model import Outcome
-from mutabot.model.graded.ladder import Seen, bracket_of, seen
+from mutabot.model.graded import Seen, bracket_of, seen
 
 #: indices of a ladder's magnitudes, from the smallest
 Step = int

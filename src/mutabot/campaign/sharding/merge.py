@@ -10,9 +10,8 @@ from typing import Any
 from mutabot.border.codec import from_data, to_data
 from mutabot.campaign.plan.earlier import renumbered
 from mutabot.errors import MergeError
-from mutabot.journal.files import HOME, JOURNAL
+from mutabot.journal.files import HOME, JOURNAL, is_written, refuse_tracked
 from mutabot.journal.journal import Journal
-from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.recordings import Recordings
 from mutabot.journal.records import (
@@ -26,7 +25,6 @@ from mutabot.journal.records import (
     Repeats,
     Verification,
 )
-from mutabot.journal.tracked import refuse_tracked
 
 from .differences import Part, refuse_strangers
 

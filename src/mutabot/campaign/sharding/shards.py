@@ -12,7 +12,7 @@ from mutabot.campaign.sharding.assignment import Item, assign
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import SHARD, ShardOf
 from mutabot.model import Mutant
-from mutabot.settings.shard import Shard
+from mutabot.settings.options import Shard
 
 #: what a mutant costs beside its tests, and what an operation costs, in simulated seconds: the clock on the
 #: wall shows something else on each machine; and how many magnitudes a ladder runs, about

@@ -24,11 +24,10 @@ from mutabot.campaign.reuse.reuse import GONE, Pair, Reused
 from mutabot.campaign.reuse.snapshot import counts_by_name
 from mutabot.campaign.reuse.state import State
 from mutabot.errors import ConfigurationError, JournalError, UsageError
-from mutabot.journal.files import find_journal
+from mutabot.journal.files import find_journal, refuse_tracked
 from mutabot.journal.journal import Journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import SINCE, Since
-from mutabot.journal.tracked import refuse_tracked
 from mutabot.model import Mutant
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load

@@ -15,6 +15,7 @@ from mutabot.border.events import (
     Problem,
     SessionEnd,
     SiteSeen,
+    TestEnd,
     TestStart,
     TextsSeen,
     TokensHeld,
@@ -23,7 +24,6 @@ from mutabot.border.events import (
 )
 from mutabot.border.job import Job
 from mutabot.border.processes import UNWRITTEN
-from mutabot.border.test_end import TestEnd
 
 from .said import last_line
 

@@ -15,7 +15,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Protocol
 
-from mutabot.border.demand import Accounts, accounts_of, below, children, is_crowded, shortage
+from mutabot.border.time_used import Accounts, accounts_of, below, children, is_crowded, shortage
 
 from .remains import by_mark
 

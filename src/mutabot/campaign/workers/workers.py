@@ -15,9 +15,8 @@ from pathlib import Path
 from types import TracebackType
 
 from mutabot.border import stack
-from mutabot.border.events import Acted, Event, TestStart, Untrusted
+from mutabot.border.events import Acted, Event, TestEnd, TestStart, Untrusted
 from mutabot.border.fold import Children, acted_in
-from mutabot.border.test_end import TestEnd
 from mutabot.border.time_used import MOST, TimeUsed
 from mutabot.errors import JournalError
 

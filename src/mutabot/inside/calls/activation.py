@@ -9,16 +9,15 @@ from functools import partial
 from random import Random
 from typing import Any
 
-from mutabot.border.idle import Idle
+from mutabot.border.job import Idle
 from mutabot.errors import OperatorError
-from mutabot.inside.evidence import REFUSALS, Evidence
-from mutabot.inside.exception_groups import leaves
-from mutabot.inside.targets.names import is_named
+from mutabot.inside.evidence import REFUSALS, Evidence, leaves
+from mutabot.inside.targets.target import is_named
 from mutabot.model import Call, Middleware, Moment, Mutant, Operation, Proceed, Reply, Role, Span
 from mutabot.model.named import Refused
 from mutabot.model.values.answer import restore
 from mutabot.operators import Need, Operator, Subject, operator
-from mutabot.operators.control import FatalFault
+from mutabot.operators.command import FatalFault
 from mutabot.operators.operator import subject_of
 from mutabot.operators.passage import Carried, Passage, passed
 

@@ -15,8 +15,7 @@ from typing import Any
 
 from mutabot.errors import PathError
 from mutabot.inside.readings.clock import ProgramTime
-from mutabot.inside.targets.names import resolve
-from mutabot.inside.targets.target import Means
+from mutabot.inside.targets.target import Means, resolve
 from mutabot.model import Call, NotToldError, Operation, Pattern, Quantity, Reply
 from mutabot.model.named import Form
 from mutabot.model.values.answer import NotKeptError, keep, restore

@@ -14,8 +14,7 @@ from importlib import import_module
 from typing import Any, NoReturn
 
 from mutabot.inside.targets.delivery import Delivery
-from mutabot.inside.targets.names import resolve
-from mutabot.inside.targets.target import Means
+from mutabot.inside.targets.target import Means, resolve
 from mutabot.model import Call, Mishap, Reply
 from mutabot.model.named import ANSWERED, COMING
 

@@ -22,8 +22,8 @@ import wrapt
 from mutabot.extensions import packages
 from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import Meter
-from mutabot.inside.readings.along import Along
 from mutabot.inside.readings.instances import Instances
+from mutabot.inside.readings.probes import Along
 from mutabot.inside.targets.target import Handler, Where
 from mutabot.model import Call, Reply, Role, Span
 from mutabot.model.named import Form

@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.border.events import SiteSeen
-from mutabot.border.test_end import TRACE_LIMIT
+from mutabot.border.events import TRACE_LIMIT, SiteSeen
 from mutabot.evidence.recording import Told
 from mutabot.model import Role, Span
 

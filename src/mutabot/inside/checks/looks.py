@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from mutabot.model.seen.check import Check
+from mutabot.model.outcome import Check
 
 from .margins import in_words, margin, margin_of_helper, of_tolerance
 

@@ -37,21 +37,18 @@ from mutabot.border.events import (
     Used,
 )
 from mutabot.border.job import Job, read_job
-from mutabot.border.signals import ANYBODY
+from mutabot.border.processes import ANYBODY
 from mutabot.inside import FOLDER as OURS
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.event_file import EventFile
-from mutabot.inside.evidence import Evidence
-from mutabot.inside.exception_groups import failure_in, is_due_to, leaves
+from mutabot.inside.evidence import Evidence, failure_in, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
 from mutabot.inside.session import Session
 from mutabot.inside.text.scripts import hook_script
 from mutabot.model import Call
 from mutabot.model.values.quantity import Value
 
-from .environment import carry
-from .exits import starts_a_killer
-from .now import Now
+from .environment import Now, carry, starts_a_killer
 
 #: the member that this process is; None in all others
 _member: Member | None = None

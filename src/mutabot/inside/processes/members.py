@@ -15,18 +15,16 @@ from mutabot.border.events import (
     Problem,
     Remark,
     Signalled,
+    TestEnd,
     TextsSeen,
 )
 from mutabot.border.fold import ChildRecord, Children, Known, calls_of, fold, is_alive
 from mutabot.border.job import Job
 from mutabot.border.processes import FOLDER
-from mutabot.border.test_end import TestEnd
 from mutabot.extensions import brought
 from mutabot.inside.session import Session
 
-from .environment import carry, write_wake
-from .exits import Exits, watch_unseen
-from .now import Now
+from .environment import Exits, Now, carry, watch_unseen, write_wake
 
 #: what processes of interest load
 _JOIN = "mutabot.inside.processes.member"

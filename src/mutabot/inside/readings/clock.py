@@ -16,8 +16,7 @@ from typing import Any
 from mutabot.errors import PathError
 from mutabot.inside.limits import Meter
 from mutabot.inside.readings.instances import Instances
-from mutabot.inside.targets.names import resolve
-from mutabot.inside.targets.target import Handler
+from mutabot.inside.targets.target import Handler, resolve
 from mutabot.model import Clock, Vocabulary
 from mutabot.model.values.path import Path
 from mutabot.model.values.units import convert

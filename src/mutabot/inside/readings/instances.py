@@ -19,7 +19,7 @@ from typing import Any
 
 import wrapt
 
-from mutabot.inside.targets.names import NotFoundError, resolve
+from mutabot.inside.targets.target import NotFoundError, resolve
 
 #: objects per class and test that are read
 MOST = 20

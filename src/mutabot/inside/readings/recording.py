@@ -8,9 +8,8 @@ from dataclasses import replace
 
 from mutabot.border.job import Pictures
 from mutabot.evidence import tape as tapes
-from mutabot.evidence.film import FilmWriter
 from mutabot.evidence.recording import Told, to_text
-from mutabot.evidence.tape import Tape
+from mutabot.evidence.tape import FilmWriter, Tape
 
 
 class TestRecording:

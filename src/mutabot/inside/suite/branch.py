@@ -12,9 +12,8 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.events import BranchEnd, BranchFinished, Unbranched
+from mutabot.border.events import BranchEnd, BranchFinished, TestEnd, Unbranched
 from mutabot.border.job import write_job
-from mutabot.border.test_end import TestEnd
 from mutabot.inside.fork.bunch import Bunch
 from mutabot.inside.fork.lifeline import die_with_parent
 from mutabot.inside.fork.trunk import DECIDED, FINISHED, STOPPED

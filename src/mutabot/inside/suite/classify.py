@@ -15,10 +15,9 @@ from mutabot.extensions import packages
 from mutabot.inside import FOLDER
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.comparisons import FILE as AROUND_COMPARISONS
-from mutabot.inside.evidence import Evidence
-from mutabot.inside.exception_groups import failure_in, is_due_to, leaves
+from mutabot.inside.evidence import Evidence, failure_in, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
-from mutabot.inside.targets.names import is_named
+from mutabot.inside.targets.target import is_named
 from mutabot.model import By, Role, Vocabulary
 from mutabot.model.class_name import class_name
 

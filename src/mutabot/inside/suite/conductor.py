@@ -12,9 +12,8 @@ import pytest
 
 from mutabot import extensions
 from mutabot.border import stack
-from mutabot.border.events import SessionEnd
+from mutabot.border.events import SessionEnd, TestEnd
 from mutabot.border.job import Branching, Job, read_job
-from mutabot.border.test_end import TestEnd
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.assertions import Assertions

@@ -11,8 +11,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.border.events import TestStart
-from mutabot.border.test_end import TestEnd
+from mutabot.border.events import TestEnd, TestStart
 from mutabot.border.time_used import TimeUsed
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator

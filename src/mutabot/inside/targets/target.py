@@ -3,7 +3,7 @@
 A target is what an operation of the vocabulary names. One object looks after all targets of a kind: it
 finds them in the running program, lets a handler stand around each, takes it away again, and says what
 does not fit. A kind is one file in this folder, whose ``KIND`` is a class that keeps the contract. The
-operation names that file in ``Operation.kind``, and ``interception`` chooses by it; an operation that
+operation names that file in ``Operation.kind``, and ``Interception`` chooses by it; an operation that
 names none is a Python callable (``callables``).
 
 Whatever the kind, a handler sees each use of its target as a call: the callable that does what the target
@@ -12,15 +12,18 @@ stands for, the object it belongs to or None, and the arguments by position and 
 
 from __future__ import annotations
 
+import sys
 import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Awaitable, Callable, Iterable, Iterator
 from dataclasses import dataclass
-from types import CodeType, FrameType
+from importlib import import_module
+from types import CodeType, FrameType, ModuleType
 from typing import Any
 
 from mutabot.model import Operation, Role, Span
+from mutabot.model.class_name import class_name
 
 
 async def _sleep(seconds: float) -> None:
@@ -165,3 +168,122 @@ class Targets(ABC):
     def uncovered(self, target: str) -> list[str]:
         """What the program uses in place of a target and no handler can stand around, with the reason."""
         return []
+
+
+class NotFoundError(LookupError):
+    """A target names something that its module does not have.
+
+    Attributes:
+        name: the part that does not exist.
+        known: names that exist in its place.
+    """
+
+    def __init__(self, message: str, name: str, known: tuple[str, ...]) -> None:
+        super().__init__(message)
+        self.name, self.known = name, known
+
+
+def resolve(module: ModuleType, qualname: str) -> tuple[Any, str, Any]:
+    """Owner, last name and raw attribute (descriptors unbound) of a qualified name in a module.
+
+    Raises NotFoundError, naming the part that does not exist and what there is.
+    """
+    owner: Any = module
+    *parents, name = qualname.split(".")
+    for parent in parents:
+        owner = _attribute(owner, parent, module)
+    return owner, name, _attribute(owner, name, module)
+
+
+def _attribute(owner: Any, name: str, module: ModuleType) -> Any:
+    places = owner.__mro__ if isinstance(owner, type) else (owner,)
+    for place in places:
+        if name in vars(place):
+            return vars(place)[name]
+    try:
+        return getattr(owner, name)  # a module may make its attributes on demand
+    except AttributeError:
+        known = tuple(key for key in dir(owner) if not key.startswith("_"))
+        of = f"module {module.__name__}" if owner is module else f"{module.__name__}:{_called(owner)}"
+        raise NotFoundError(f"{of} has no {name!r}", name, known) from None
+
+
+def _called(owner: Any) -> str:
+    return str(getattr(owner, "__qualname__", type(owner).__qualname__))  # a mock of a class has no name
+
+
+def is_named(error: BaseException, names: Iterable[str]) -> bool:
+    """Whether one of the names ``module:Name`` means the exception's class, re-exported names included."""
+    kinds = type(error).__mro__
+    return any(class_name(kind) in names for kind in kinds) or any(
+        named_class(name) in kinds for name in names
+    )
+
+
+def named_class(name: str) -> Any:
+    """What ``module:qualified.name`` is now; None if its module is not loaded or has no such name.
+
+    A test may have put anything in its place, also nothing: ``sys.modules["robot"] = None``.
+    """
+    module, _, qualname = name.partition(":")
+    if module not in sys.modules:
+        return None
+    try:
+        owner, attribute, _ = resolve(sys.modules[module], qualname)
+        return getattr(owner, attribute)
+    except Exception:
+        return None
+
+
+#: the kind of a target that says nothing else
+_DEFAULT = "callables"
+
+
+class Interception:
+    """The targets of one process, by their kinds.
+
+    Args:
+        tell: told about a target that turns out wrong when it is found.
+    """
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell = tell
+        self._kinds: dict[str, Targets] = {}
+
+    def of(self, kind: str | None = None) -> Targets:
+        """All targets of a kind; by default Python callables."""
+        name = kind or _DEFAULT
+        if name not in self._kinds:
+            self._kinds[name] = import_module(f"{__package__}.{name}").KIND(self._tell)
+        return self._kinds[name]
+
+    def wrap(
+        self, operation: Operation, handler: Handler, overrides: Callable[[type], Handler] | None = None
+    ) -> None:
+        """Let a handler stand around an operation; see ``Targets.wrap``."""
+        self.of(operation.kind).wrap(operation.target, handler, overrides)
+
+    @property
+    def kinds(self) -> Iterable[Targets]:
+        """All kinds that are in use."""
+        return self._kinds.values()
+
+    @property
+    def found(self) -> frozenset[str]:
+        """The targets that this process has."""
+        return frozenset(name for targets in self._kinds.values() for name in targets.here())
+
+    def found_elsewhere(self, names: Iterable[str]) -> None:
+        """A process below the tests has these targets: nobody needs to seek them here."""
+        for targets in self._kinds.values():
+            targets.found_elsewhere(names)
+
+    def look_again(self) -> None:
+        """A test begins: find what was made since the last one."""
+        for targets in self._kinds.values():
+            targets.look_again()
+
+    def remove(self) -> None:
+        """Take all handlers away."""
+        for targets in self._kinds.values():
+            targets.remove()

@@ -26,8 +26,7 @@ import wrapt
 
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.targets.callables import Callables
-from mutabot.inside.targets.names import named_class
-from mutabot.inside.targets.target import Handler, Where
+from mutabot.inside.targets.target import Handler, Where, named_class
 from mutabot.languages.python import function_of
 from mutabot.model import ANY, Operation, Role, Span
 from mutabot.model.values.signature import signature_of

@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 
 from mutabot.inside.readings.plain import opaque
 from mutabot.model.alternative import FATAL, IDENTITY, RUNTIME, Choice
-from mutabot.operators.control import FatalFault
+from mutabot.operators.command import FatalFault
 
 from .foresee import Forms, alone, locals_of, value_of
 

@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
-from mutabot.inside.targets.names import NotFoundError, resolve
+from mutabot.inside.targets.target import NotFoundError, resolve
 from mutabot.model.class_name import class_name
 
 from .described import of_type

@@ -8,10 +8,8 @@ from typing import ClassVar
 from mutabot.families import CATALOGUE
 from mutabot.model import Kind, Quantity
 from mutabot.model.values.quantity import Value
-from mutabot.operators.context import Context
 from mutabot.operators.examples import changed, unchanged, writing
-from mutabot.operators.operator import Example, Subject, map_numbers
-from mutabot.operators.rule import COMMANDS, PARAMETERS
+from mutabot.operators.operator import COMMANDS, PARAMETERS, Context, Example, Subject, map_numbers
 from mutabot.operators.value import ValueOperator, like, middle_of, within
 
 _SPEED = writing("robot:Arm.set_speed", "speed", Kind.SPEED, unit="m/s", range=(0.0, 1.0))

@@ -14,22 +14,31 @@ from mutabot.model import Call, Kind, Middleware, Mode, NotToldError, Operation,
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import Quaternion, from_euler, inverse, product
 from mutabot.model.values.units import convert
-from mutabot.operators.context import Context, Unchanged, quantity_of
 from mutabot.operators.examples import MOVE_TO, changed, unchanged
-from mutabot.operators.operator import Example, Need, Operator, Subject, is_number, map_numbers
-from mutabot.operators.rule import FRAMES
+from mutabot.operators.operator import (
+    FRAMES,
+    Context,
+    Example,
+    Need,
+    Operator,
+    Subject,
+    Unchanged,
+    is_number,
+    map_numbers,
+    quantity_of,
+)
 from mutabot.operators.value import (
     NOT_GIVEN,
+    Exchange,
     ValueOperator,
     ValuesOperator,
     checked,
     given,
+    is_alike,
     label,
     like,
     on_call,
 )
-
-from ._pairs import Exchange, is_alike
 
 _BASE, _TOOL = "base", "tool"
 _AXES = "xyz"

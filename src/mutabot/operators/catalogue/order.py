@@ -11,11 +11,18 @@ from mutabot.model import Call, Kind, Proceed, Reply
 from mutabot.model.values.quantity import WHOLE, Value
 from mutabot.model.values.sameness import are_same
 from mutabot.operators.command import CommandOperator, idle_of
-from mutabot.operators.context import Context, Unchanged
 from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, writing
-from mutabot.operators.operator import Example, Need, Subject, map_numbers
+from mutabot.operators.operator import (
+    COMMANDS,
+    TIMING,
+    Context,
+    Example,
+    Need,
+    Subject,
+    Unchanged,
+    map_numbers,
+)
 from mutabot.operators.robot.commands import other_end
-from mutabot.operators.rule import COMMANDS, TIMING
 from mutabot.operators.value import ValueOperator, given, like
 
 #: seconds: as long as a pneumatic gripper takes to open or close

@@ -11,10 +11,8 @@ from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import from_euler
 from mutabot.model.values.sameness import is_same
 from mutabot.model.values.units import convert
-from mutabot.operators.context import Context, Unchanged
 from mutabot.operators.examples import changed, reading, unchanged, writing
-from mutabot.operators.operator import Example, map_numbers
-from mutabot.operators.rule import FRAMES, SIGNS
+from mutabot.operators.operator import FRAMES, SIGNS, Context, Example, Unchanged, map_numbers
 from mutabot.operators.value import ValueOperator
 
 _RPY = writing("robot:Arm.orient", "rpy", Kind.EULER, unit="deg", order="xyz")

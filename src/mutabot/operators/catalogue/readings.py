@@ -13,13 +13,30 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantity, Reply
 from mutabot.model.values.quantity import MEASURED, WHOLE, Value
 from mutabot.operators.command import CommandOperator, comes_by_itself
-from mutabot.operators.context import Context, Unchanged, quantity_of
 from mutabot.operators.examples import changed, reading, unchanged
-from mutabot.operators.operator import Example, Need, Subject, is_number, map_numbers
-from mutabot.operators.rule import SENSORS, TIMING
-from mutabot.operators.value import NOT_GIVEN, ValueOperator, label, like, middle_of, next_of, within
-
-from ._pairs import Exchange, is_alike
+from mutabot.operators.operator import (
+    SENSORS,
+    TIMING,
+    Context,
+    Example,
+    Need,
+    Subject,
+    Unchanged,
+    is_number,
+    map_numbers,
+    quantity_of,
+)
+from mutabot.operators.value import (
+    NOT_GIVEN,
+    Exchange,
+    ValueOperator,
+    is_alike,
+    label,
+    like,
+    middle_of,
+    next_of,
+    within,
+)
 
 _STANDS_FOR = f"A sensor that drops out or is misread: {SENSORS}."
 _NONE, _NAN = "none", "nan"

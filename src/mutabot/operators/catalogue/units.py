@@ -9,10 +9,8 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.units import convert
-from mutabot.operators.context import Context, quantity_of
 from mutabot.operators.examples import changed, reading, unchanged, writing
-from mutabot.operators.operator import Example, Subject, map_numbers
-from mutabot.operators.rule import UNITS
+from mutabot.operators.operator import UNITS, Context, Example, Subject, map_numbers, quantity_of
 from mutabot.operators.value import ValueOperator, like
 
 #: the robot, or the program, takes the number as if it were in the other unit

@@ -1,20 +1,143 @@
-"""Values that are off: by an amount, a share, noise, with time, in steps or within a band."""
+"""Graded faults: how big each is, is part of it.
+
+Values are off by an amount, a share, noise, with time, in steps or within a band; waits end early, commands
+and readings come late.
+"""
 
 from __future__ import annotations
 
+from abc import abstractmethod
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from random import Random
 from typing import ClassVar
 
-from mutabot.model import Kind, Mode, Operation, Path, Quantity
-from mutabot.model.values.units import Dimension, convert
-from mutabot.operators.context import Context, Draws
+from mutabot.families import GRADED
+from mutabot.model import Call, Kind, Mode, Operation, Path, Proceed, Quantity, Reply
+from mutabot.model.values.quantity import Value
+from mutabot.model.values.rotation import from_rotation_vector, product
+from mutabot.model.values.units import Dimension, convert, convert_difference
+from mutabot.operators.command import CommandOperator
 from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, writing
 from mutabot.operators.magnitudes import Ladder, ladder_in, own_ladder, per_second
-from mutabot.operators.operator import Example, Need, Subject
-from mutabot.operators.rule import PARAMETERS, SENSORS
+from mutabot.operators.operator import (
+    PARAMETERS,
+    SENSORS,
+    TIMING,
+    Context,
+    Draws,
+    Example,
+    Need,
+    Subject,
+    is_number,
+    quantity_of,
+)
+from mutabot.operators.value import ValueOperator, label
 
-from ._number import NumberOperator
+#: components of a slice without an end that are tried: those of an arm with seven joints
+_JOINTS = 7
+
+
+class NumberOperator(ValueOperator):
+    """Changes one number, by a magnitude.
+
+    Class attributes:
+        fault: the fault in words, behind the name of the quantity, with ``{}`` for the magnitude; empty where
+            that is added.
+    """
+
+    family = GRADED
+    has_sizes = True
+    directions: ClassVar[tuple[str, ...]] = ("+", "-")
+    fault: ClassVar[str] = ""
+
+    @abstractmethod
+    def number(self, size: float, value: float, context: Context) -> float:
+        """The new number. ``size``: the magnitude in the quantity's unit, negative in the direction ``-``."""
+
+    def fits(self, quantity: Quantity, whole: Subject) -> bool:
+        return quantity.is_measured and self.magnitudes(quantity) is not None
+
+    def directions_of(self, quantity: Quantity) -> Iterable[str]:
+        return [part + direction for part in _components_of(quantity) for direction in self.directions]
+
+    def size_of(self, subject: Subject) -> float:
+        """The magnitude in the quantity's unit."""
+        quantity, size = quantity_of(subject), subject.magnitude or 0.0
+        unit = self.unit_of(subject)
+        if unit is not None and unit != quantity.unit:
+            size = convert_difference(size, unit, quantity.unit or "rad")
+        return size
+
+    def unit_of(self, subject: Subject) -> str | None:
+        """The unit of what is added to the value."""
+        return subject.unit
+
+    def change(self, value: Value, context: Context) -> Value | None:
+        size = self.size_of(context.subject)
+        size = -size if context.subject.direction.endswith("-") else size
+        return _in_component(context, value, lambda number: self.number(size, number, context))
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        verb = "" if subject.is_written else "reads "
+        component = subject.direction.rstrip("+-")
+        about = f" about {component}" if component and not component.startswith("[") else component
+        return f"{verb}{label(quantity_of(subject))}{about} {self._fault(subject)}"
+
+    def _fault(self, subject: Subject) -> str:
+        size = f"{subject.magnitude:g}"
+        if self.fault:
+            return self.fault.format(f"{size}{f' {subject.unit}' if subject.unit else ''}")
+        way = {"+": "+ ", "-": "− "}.get(subject.direction[-1:], "")
+        unit = {"percent": " %", None: ""}.get(subject.unit, f" {subject.unit}")
+        return f"{way}{size}{unit}"
+
+
+def _components_of(quantity: Quantity) -> tuple[str, ...]:
+    """The components of which one is changed: indices of a vector, axes of an orientation; else ``""``."""
+    if quantity.is_whole:
+        return ("x", "y", "z")
+    bounds = quantity.path.steps[-1].bounds if quantity.path.steps else None
+    if bounds is None:
+        return ("",)
+    first, last, step = bounds
+    count = len(range(first or 0, last, step or 1)) if last is not None and last > 0 else _JOINTS
+    return tuple(f"[{index}]" for index in range(count))
+
+
+def _in_component(context: Context, value: Value, change: Callable[[float], float]) -> Value | None:
+    """A value with one number of it changed: of an orientation, the angle by which an axis turns it."""
+    quantity, component = context.quantity, context.subject.direction.rstrip("+-")
+    if quantity.is_whole:
+        return _turned(quantity, component, value, change)
+    if not component:
+        return _like(quantity, value, change(value)) if is_number(value) else None
+    index = int(component.strip("[]"))
+    try:
+        before = value[index]
+    except (TypeError, IndexError, KeyError):
+        return None
+    if not is_number(before):
+        return None
+    copy = value.copy() if hasattr(value, "copy") else list(value)
+    copy[index] = _like(quantity, before, change(float(before)))
+    return type(value)(copy) if isinstance(value, tuple) else copy
+
+
+def _turned(quantity: Quantity, axis: str, value: Value, change: Callable[[float], float]) -> Value | None:
+    orientation = quantity.orientation(value)
+    if orientation is None:
+        return None
+    angle = change(0.0)
+    radians = convert_difference(angle, quantity.unit or "rad", "rad")
+    turn = from_rotation_vector([radians if one == axis else 0.0 for one in "xyz"])
+    return quantity.numbers(product(turn, orientation))
+
+
+def _like(quantity: Quantity, before: Value, after: float) -> float:
+    """A count stays a whole number; any other may have parts."""
+    return round(after) if quantity.kind is Kind.COUNT and isinstance(before, int) else after
+
 
 #: angles that say where something is: a share of them means nothing, as their zero is anywhere
 _ANY_ZERO = frozenset({Kind.ORIENTATION, Kind.ANGLE, Kind.TEMPERATURE})
@@ -209,3 +332,79 @@ class Deadband(NumberOperator):
         after = last if abs(value - last) < size else value
         context.memory[:] = [after]
         return after
+
+
+_PAUSE = writing("cell:Cell.wait", "seconds", Kind.DURATION, unit="s", range=(0.0, 3600.0))
+_HOME = Operation("robot:Arm.home")
+
+
+class Early(NumberOperator):
+    """Ends a wait before its time."""
+
+    name = "early"
+    summary = "A wait is so much shorter, so that what comes next comes too early."
+    where = "waits: arguments of kind `duration`"
+    stands_for = f"A wait that was measured on a faster machine: {TIMING}."
+    rank = 270
+    directions = ("-",)
+    of_read = False
+    examples: ClassVar[tuple[Example, ...]] = (
+        changed(_PAUSE, 0.8, 0.6, size=("-", 200.0, "ms"), note="the gripper is given less time to close"),
+        unchanged(_PAUSE, 0.8, "no wait is shorter than nothing", size=("-", 1000.0, "ms")),
+    )
+
+    def magnitudes(self, quantity: Quantity) -> Ladder | None:
+        return ladder_in(quantity, Dimension.TIME) if quantity.kind is Kind.DURATION else None
+
+    def number(self, size: float, value: float, context: Context) -> float:
+        after = value + size
+        return after if after >= -1e-9 else value
+
+
+class Lag(CommandOperator):
+    """Lets time pass before a command, and after a reading was taken."""
+
+    name = "lag"
+    family = GRADED
+    has_sizes = True
+    summary = (
+        "Each command is carried out so much later, while the rest of the world goes on; a reading was taken "
+        "so much before the program gets it. Needs a `wait` in the vocabulary, or a middleware."
+    )
+    where = (
+        "every command that is no wait, and every reading, with a `wait` in the vocabulary or a middleware"
+    )
+    stands_for = f"A busy network or controller: {TIMING}."
+    rank = 260
+    needs = frozenset({Need.WAIT, Need.PROGRAM})
+    examples: ClassVar[tuple[Example, ...]] = (
+        Example(Subject(_HOME, variant="200ms", magnitude=200.0, unit="ms"), performed=({},), waited=0.2),
+        Example(
+            Subject(_FEEL, variant="50ms", magnitude=50.0, unit="ms"),
+            replied={"result": 0.3},
+            performed=({},),
+            waited=0.05,
+            note="what was seen then is told now",
+        ),
+    )
+
+    def fits(self, whole: Subject) -> bool:
+        waits = any(one.kind is Kind.DURATION for one in whole.written)
+        return (whole.is_command or bool(whole.read)) and not waits
+
+    def magnitudes(self, whole: Subject) -> Ladder | None:
+        named = next((one for one in (*whole.written, *whole.read) if one.ladder_unit is not None), None)
+        return ladder_in(named, Dimension.TIME)
+
+    async def mutated(self, call: Call, proceed: Proceed, context: Context) -> Reply:
+        seconds = convert(context.subject.magnitude or 0.0, context.subject.unit or "s", "s")
+        if call.is_command:
+            await call.wait(seconds)
+            return await proceed(call)
+        reply = await proceed(call)
+        await call.wait(seconds)
+        return reply
+
+    def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
+        what = "is carried out" if subject.is_command else "comes"
+        return f"{what} {subject.magnitude:g} {subject.unit} later"

@@ -10,9 +10,8 @@ from mutabot.model import Call, Mishap, Proceed, Reply
 from mutabot.model.named import COMING, WRITTEN, Form
 from mutabot.model.values.quantity import Value
 from mutabot.operators.command import CommandOperator, comes_by_itself, form_of
-from mutabot.operators.context import Context, Unchanged
 from mutabot.operators.magnitudes import Ladder
-from mutabot.operators.operator import Example, Need, Subject
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.value import CallOrReply
 
 from ._examples import CALL, CALL_TO, PUBLISH, RECEIVE

@@ -8,8 +8,7 @@ from typing import Any, ClassVar
 from mutabot.model import Call, Mishap, Proceed, Reply
 from mutabot.model.named import COMING, WRITTEN, Form
 from mutabot.model.values.quantity import Value
-from mutabot.operators.context import Context, Unchanged
-from mutabot.operators.operator import Example, Need, Subject
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 
 from ._examples import CALL, GOAL, TICK
 from .messages import MessageOperator

@@ -10,9 +10,8 @@ from mutabot.model.named import DEFAULT, Form
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.sameness import is_same
 from mutabot.operators.command import form_of
-from mutabot.operators.context import Context, Unchanged, quantity_of
 from mutabot.operators.examples import changed, unchanged
-from mutabot.operators.operator import Example, Subject, is_number
+from mutabot.operators.operator import Context, Example, Subject, Unchanged, is_number, quantity_of
 
 from ._examples import ADVERTISE, CLIENT, RATE, SPEED, SUBSCRIBE, TIMER
 from .headers import FreeValueOperator

@@ -9,10 +9,8 @@ from mutabot.model import Call, Kind, Operation, Pattern, Proceed, Quantity, Rep
 from mutabot.model.values.notation import Notation
 from mutabot.model.values.quantity import Value
 from mutabot.operators.command import CommandOperator, idle_of
-from mutabot.operators.context import Context, Unchanged
 from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, changed, unchanged, writing
-from mutabot.operators.operator import Example, Need, Subject
-from mutabot.operators.rule import Published
+from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged
 
 _HOME = Operation("robot:Arm.home")
 _OPEN_TO = writing("robot:Gripper.move", "width", Kind.OPENING, unit="mm", range=(0.0, 85.0))

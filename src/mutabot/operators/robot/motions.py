@@ -11,12 +11,20 @@ from typing import ClassVar
 from mutabot.model import Call, Kind, Middleware, Mode, NotToldError, Operation, Path, Pattern, Quantity
 from mutabot.model.values.direction import EITHER, has_direction
 from mutabot.model.values.quantity import READING_OF, Value
-from mutabot.operators.context import Context, Unchanged, quantity_of
 from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
-from mutabot.operators.operator import Example, Need, Operator, Subject, is_number, map_numbers
-from mutabot.operators.orientation import the_other_way
-from mutabot.operators.rule import Published
-from mutabot.operators.value import NOT_GIVEN, NOT_TOLD, ValueOperator, checked, label, on_call
+from mutabot.operators.operator import (
+    Context,
+    Example,
+    Need,
+    Operator,
+    Published,
+    Subject,
+    Unchanged,
+    is_number,
+    map_numbers,
+    quantity_of,
+)
+from mutabot.operators.value import NOT_GIVEN, NOT_TOLD, ValueOperator, checked, label, on_call, the_other_way
 
 _PATH = Path.parse("message.pose.x", rooted=True)
 _GOAL = Quantity("pose.x", _PATH, Kind.TRANSLATION, "x", "m", mode=Mode.TO, relative=True)

@@ -12,7 +12,7 @@ from mutabot.analysis.thresholds.ladders import Ladder, Step
 from mutabot.analysis.thresholds.rounds import LadderRound
 from mutabot.analysis.thresholds.thresholds import Floor, Thresholds
 from mutabot.analysis.thresholds.words import line_of
-from mutabot.model.graded.demand import OFFSET
+from mutabot.model.graded import OFFSET
 from mutabot.report.as_json import FORMAT, facts, interval_data
 
 

@@ -18,8 +18,7 @@ from mutabot.settings.toml_lines import KeyPath
 from mutabot.vocabulary.cases.when import Undecided, in_case, in_cases, read_when
 from mutabot.vocabulary.patterns import read_patterns
 from mutabot.vocabulary.quantities import in_message, is_quantity, read_fields, read_quantity, read_result
-from mutabot.vocabulary.schema import NamedTable
-from mutabot.vocabulary.targets import read_idle, target_fault
+from mutabot.vocabulary.schema import NamedTable, read_idle, target_fault
 
 from .names import DIRECTIONS, NAMING, forms_of, name_of, node_of, read_current, read_refused, type_of
 

@@ -16,7 +16,7 @@ from mutabot.analysis.unlooked import unlooked
 from mutabot.evidence.story import amount
 from mutabot.evidence.timeline import Entry, Row, around, timeline
 from mutabot.model import Check, Diverged, Looked
-from mutabot.model.seen.diverged import Apart
+from mutabot.model.outcome import Apart
 from mutabot.report.terminal.console import heading, make_table, plain
 
 

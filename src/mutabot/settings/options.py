@@ -1,4 +1,7 @@
-"""How many mutants to draw, as a user writes it: ``20`` or ``10%``."""
+"""What to run, as a user writes it.
+
+How long: ``90s``, ``10m``, ``1h30m``; how many mutants: ``20`` or ``10%``; which part of a campaign: ``2/8``.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +10,37 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Decimal
 
+from mutabot import limits
 from mutabot.errors import UsageError
 from mutabot.limits import shortened
+
+_PART = re.compile(r"(\d{1,12}(?:\.\d{1,12})?)\s*(h|min|m|s)")
+_SECONDS = {"h": 3600.0, "min": 60.0, "m": 60.0, "s": 1.0}
+
+
+def seconds_of(text: str) -> float:
+    """What ``90s``, ``10m`` or ``1h 30m`` says, in seconds. Raises UsageError for anything else."""
+    plain, text = text.strip().lower(), shortened(text)
+    parts = _PART.findall(plain)
+    if not parts or _PART.sub("", plain).strip():
+        raise UsageError(f"--budget {text}: no length of time; write 90s, 10m or 1h30m")
+    found = sum(float(number) * _SECONDS[unit] for number, unit in parts)
+    if found <= 0:
+        raise UsageError(f"--budget {text}: nothing can be run in it; write 90s, 10m or 1h30m")
+    if found > limits.BUDGET:
+        raise UsageError(f"--budget {text}: at most {limits.BUDGET // 3600:,} hours can be meant")
+    return found
+
+
+def in_words(seconds: float) -> str:
+    """``10 min``, ``1 h 30 min``, ``90 s``."""
+    if seconds < 120 and seconds % 60:
+        return f"{seconds:g} s"
+    minutes, left = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    parts = [(hours, "h"), (minutes, "min"), (left, "s")]
+    return " ".join(f"{number} {unit}" for number, unit in parts if number)
+
 
 _SHARE = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)\s*%")
 _COUNT = re.compile(r"[0-9]{1,9}")
@@ -70,3 +102,39 @@ class Sample:
 
 def _rounded(number: Decimal) -> int:
     return int(number.quantize(Decimal(1), rounding=ROUND_HALF_UP))
+
+
+_SHARD = re.compile(r"\s*([0-9]{1,6})\s*/\s*([0-9]{1,6})\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """One of so many parts of a campaign.
+
+    Attributes:
+        number: 1-based.
+        of: how many there are.
+    """
+
+    number: int
+    of: int
+
+    @property
+    def words(self) -> str:
+        """``shard 2 of 8``."""
+        return f"shard {self.number} of {self.of}"
+
+    @classmethod
+    def parse(cls, text: str) -> Shard:
+        """What ``2/8`` says. Raises UsageError for anything else."""
+        found = _SHARD.fullmatch(text)
+        if found is None:
+            raise UsageError(
+                f"--shard {shortened(text)}: write its number and how many there are, such as 2/8"
+            )
+        number, of = int(found[1]), int(found[2])
+        if of < 1:
+            raise UsageError(f"--shard {text}: there must be at least one shard, 1/1")
+        if not 1 <= number <= of:
+            raise UsageError(f"--shard {text}: shards of {of} are numbered 1/{of} to {of}/{of}")
+        return cls(number, of)

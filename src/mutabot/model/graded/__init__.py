@@ -1,1 +1,0 @@
-"""Graded faults: what a round says of them, and what users demand."""
