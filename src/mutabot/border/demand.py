@@ -9,14 +9,15 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+
+from mutabot.frozen import frozen
 
 #: states of a task that asks for the machine: it can run, or waits for a disk
 _ASKING = frozenset("RD")
 _PRESSURE = "/proc/pressure/cpu"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Account:
     """What a task has had until now.
 

@@ -7,9 +7,10 @@ The test process, its forks and the processes below the tests tell them alike. T
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, get_args
 
+from mutabot.frozen import frozen
 from mutabot.model.alternative import Sighting
 from mutabot.model.site import Span
 
@@ -17,7 +18,7 @@ from .codec import from_data, to_data
 from .test_end import TestEnd
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SiteSeen:
     """A site was reached for the first time in this session; traces refer to it by ``index``.
 
@@ -33,7 +34,7 @@ class SiteSeen:
     direct: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TestStart:
     """A test begins: its fixtures are next."""
 
@@ -42,7 +43,7 @@ class TestStart:
     test: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Watched:
     """The suite itself ends this process with exit code 1 if a test takes too long.
 
@@ -57,7 +58,7 @@ class Watched:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Acted:
     """The mutant is at work: proof that mutated code ran.
 
@@ -71,7 +72,7 @@ class Acted:
     in_call: bool | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PlacesReached:
     """Places of the program text that a test reached; those before any test, if ``test`` is empty.
 
@@ -83,7 +84,7 @@ class PlacesReached:
     elsewhere: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TextsSeen:
     """What a recording saw of the program text, over all tests.
 
@@ -96,7 +97,7 @@ class TextsSeen:
     sightings: tuple[Sighting, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NotInstrumented:
     """A file whose mutants cannot run, because it was imported without its alternatives."""
 
@@ -104,7 +105,7 @@ class NotInstrumented:
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BranchEnd:
     """A branch has finished a test: the one in which it was forked, or a later one.
 
@@ -121,7 +122,7 @@ class BranchEnd:
     shared: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BranchFinished:
     """A branch has gone to the end of the session.
 
@@ -134,7 +135,7 @@ class BranchFinished:
     exit_code: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BranchDied:
     """A branch ended without saying how its test ended.
 
@@ -160,7 +161,7 @@ class BranchDied:
     in_mutated_call: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ForkEnded:
     """A process that this one forked has ended.
 
@@ -176,7 +177,7 @@ class ForkEnded:
     died: BranchDied | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unbranched:
     """It was not safe to fork at the first hit, in this test: these mutants need a process of their own."""
 
@@ -185,7 +186,7 @@ class Unbranched:
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Undiverged:
     """Mutants of the program text that were reached in a trunk's test and always had the original's value.
 
@@ -200,14 +201,14 @@ class Undiverged:
     hits: Mapping[str, int]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TokensHeld:
     """How many tokens a trunk and its branches hold: what the pool gets back if the trunk dies."""
 
     held: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Problem:
     """Something in the vocabulary does not fit the program.
 
@@ -225,7 +226,7 @@ class Problem:
     known: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Remark:
     """Something about the vocabulary that the user should know; the program can be tested all the same.
 
@@ -243,7 +244,7 @@ class Remark:
         return f"{self.source} · {self.key}: {self.text}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Serving:
     """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``.
 
@@ -254,7 +255,7 @@ class Serving:
     copy: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Began:
     """A process below the tests has begun to tell.
 
@@ -273,7 +274,7 @@ class Began:
     unable: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Called:
     """A call of an operation below the tests, or of the program before any test began.
 
@@ -289,7 +290,7 @@ class Called:
     time: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Noted:
     """A call of the original that the robot refused, or that returned the robot's own memory.
 
@@ -302,7 +303,7 @@ class Noted:
     refused: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Did:
     """What the mutant did since the last time: counts are to be added up.
 
@@ -324,7 +325,7 @@ class Did:
     is_final: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Used:
     """What the process used of the running test's budget by now: the last one counts.
 
@@ -337,7 +338,7 @@ class Used:
     exceeded: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Raised:
     """An exception that nobody caught ended the process, or one of its threads.
 
@@ -354,7 +355,7 @@ class Raised:
     in_thread: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Found:
     """Targets of the vocabulary, modules that it names, and nodes, that the process has."""
 
@@ -363,14 +364,14 @@ class Found:
     nodes: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Signalled:
     """The process sends a signal to another, or to a group (negative), or to ``ANYBODY``."""
 
     pid: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SessionEnd:
     """The process ends in an orderly way: the last of its events.
 
@@ -387,7 +388,7 @@ class SessionEnd:
     not_private: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Untrusted:
     """What a process reports cannot be relied on: said of it by whoever reads its events.
 

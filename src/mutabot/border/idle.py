@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from mutabot.frozen import frozen
 from mutabot.model.values.answer import is_plain
 
 from .codec import from_data, to_data
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Idle:
     """What a command answered at one place in the baseline, test by test.
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from mutabot.frozen import frozen
 from mutabot.model.seen.check import Check
 from mutabot.model.verdict import By
 
@@ -13,7 +14,7 @@ from mutabot.model.verdict import By
 TRACE_LIMIT = 5000
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TestEnd:
     """A test has ended.
 

@@ -7,8 +7,9 @@ means on a busy machine what it means on a quiet one, as far as the kernel keeps
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from time import monotonic  # before a simulation takes over the clock
+
+from mutabot.frozen import frozen
 
 from .demand import Account, Accounts, accounts_of, below, children, is_crowded, shortage
 
@@ -19,7 +20,7 @@ _QUEUED, _SHORT = 0.1, 0.5
 _NONE = Account(0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TimeUsed:
     """What there was when the time of a process began.
 

@@ -9,9 +9,10 @@ import os
 import struct
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
+
+from mutabot.frozen import frozen
 
 #: before each picture: its time in s, height, width, and bytes that follow
 _HEAD = struct.Struct("<dIII")
@@ -19,7 +20,7 @@ _HEAD = struct.Struct("<dIII")
 MOST_PICTURES = 6000
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Picture:
     """One picture.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import acos, degrees, dist, inf, isnan
 
+from mutabot.frozen import frozen
 from mutabot.model.seen.diverged import Apart, Near
 
 from .path import Point, aside, simple
@@ -150,7 +151,7 @@ def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Seque
     return sorted(found, key=lambda one: (one.distance, one.body, one.obstacle))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Measure:
     """One way to tell two rows apart."""
 

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from random import Random
 
+from mutabot.frozen import frozen
 from mutabot.limits import shortened
 
 
@@ -39,7 +40,7 @@ _FORMS: Mapping[When, re.Pattern[str]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Moment:
     """At which calls a mutant acts.
 

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from mutabot.families import CALLS
+from mutabot.frozen import frozen
 from mutabot.model.values.notation import Notation
 
 from .moment import Moment
 from .site import Site
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mutant:
     """One planted fault.
 

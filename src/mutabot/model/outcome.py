@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
+
+from mutabot.frozen import frozen
 
 from .seen.check import Looked
 from .seen.diverged import Diverged
@@ -13,7 +15,7 @@ from .seen.figure import Figure, improvement
 from .verdict import By, Verdict
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Compared:
     """How much of a mutant's tests was compared with the original's.
 
@@ -49,7 +51,7 @@ class Compared:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Kill:
     """One test that noticed a mutant.
 
@@ -66,7 +68,7 @@ class Kill:
     message: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Outcome:
     """The end of one mutant in one round.
 
@@ -162,7 +164,7 @@ def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
     return total
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LeftOut:
     """A mutant that the plan leaves out because it cannot matter.
 

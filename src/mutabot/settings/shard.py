@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from mutabot.errors import UsageError
+from mutabot.frozen import frozen
 from mutabot.limits import shortened
 
 _SHARD = re.compile(r"\s*([0-9]{1,6})\s*/\s*([0-9]{1,6})\s*")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Shard:
     """One of so many parts of a campaign.
 

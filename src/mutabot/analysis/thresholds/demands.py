@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
 from mutabot.errors import unknown_name_text
 from mutabot.families import GRADED
+from mutabot.frozen import frozen
 from mutabot.model import Kind, Outcome, Verdict
 from mutabot.model.graded.demand import Demand, is_at_least, is_same
 from mutabot.model.graded.ladder import Seen, seen
@@ -30,7 +30,7 @@ class Held(StrEnum):
     UNDECIDED = "undecided"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ruling:
     """What became of a demand on one ladder.
 

@@ -18,6 +18,7 @@ from mutabot.analysis.results import Results
 from mutabot.analysis.thresholds.ladders import Ladder, ladders_of, looseness
 from mutabot.analysis.thresholds.rounds import LadderRound
 from mutabot.analysis.thresholds.words import amount
+from mutabot.frozen import frozen
 from mutabot.model import Quantity
 from mutabot.model.graded.demand import OFFSET
 from mutabot.model.graded.ladder import seen
@@ -27,7 +28,7 @@ from mutabot.model.values.units import UNITS, convert_difference
 _DEVIATIONS = 3.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Pair:
     """Both directions of an offset in one round.
 
@@ -42,7 +43,7 @@ class Pair:
     bias: tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Floor:
     """Both directions of an offset.
 

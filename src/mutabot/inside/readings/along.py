@@ -15,6 +15,8 @@ from dataclasses import dataclass, field
 from time import perf_counter  # tests may replace those of the module
 from typing import Any
 
+from mutabot.frozen import frozen
+
 from .probes import Reading
 
 #: readings before the first thinning, and between any later two
@@ -71,7 +73,7 @@ class Along:
             self._step *= 2
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Rehearsal:
     """What is known of reading the probes once more.
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from mutabot.frozen import frozen
 from mutabot.limits import shortened
 from mutabot.model.mutant import Mutant
 from mutabot.model.selector import fits, is_like
@@ -20,7 +20,7 @@ _DIGITS = 12
 _AMOUNT = re.compile(r"([-+]?(?:\d{1,18}\.?\d{0,18}|\.\d{1,18})(?:[eE][-+]?\d{1,3})?)\s*([^\d\s.].*)?")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Demand:
     """What a user demands: every such fault that is at least so big must be noticed in every round.
 

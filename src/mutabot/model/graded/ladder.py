@@ -8,9 +8,9 @@ that was noticed.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 
+from mutabot.frozen import frozen
 from mutabot.model.outcome import Outcome
 from mutabot.model.verdict import Verdict
 
@@ -42,7 +42,7 @@ def seen(outcome: Outcome) -> Seen:
     return Seen.NOTICED if outcome.verdict.is_killed else Seen.MISSED
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Bracket:
     """Where the threshold of one round lies: above ``low``, and at most at ``high``.
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from mutabot.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Check:
     """One check of a test.
 
@@ -26,7 +26,7 @@ class Check:
     times: int = 1
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Looked:
     """A test that ran a mutant and passed.
 

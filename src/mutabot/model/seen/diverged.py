@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from mutabot.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Apart:
     """How far one thing was from where it is in the original at the same time.
 
@@ -40,7 +40,7 @@ class Apart:
         return self.worst <= 1.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Near:
     """How near something came to something that never moves.
 
@@ -58,7 +58,7 @@ class Near:
     original: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Diverged:
     """How the world of one test differs from the original's.
 
