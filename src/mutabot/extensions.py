@@ -9,12 +9,14 @@ since reading entry points is slow.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
+
+from mutabot.frozen import frozen
 
 from .errors import ExtensionError
 
@@ -35,7 +37,7 @@ _OWN = ("operators", "middlewares", "environments")
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Described:
     """A part that ``--help`` tells of without importing it.
 
@@ -50,7 +52,7 @@ class Described:
     metavar: str = "TEXT"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Extension:
     """What a package brings.
 
@@ -90,7 +92,7 @@ class Extension:
     faults: Mapping[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Part:
     """One thing that a package brings.
 

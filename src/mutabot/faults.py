@@ -25,13 +25,14 @@ from mutabot.border.job import InProcess
 from mutabot.errors import ExtensionError
 from mutabot.extensions import Part, brought
 from mutabot.families import OF_CALLS
+from mutabot.frozen import frozen
 from mutabot.model import Choice, LeftOut, Moment, Mutant, ProgramText, Sighting, Vocabulary
 from mutabot.model.graded import Demand
 from mutabot.model.mutant import Place
 from mutabot.operators.operator import Rule
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Project:
     """The project, and what is asked of providers.
 
@@ -66,7 +67,7 @@ class Preparation:
     notes: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TextSeen:
     """What the baseline saw of instrumented program text in a round.
 
@@ -98,7 +99,7 @@ class Original:
     text: dict[int, TextSeen] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Planted:
     """A mutant with what is known of it in the controller alone.
 

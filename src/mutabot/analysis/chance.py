@@ -13,14 +13,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from mutabot.frozen import frozen
 from mutabot.journal.records import Repeated, Repeats
 
 from .statistics import LEVEL
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Estimate:
     """An estimated number of outcomes.
 

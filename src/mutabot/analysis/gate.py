@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from mutabot.exit_codes import ExitCode
 from mutabot.families import GRADED
+from mutabot.frozen import frozen
 from mutabot.journal.records import ShardOf
 from mutabot.model import Outcome, Verdict
 from mutabot.model.graded import Demand
@@ -20,7 +20,7 @@ from .thresholds.ladders import ladders_of
 _SHOWN = 5
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Decision:
     """The end of a campaign as a continuous-integration job sees it.
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 from mutabot.border.codec import from_data
 from mutabot.errors import SelectionError, unknown_name_text
+from mutabot.frozen import frozen
 from mutabot.journal.files import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
@@ -40,7 +41,7 @@ from .score import Group, KillRate, RoundScores, groups_of
 _SHOWN = 10
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MutantResult:
     """What became of one mutant.
 
@@ -102,7 +103,7 @@ class MutantResult:
         return rank(self.outcomes)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Results:
     """What became of a campaign.
 
@@ -295,7 +296,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     return replace(found, state=state, set_aside=set_aside)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Earlier:
     """What earlier campaigns found that the last one did not.
 

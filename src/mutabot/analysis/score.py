@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from statistics import fmean
 
+from mutabot.frozen import frozen
 from mutabot.journal.records import Drawing
 from mutabot.model import By, Mutant, Outcome, Verdict
 
 from .statistics import Interval, crossed, sampled, wilson
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Score:
     """What a number of outcomes comes to.
 
@@ -64,7 +65,7 @@ class Score:
         return self.by_check / self.valid if self.valid else None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RoundScores:
     """The scores of a group of mutants, round by round.
 
@@ -122,7 +123,7 @@ class RoundScores:
         return _mean([score.check_score for score in self.rounds])
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class KillRate:
     """In how many rounds a mutant was killed.
 
@@ -151,7 +152,7 @@ class KillRate:
         return wilson(self.killed, self.valid) if self.valid > 1 else None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Group:
     """The scores of one family in one role. Groups are never added up to one score.
 

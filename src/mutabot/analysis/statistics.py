@@ -13,9 +13,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from statistics import NormalDist, fmean
+
+from mutabot.frozen import frozen
 
 LEVEL = 0.95
 _NORMAL = NormalDist().inv_cdf(0.5 + LEVEL / 2)
@@ -31,7 +32,7 @@ _STUDENT = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Interval:
     """A confidence interval of a share.
 
@@ -128,7 +129,7 @@ def sampled(table: Sequence[Sequence[float | None]], population: int) -> Interva
     return _wilson(cells.score, min(independent, cells.mutants / left))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mean:
     """A mean of numbers with its interval.
 
@@ -169,7 +170,7 @@ def mean_of(table: Sequence[Sequence[float | None]]) -> Mean | None:
     return Mean(cells.score, cells.score - half, cells.score + half)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Cells:
     """The valid cells of a table of mutants by rounds.
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 from mutabot.border.codec import from_data, to_data
 from mutabot.errors import UsageError
+from mutabot.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Suggestion:
     """One check, proven.
 
@@ -50,7 +51,7 @@ class Suggestion:
     kills: Mapping[str, tuple[int, ...]]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unsolved:
     """A survivor that no suggestion kills.
 
@@ -65,7 +66,7 @@ class Unsolved:
     never: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Dropped:
     """A check that failed its proof.
 
@@ -80,7 +81,7 @@ class Dropped:
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Suggestions:
     """What ``mutabot suggest`` found.
 

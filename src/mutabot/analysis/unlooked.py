@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from mutabot.frozen import frozen
 from mutabot.model import Role
 
 from .results import MutantResult
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unlooked:
     """A part of what an operation reads for the tests.
 

@@ -8,9 +8,10 @@ of the baseline.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, get_args
 
+from mutabot.frozen import frozen
 from mutabot.model.alternative import Sighting
 from mutabot.model.mutant import Span
 from mutabot.model.outcome import By, Check
@@ -21,7 +22,7 @@ from .codec import from_data, to_data
 TRACE_LIMIT = 5000
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TestEnd:
     """A test has ended.
 
@@ -136,7 +137,7 @@ class TestEnd:
         return self.outcome == "failed" and (self.refused is None or self.caught)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SiteSeen:
     """A site was reached for the first time in this session; traces refer to it by ``index``.
 
@@ -152,7 +153,7 @@ class SiteSeen:
     direct: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TestStart:
     """A test begins: its fixtures are next."""
 
@@ -161,7 +162,7 @@ class TestStart:
     test: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Watched:
     """The suite itself ends this process with exit code 1 if a test takes too long.
 
@@ -176,7 +177,7 @@ class Watched:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Acted:
     """The mutant is at work: proof that mutated code ran.
 
@@ -190,7 +191,7 @@ class Acted:
     in_call: bool | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PlacesReached:
     """Places of the program text that a test reached; those before any test, if ``test`` is empty.
 
@@ -202,7 +203,7 @@ class PlacesReached:
     elsewhere: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TextsSeen:
     """What a recording saw of the program text, over all tests.
 
@@ -215,7 +216,7 @@ class TextsSeen:
     sightings: tuple[Sighting, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NotInstrumented:
     """A file whose mutants cannot run, because it was imported without its alternatives."""
 
@@ -223,7 +224,7 @@ class NotInstrumented:
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BranchEnd:
     """A branch has finished a test: the one in which it was forked, or a later one.
 
@@ -240,7 +241,7 @@ class BranchEnd:
     shared: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BranchFinished:
     """A branch has gone to the end of the session.
 
@@ -253,7 +254,7 @@ class BranchFinished:
     exit_code: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BranchDied:
     """A branch ended without saying how its test ended.
 
@@ -279,7 +280,7 @@ class BranchDied:
     in_mutated_call: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ForkEnded:
     """A process that this one forked has ended.
 
@@ -295,7 +296,7 @@ class ForkEnded:
     died: BranchDied | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unbranched:
     """It was not safe to fork at the first hit, in this test: these mutants need a process of their own."""
 
@@ -304,7 +305,7 @@ class Unbranched:
     reason: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Undiverged:
     """Mutants of the program text that were reached in a trunk's test and always had the original's value.
 
@@ -319,14 +320,14 @@ class Undiverged:
     hits: Mapping[str, int]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TokensHeld:
     """How many tokens a trunk and its branches hold: what the pool gets back if the trunk dies."""
 
     held: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Problem:
     """Something in the vocabulary does not fit the program.
 
@@ -344,7 +345,7 @@ class Problem:
     known: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Remark:
     """Something about the vocabulary that the user should know; the program can be tested all the same.
 
@@ -362,7 +363,7 @@ class Remark:
         return f"{self.source} · {self.key}: {self.text}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Serving:
     """A fork server has collected its tests and waits for jobs; or it does not, for a ``reason``.
 
@@ -373,7 +374,7 @@ class Serving:
     copy: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Began:
     """A process below the tests has begun to tell.
 
@@ -392,7 +393,7 @@ class Began:
     unable: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Called:
     """A call of an operation below the tests, or of the program before any test began.
 
@@ -408,7 +409,7 @@ class Called:
     time: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Noted:
     """A call of the original that the robot refused, or that returned the robot's own memory.
 
@@ -421,7 +422,7 @@ class Noted:
     refused: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Did:
     """What the mutant did since the last time: counts are to be added up.
 
@@ -443,7 +444,7 @@ class Did:
     is_final: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Used:
     """What the process used of the running test's budget by now: the last one counts.
 
@@ -456,7 +457,7 @@ class Used:
     exceeded: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Raised:
     """An exception that nobody caught ended the process, or one of its threads.
 
@@ -473,7 +474,7 @@ class Raised:
     in_thread: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Found:
     """Targets of the vocabulary, modules that it names, and nodes, that the process has."""
 
@@ -482,14 +483,14 @@ class Found:
     nodes: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Signalled:
     """The process sends a signal to another, or to a group (negative), or to ``ANYBODY``."""
 
     pid: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SessionEnd:
     """The process ends in an orderly way: the last of its events.
 
@@ -506,7 +507,7 @@ class SessionEnd:
     not_private: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Untrusted:
     """What a process reports cannot be relied on: said of it by whoever reads its events.
 

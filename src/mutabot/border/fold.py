@@ -11,6 +11,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from time import monotonic, sleep  # tests may replace those of the module
 
+from mutabot.frozen import frozen
 from mutabot.model.outcome import added
 
 from .event_file import EventReader
@@ -215,7 +216,7 @@ def fold_fork(events: Sequence[Event], exit_code: int, died: BranchDied | None) 
     return [*found, replace(died, acted=None in told, in_mutated_call=calls[-1:] == [True])]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Known:
     """What only the test process knows of a test and the processes below it.
 

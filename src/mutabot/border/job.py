@@ -9,10 +9,11 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
+from mutabot.frozen import frozen
 from mutabot.model.alternative import Choice, Instrumentation
 from mutabot.model.mutant import Mutant, Span
 from mutabot.model.operation import Vocabulary
@@ -26,7 +27,7 @@ JOB_VARIABLE = "MUTABOT_JOB"
 PIPE_VARIABLE = "MUTABOT_PIPE"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Budget:
     """What one test may use before it counts as timed out.
 
@@ -39,7 +40,7 @@ class Budget:
     simulated: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RefusedAt:
     """The calls of one site that the robot refuses in the original, in one test.
 
@@ -54,7 +55,7 @@ class RefusedAt:
     numbers: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InProcess:
     """What puts a fault in place that is neither one of calls nor an alternative in the program text.
 
@@ -67,7 +68,7 @@ class InProcess:
     data: Any = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Branching:
     """How a trunk branches: which mutants, with how many processes, for how long.
 
@@ -95,7 +96,7 @@ class Branching:
     at_start: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Pictures:
     """Which test is filmed.
 
@@ -108,7 +109,7 @@ class Pictures:
     file: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Job:
     """One session inside: which tests to run, as which mutant.
 
@@ -185,7 +186,7 @@ def read_job(home: str | os.PathLike[str]) -> Job:
     return job
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Idle:
     """What a command answered at one place in the baseline, test by test.
 

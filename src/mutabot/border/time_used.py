@@ -11,15 +11,16 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from time import monotonic  # before a simulation takes over the clock
+
+from mutabot.frozen import frozen
 
 #: states of a task that asks for the machine: it can run, or waits for a disk
 _ASKING = frozenset("RD")
 _PRESSURE = "/proc/pressure/cpu"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Account:
     """What a task has had until now.
 
@@ -122,7 +123,7 @@ _QUEUED, _SHORT = 0.1, 0.5
 _NONE = Account(0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TimeUsed:
     """What there was when the time of a process began.
 

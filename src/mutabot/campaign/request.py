@@ -16,6 +16,7 @@ from mutabot.campaign.workers.pause import Pause
 from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
 from mutabot.faults import Project
+from mutabot.frozen import frozen
 from mutabot.journal.files import HOME, JOURNAL
 from mutabot.model import Moment, Vocabulary
 from mutabot.settings.configuration import Configuration
@@ -186,7 +187,7 @@ class Progress(Protocol):
         """Something the user should know."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CheckReport:
     """What ``mutabot check`` found.
 

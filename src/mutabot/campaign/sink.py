@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from mutabot.frozen import frozen
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
 
@@ -13,7 +13,7 @@ def _no_key(outcome: Outcome) -> str:
     return ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sink:
     """The journal of a campaign, for whoever finds outcomes.
 

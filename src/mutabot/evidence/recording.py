@@ -15,6 +15,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+from mutabot.frozen import frozen
+
 #: single precision: a position of some metres to a micrometre
 _TYPE = "f"
 
@@ -51,7 +53,7 @@ class Track:
     size: tuple[float, float, float] | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Block:
     """A box that never moves: a table, a conveyor, a wall. In m, world frame, edges along the axes.
 
@@ -68,7 +70,7 @@ class Block:
     colour: tuple[float, ...] | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Moment:
     """Something that happened.
 
@@ -83,7 +85,7 @@ class Moment:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Told:
     """A call of an operation.
 

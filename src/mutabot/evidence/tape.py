@@ -14,9 +14,10 @@ import zlib
 from array import array
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, nullcontext, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
+
+from mutabot.frozen import frozen
 
 from .recording import Block, Kind, Moment, Recording, Track
 
@@ -26,7 +27,7 @@ _HEAD = struct.Struct("<dIII")
 MOST_PICTURES = 6000
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Picture:
     """One picture.
 

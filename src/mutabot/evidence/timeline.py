@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Any
 
+from mutabot.frozen import frozen
 from mutabot.model.values.quantity import value_text
 
 from .recording import Recording, Told
@@ -16,7 +16,7 @@ _BEFORE, _AFTER = 3, 12
 _WORDS = {"touch": "touches", "part": "leaves"}
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Entry:
     """Something that was done or happened.
 
@@ -29,7 +29,7 @@ class Entry:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Row:
     """The same thing in the original and in the mutant; None where it did not happen.
 

@@ -12,6 +12,7 @@ from functools import cached_property
 from itertools import pairwise
 from math import acos, degrees, dist, inf, isnan, sqrt
 
+from mutabot.frozen import frozen
 from mutabot.model.outcome import Apart, Near
 
 from .recording import Block, Kind, Recording, Track
@@ -230,7 +231,7 @@ def approaches(original: dict[str, Path], mutant: dict[str, Path], blocks: Seque
     return sorted(found, key=lambda one: (one.distance, one.body, one.obstacle))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Measure:
     """One way to tell two rows apart."""
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from mutabot.border.events import TestEnd
+from mutabot.frozen import frozen
 from mutabot.model import Outcome, Verdict
 from mutabot.model.outcome import same_end
 
@@ -25,7 +26,7 @@ ALTERED = "altered"
 OPERATORS, REACHING, DRAWS = "operators", "reaching", "draws"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Reaching:
     """Which tests reach which sites, in any round of the baseline.
 
@@ -42,7 +43,7 @@ class Reaching:
         return tuple(self.tests[index] for index in sorted(set(self.sites.get(site, ()))))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BaselineTest:
     """One test of the baseline.
 
@@ -57,7 +58,7 @@ class BaselineTest:
     test: TestEnd
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Kept:
     """An outcome of an earlier campaign.
 
@@ -72,7 +73,7 @@ class Kept:
     verdict: Verdict
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Row:
     """An outcome on its way from one campaign to another.
 
@@ -90,7 +91,7 @@ class Row:
     key: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ControlEnd:
     """How a control mutant ended.
 
@@ -107,7 +108,7 @@ class ControlEnd:
     detail: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Stratum:
     """The mutants of one family in one role, of which some were drawn.
 
@@ -123,7 +124,7 @@ class Stratum:
     drawn: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Drawing:
     """How the mutants of a campaign were drawn from the selected ones.
 
@@ -142,7 +143,7 @@ class Drawing:
         return next((one for one in self.strata if (one.family, one.role) == (family, role)), None)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Since:
     """What a campaign ran of what has changed since a revision; counts are of mutants in rounds.
 
@@ -160,7 +161,7 @@ class Since:
     not_judged: Mapping[str, int] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Budgeted:
     """How a campaign used its limited time.
 
@@ -179,7 +180,7 @@ class Budgeted:
     is_whole: bool | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ShardOf:
     """Which part of its plan a campaign has run.
 
@@ -201,7 +202,7 @@ class ShardOf:
         return f"shard {self.number} of {self.of}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Disagreement:
     """An outcome that came out otherwise in a fresh process.
 
@@ -218,7 +219,7 @@ class Disagreement:
     second: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Verification:
     """What ``--verify`` found.
 
@@ -238,7 +239,7 @@ class Verification:
         return self.checked - len(self.disagreements)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Flaky:
     """Tests that cannot be relied on: they differ between equal runs of the original, or fail in one round.
 
@@ -263,7 +264,7 @@ class Flaky:
         return f"{counts}; the limit is {limit:.0%} (unstable_limit):{shown}{more}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Replayed:
     """One mutant in one round, run again.
 
@@ -283,7 +284,7 @@ class Replayed:
         return None if self.first is None else same_end(self.first, self.second)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Repeated:
     """Outcomes of one kind, and what repeats of them came to.
 
@@ -303,7 +304,7 @@ class Repeated:
         return self.outcomes - self.repeated
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Repeats:
     """What is known from repeats about false kills and false survivors.
 

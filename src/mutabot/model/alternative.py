@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from mutabot.frozen import frozen
+
 from .mutant import Role, Site, Span
 
 #: first line (1-based), first column, last line, last column (0-based, in UTF-8 bytes), as in ``ast``
@@ -29,7 +31,7 @@ def kept_name(index: int) -> str:
     return f"__kept_{index}__"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Alternative:
     """One other reading of a place.
 
@@ -54,7 +56,7 @@ class Alternative:
     raises: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TextPlace:
     """An expression or statement of the program text with its alternatives.
 
@@ -94,7 +96,7 @@ class TextPlace:
         return Site(self.span, self.text, self.occurrence, Role.PROGRAM)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ProgramText:
     """A program file and the places in it.
 
@@ -125,7 +127,7 @@ class Choice:
     index: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Instrumentation:
     """What to put into the program while it is imported.
 
@@ -140,7 +142,7 @@ class Instrumentation:
     active: tuple[Choice, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sighting:
     """What the baseline saw at a place.
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 
+from mutabot.frozen import frozen
 from mutabot.limits import shortened
 from mutabot.model.values.quantity import Kind
 from mutabot.model.values.units import UNITS, convert_difference, dimension_of
@@ -27,7 +27,7 @@ _DIGITS = 12
 _AMOUNT = re.compile(r"([-+]?(?:\d{1,18}\.?\d{0,18}|\.\d{1,18})(?:[eE][-+]?\d{1,3})?)\s*([^\d\s.].*)?")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Demand:
     """What a user demands: every such fault that is at least so big must be noticed in every round.
 
@@ -162,7 +162,7 @@ def seen(outcome: Outcome) -> Seen:
     return Seen.NOTICED if outcome.verdict.is_killed else Seen.MISSED
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Bracket:
     """Where the threshold of one round lies: above ``low``, and at most at ``high``.
 

@@ -14,6 +14,7 @@ from random import Random
 from typing import Any
 
 from mutabot.families import CALLS
+from mutabot.frozen import frozen
 from mutabot.limits import shortened
 from mutabot.model.values.notation import Notation
 
@@ -42,7 +43,7 @@ _FORMS: Mapping[When, re.Pattern[str]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Moment:
     """At which calls a mutant acts.
 
@@ -195,7 +196,7 @@ class Site:
         return f"{self.span.file}:{self.span.line}:{self.span.column + 1}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mutant:
     """One planted fault.
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 from fnmatch import fnmatchcase
 from typing import Any
 
+from mutabot.frozen import frozen
 from mutabot.model.values.path import Path
 from mutabot.model.values.quantity import Kind, Quantity
 
@@ -95,7 +95,7 @@ def settings_of(form: Form) -> tuple[Quantity, ...]:
     return tuple(one for one in _SETTINGS if one.name in SETTING_UP.get(form, ()))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Named:
     """An operation that is known by its name on a middleware.
 
@@ -140,7 +140,7 @@ def named_of(target: str) -> Named | None:
 ENDINGS = ("ABORTED", "REJECTED", "CANCELED")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Refused:
     """How the answer to a command, or a message that follows it, says that the robot refuses it.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from mutabot.frozen import frozen
 from mutabot.model.named import Form, Named, Refused
 from mutabot.model.values.notation import Notation
 from mutabot.model.values.path import Path
@@ -14,7 +15,7 @@ from mutabot.model.values.quantity import Quantity
 ANY = "*:*"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Case:
     """A value of an argument, on which the meaning of a call depends.
 
@@ -183,7 +184,7 @@ class Operation:
         return next((pattern for pattern in self.patterns if pattern.text == text), None)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Clock:
     """How to read simulated time while a test runs.
 
@@ -204,7 +205,7 @@ class Clock:
     step: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Wait:
     """How the program's time is let pass.
 
@@ -226,7 +227,7 @@ class Wait:
         return f"{module}:{parent}" if parent else ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Probe:
     """A reading that mutabot takes along the way and at the end of a test, to compare worlds.
 
@@ -253,7 +254,7 @@ class Probe:
         return f"{module}:{parent}" if parent else ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Vocabulary:
     """Everything the vocabulary files say, put together.
 

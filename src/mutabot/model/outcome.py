@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from typing import Any
+
+from mutabot.frozen import frozen
 
 
 class By(StrEnum):
@@ -44,7 +46,7 @@ VALID = frozenset({Verdict.KILLED, Verdict.SURVIVED, Verdict.TIMEOUT, Verdict.NO
 KILLED = frozenset({Verdict.KILLED, Verdict.TIMEOUT})
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Check:
     """One check of a test.
 
@@ -65,7 +67,7 @@ class Check:
     times: int = 1
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Looked:
     """A test that ran a mutant and passed.
 
@@ -82,7 +84,7 @@ class Looked:
     more: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Apart:
     """How far one thing was from where it is in the original at the same time.
 
@@ -117,7 +119,7 @@ class Apart:
         return self.worst <= 1.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Near:
     """How near something came to something that never moves.
 
@@ -135,7 +137,7 @@ class Near:
     original: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Diverged:
     """How the world of one test differs from the original's.
 
@@ -166,7 +168,7 @@ class Diverged:
         return max((one.worst for one in self.apart), default=0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Figure:
     """A figure of merit that a mutant changed by more than its tolerance.
 
@@ -203,7 +205,7 @@ def improvement(figures: Sequence[Figure]) -> str:
     return f"{best.text}{more}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Compared:
     """How much of a mutant's tests was compared with the original's.
 
@@ -239,7 +241,7 @@ class Compared:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Kill:
     """One test that noticed a mutant.
 
@@ -256,7 +258,7 @@ class Kill:
     message: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Outcome:
     """The end of one mutant in one round.
 
@@ -352,7 +354,7 @@ def added(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
     return total
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LeftOut:
     """A mutant that the plan leaves out because it cannot matter.
 

@@ -11,15 +11,16 @@ sensors give as the full scale (235 N and 0.15 m/s for a two-finger gripper, 2 k
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from mutabot.frozen import frozen
 from mutabot.model import Kind, Quantity
 from mutabot.model.values.units import Dimension, dimension_of
 
 from .operator import Subject
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ladder:
     """The magnitudes of a fault, rising.
 

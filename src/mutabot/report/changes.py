@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from rich.console import Console, RenderableType
@@ -13,6 +13,7 @@ from rich.text import Text
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group
 from mutabot.analysis.stored.changes import Changes, Pair
+from mutabot.frozen import frozen
 from mutabot.report.as_json import FORMAT, facts, mutant_data
 from mutabot.report.status import rounds_text, status_of
 from mutabot.report.terminal.campaign import WIDE
@@ -27,7 +28,7 @@ from mutabot.report.terminal.console import (
 from mutabot.report.texts import escaped, table
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Section:
     """Mutants of which the same is to be said.
 

@@ -9,15 +9,15 @@ special in the format it escapes itself.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.changes import Changes
+from mutabot.frozen import frozen
 from mutabot.model import Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Material:
     """What a format is made from.
 
@@ -52,7 +52,7 @@ class Material:
         ]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Format:
     """A format.
 
@@ -67,7 +67,7 @@ class Format:
     tells_changes: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Place:
     """A place in a file.
 

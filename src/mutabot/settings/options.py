@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Decimal
 
 from mutabot import limits
 from mutabot.errors import UsageError
+from mutabot.frozen import frozen
 from mutabot.limits import shortened
 
 _PART = re.compile(r"(\d{1,12}(?:\.\d{1,12})?)\s*(h|min|m|s)")
@@ -46,7 +46,7 @@ _SHARE = re.compile(r"([0-9]{1,9}(?:\.[0-9]{1,9})?)\s*%")
 _COUNT = re.compile(r"[0-9]{1,9}")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sample:
     """How many mutants to draw: a share of each family and role, or a number of each family.
 
@@ -107,7 +107,7 @@ def _rounded(number: Decimal) -> int:
 _SHARD = re.compile(r"\s*([0-9]{1,6})\s*/\s*([0-9]{1,6})\s*")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Shard:
     """One of so many parts of a campaign.
 

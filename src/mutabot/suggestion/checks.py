@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from statistics import NormalDist, fmean
 from typing import Any, TypeGuard
 
+from mutabot.frozen import frozen
 from mutabot.suggestion.measure import Read
 from mutabot.suggestion.readings import WAY, Reading
 from mutabot.suggestion.style import Addition, Place
@@ -36,7 +37,7 @@ _SIGNIFICANT, _LEAST = 0.05, 8
 _STANDARD = NormalDist()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Band:
     """What a reading must stay within: the middle and the tolerance to each side.
 
@@ -148,7 +149,7 @@ _WIDTH = 90
 _NAME = re.compile(r"[^\W\d]\w*")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Expected:
     """What a reading is held against.
 

@@ -11,6 +11,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from mutabot.campaign.request import Request
+from mutabot.frozen import frozen
 
 
 @dataclass(slots=True)
@@ -82,7 +83,7 @@ _JOINED = 70
 _NO_END = "\\ No newline at end of file\n"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Insertion:
     """Lines that are put into a file.
 
@@ -133,7 +134,7 @@ def diff_of(root: Path, texts: Mapping[str, str]) -> str:
     return "".join(one if one.endswith("\n") else f"{one}\n{_NO_END}" for one in parts)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Name:
     """How something of a module is named in a file.
 

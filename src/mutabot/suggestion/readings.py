@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from mutabot.frozen import frozen
 from mutabot.model import Operation
 from mutabot.suggestion.project import Name, Project, name_in
 from mutabot.suggestion.style import Place, Watch
@@ -18,7 +18,7 @@ from mutabot.suggestion.style import Place, Watch
 ORACLE, PROBE, HAND, WAY = 0, 1, 2, 3
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Reading:
     """An expression that reads something.
 

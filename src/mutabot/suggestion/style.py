@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
+from mutabot.frozen import frozen
 from mutabot.suggestion.project import Insertion, Project
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Place:
     """A test at whose end something can be looked at; all parameters of it are one place.
 
@@ -33,7 +33,7 @@ class Place:
     feature: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Watch:
     """What looks after every command on the way of a test.
 
@@ -48,7 +48,7 @@ class Watch:
     commands: tuple[tuple[str, str], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Addition:
     """What is added to the end of a test.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 from math import comb
 from typing import TypeVar
@@ -13,6 +13,7 @@ from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.suggested import Dropped, Suggestion, Suggestions
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import NothingToDoError
+from mutabot.frozen import frozen
 from mutabot.suggestion.candidates import candidates
 from mutabot.suggestion.checks import Check, unseen
 from mutabot.suggestion.measure import Measured, measure
@@ -27,7 +28,7 @@ from mutabot.suggestion.survivors import survivors_of, why_unsolved
 _ATTEMPTS = 5
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Quiet:
     """Progress without the remarks of campaigns that only serve."""
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.suggested import Unsolved
+from mutabot.frozen import frozen
 from mutabot.model import Mutant, Verdict
 from mutabot.suggestion.candidates import part_of_way, tolerance_of
 from mutabot.suggestion.checks import Check, decimal, is_number
@@ -14,7 +14,7 @@ from mutabot.suggestion.measure import Measured
 from mutabot.suggestion.prove import Proof
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Survivors:
     """The survivors of a campaign.
 
@@ -50,7 +50,7 @@ def survivors_of(chosen: Sequence[MutantResult]) -> Survivors:
     return Survivors(tuple(to_kill), tuple(never), tuple(tests))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Nearest:
     """What differs most on a mutant: the expression, by how much, and what is no difference in it."""
 

@@ -20,7 +20,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.inside.event_file import EventFile
 from mutabot.inside.processes.environment import Now
 from mutabot.model import Verdict
-from tests.campaign.project import Quiet, outcomes, request_for, write_project
+from tests.campaign.project import REPLAY, Quiet, outcomes, request_for, write_project
 
 KEY = "0123456789abcdef"
 NAME = f"{os.getpid()}-1"
@@ -165,7 +165,7 @@ FULL_MISSION = """
 """
 
 
-@pytest.mark.parametrize("engine", ["replay", "auto"])
+@pytest.mark.parametrize("engine", ["auto", REPLAY])
 def test_a_process_that_cannot_write_is_an_error_of_its_mutant_and_touches_no_other(
     tmp_path: Path, engine: str
 ) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ from mutabot.analysis.results import MutantResult, Results, find_mutant, read_re
 from mutabot.analysis.score import Group
 from mutabot.analysis.thresholds.thresholds import Thresholds, thresholds_of
 from mutabot.border.codec import from_data
+from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import DRAWS, OPERATORS, REACHING, Reaching
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     import pandas
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StoredCampaign:
     """The last campaign of a journal, as it was when it was read. Nothing of it changes later.
 

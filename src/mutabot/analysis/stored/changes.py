@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import Group
+from mutabot.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Pair:
     """A mutant in both campaigns.
 
@@ -33,7 +33,7 @@ class Pair:
         return found
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Changes:
     """What differs between an old campaign and a new one.
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
 from mutabot.evidence.recording import Recording, from_bytes
+from mutabot.frozen import frozen
 from mutabot.journal.recordings import ORIGINAL, Recordings
 
 #: recordings that are held
 _HELD = 32
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Pair:
     """One test, as the original and as a mutant.
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.errors import UsageError
+from mutabot.frozen import frozen
 from mutabot.model import Outcome
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Cell = str | int | float | bool | None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Column:
     """A column of the table.
 

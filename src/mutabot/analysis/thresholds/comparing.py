@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
 from mutabot.analysis.results import Results
 from mutabot.analysis.statistics import Mean, mean_of
+from mutabot.frozen import frozen
 from mutabot.model.graded import is_same
 
 from .ladders import Ladder, ladders_of
@@ -25,7 +25,7 @@ class Change(StrEnum):
     UNKNOWN = "not compared"  # no round is known in both, or the robot refused
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Compared:
     """One ladder in both campaigns.
 
@@ -51,7 +51,7 @@ class Compared:
         return Change.IMPROVED if better else Change.WORSE if worse else Change.SAME
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Comparison:
     """Two campaigns.
 

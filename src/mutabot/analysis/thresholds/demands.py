@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
 from mutabot.errors import unknown_name_text
 from mutabot.families import GRADED
+from mutabot.frozen import frozen
 from mutabot.model import Kind, Outcome, Verdict
 from mutabot.model.graded import Demand, Seen, is_at_least, is_same, seen
 from mutabot.model.mutant import is_like
@@ -29,7 +29,7 @@ class Held(StrEnum):
     UNDECIDED = "undecided"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ruling:
     """What became of a demand on one ladder.
 

@@ -10,15 +10,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from mutabot.analysis.statistics import LEVEL, Interval
+from mutabot.frozen import frozen
 
 #: halvings of an interval until no digit changes
 _HALVINGS = 60
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Between:
     """Where the median threshold of further rounds like these lies: above ``low``, at most at ``high``.
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.statistics import Interval
+from mutabot.frozen import frozen
 from mutabot.model import Mutant, Outcome, Quantity
 from mutabot.model.graded import OFFSET, Seen, is_same, seen
 from mutabot.model.values.units import UNITS
@@ -20,7 +20,7 @@ from .rounds import LadderRound, noticer
 _SIGNS = {"+": "+", "-": "−"}
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Step:
     """One magnitude of a ladder, over the rounds that do not fail without a fault.
 
@@ -56,7 +56,7 @@ class Step:
         return exact(self.noticed, self.valid)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Violation:
     """A larger fault that was missed where a smaller one was noticed."""
 
@@ -65,7 +65,7 @@ class Violation:
     missed: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Better:
     """A fault with which a test did better than without, by a figure of merit that the vocabulary names.
 
@@ -80,7 +80,7 @@ class Better:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ladder:
     """All magnitudes of one graded fault.
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
+from mutabot.frozen import frozen
 from mutabot.model import By, Outcome, Verdict
 from mutabot.model.graded import Bracket, Seen, bracket_of, seen
 
@@ -24,7 +24,7 @@ class Above(StrEnum):
     OPEN = "open"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class LadderRound:
     """One ladder in one round.
 

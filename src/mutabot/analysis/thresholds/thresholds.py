@@ -18,6 +18,7 @@ from mutabot.analysis.results import Results
 from mutabot.analysis.thresholds.ladders import Ladder, ladders_of, looseness
 from mutabot.analysis.thresholds.rounds import LadderRound
 from mutabot.analysis.thresholds.words import amount
+from mutabot.frozen import frozen
 from mutabot.model import Quantity
 from mutabot.model.graded import OFFSET, seen
 from mutabot.model.values.units import UNITS, convert_difference
@@ -26,7 +27,7 @@ from mutabot.model.values.units import UNITS, convert_difference
 _DEVIATIONS = 3.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Pair:
     """Both directions of an offset in one round.
 
@@ -41,7 +42,7 @@ class Pair:
     bias: tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Floor:
     """Both directions of an offset.
 

@@ -14,6 +14,7 @@ from mutabot.border.events import Remark, TestEnd
 from mutabot.border.job import Budget, RefusedAt
 from mutabot.campaign.comparing.observation import Observation, as_steady
 from mutabot.faults import Original, Planned, Preparation
+from mutabot.frozen import frozen
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.mutant import Place
 
@@ -26,7 +27,7 @@ SPARE_OPERATIONS, SPARE_SIMULATED = 200, 10.0
 EARLY, IN_PLACE = "acts while the program is imported", "is in place from the start of each test"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Hit:
     """One recorded call: the values it wrote and read, and the round and test in which it was made."""
 

@@ -14,6 +14,7 @@ from mutabot.campaign.workers.task import Result, Task, at, death
 from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
+from mutabot.frozen import frozen
 from mutabot.model import Instrumentation, ProgramText
 from mutabot.model.mutant import Place
 from mutabot.operators import load_all
@@ -31,7 +32,7 @@ REPETITIONS = 2
 _FAILED = 1
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _SuiteRun:
     """Which run of the suite: the key of its task."""
 

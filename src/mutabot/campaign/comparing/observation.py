@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
+from mutabot.frozen import frozen
 from mutabot.model import Compared, Operation, Probe
 from mutabot.model.outcome import Figure
 from mutabot.model.values.quantity import is_number, told_apart, value_text
@@ -22,7 +23,7 @@ _NO_RETURNS: dict[str, Any] = {"prepared": None, "returned": None}
 _NO_MOMENTS: dict[str, Any] = {"moments": None}
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Event:
     """One call in a trace, comparable between processes.
 
@@ -39,7 +40,7 @@ class Event:
     what: Command = ("", None)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Observation:
     """What was seen of one test: its calls in order, and the probes at its end.
 
@@ -64,7 +65,7 @@ class Observation:
     moments: Sequence[Any] | None = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Difference:
     """How far a mutant's test is from the original's.
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from mutabot.frozen import frozen
 from mutabot.model import Operation, Path, Probe, Quantity
 from mutabot.model.values.quantity import is_number
 from mutabot.model.values.rotation import apart, distance
@@ -15,7 +15,7 @@ Command = tuple[str, str | None]
 _PARTS = (("w", "x", "y", "z"), ("x", "y", "z"))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Turned:
     """Two values of one orientation or angle.
 

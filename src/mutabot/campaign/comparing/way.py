@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Protocol
+
+from mutabot.frozen import frozen
 
 #: differences of two readings, each with its distance, greatest first
 Differences = Callable[[Mapping[str, Any], Mapping[str, Any]], Sequence[tuple[float, str]]]
@@ -30,7 +31,7 @@ class Seen(Protocol):
         """As in ``TestEnd.moments``; None if they are not to be compared."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Way:
     """How far the way of a mutant's test is from the original's.
 

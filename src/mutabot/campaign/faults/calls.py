@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from random import Random
 from typing import Any, ClassVar
 
@@ -14,6 +14,7 @@ from mutabot.campaign.baseline.baseline import Baseline, Hit
 from mutabot.errors import OperatorError
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, ROBOT
 from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparation, Project
+from mutabot.frozen import frozen
 from mutabot.model import Call, Kind, Middleware, Mutant, Operation, Reply, Role, Site, Vocabulary
 from mutabot.model.mutant import Place
 from mutabot.model.values.quantity import is_reading_of
@@ -188,7 +189,7 @@ def _distinct(mutant: Mutant, taken: set[str]) -> Mutant:
     return mutant
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Seen:
     """A recorded value of the subject, and what it would become; None where nobody knows beforehand."""
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from mutabot.frozen import frozen
 from mutabot.model import Mutant
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ladder:
     """One graded fault at one site, of one quantity, in one direction.
 

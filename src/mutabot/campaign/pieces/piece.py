@@ -9,8 +9,10 @@ from __future__ import annotations
 import ast
 import hashlib
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
+
+from mutabot.frozen import frozen
 
 from .mentions import Mentions
 
@@ -31,7 +33,7 @@ class Kind(StrEnum):
     FILE = "file"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Piece:
     """One piece of a file.
 

@@ -7,19 +7,20 @@ new mutant elsewhere takes the place of one other at most, and a larger sample h
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from hashlib import blake2b
 from itertools import groupby
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.faults.providers import asked_for
 from mutabot.faults import Preparation, Project
+from mutabot.frozen import frozen
 from mutabot.journal.records import Drawing, Stratum
 from mutabot.model import LeftOut, Mutant
 from mutabot.settings.options import Sample
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Plan:
     """Mutants to run, and what is left out.
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
 
 from mutabot.campaign.faults.providers import rules_of
+from mutabot.frozen import frozen
 from mutabot.operators.operator import Rule, in_order
 from mutabot.settings.families import known_families
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ListedRule:
     """One operator.
 

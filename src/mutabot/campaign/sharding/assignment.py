@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from hashlib import blake2b
+
+from mutabot.frozen import frozen
 
 #: a piece is at most this part of a shard, if it can be halved
 _PIECES = 8
@@ -20,7 +21,7 @@ _SLACK = 1.05
 _BITS = 64
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Item:
     """What is never parted: a mutant, or all magnitudes of a ladder.
 

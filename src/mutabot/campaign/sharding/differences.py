@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from mutabot.border.codec import from_data
 from mutabot.campaign.reuse.keys import changes
 from mutabot.errors import MergeError
+from mutabot.frozen import frozen
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import DRAWING, SHARD, ShardOf
 from mutabot.model import Mutant
@@ -25,7 +25,7 @@ _FACTS = {
 _SHOWN = 5
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Part:
     """The journal of a shard, opened.
 

@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import os
 import subprocess
-from dataclasses import dataclass
 from pathlib import Path
 
 from mutabot.errors import UsageError
+from mutabot.frozen import frozen
 
 _OPTION = "--since"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Revision:
     """A revision of the repository that a project lies in.
 

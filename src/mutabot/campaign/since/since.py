@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 
@@ -24,6 +24,7 @@ from mutabot.campaign.reuse.reuse import GONE, Pair, Reused
 from mutabot.campaign.reuse.snapshot import counts_by_name
 from mutabot.campaign.reuse.state import State
 from mutabot.errors import ConfigurationError, JournalError, UsageError
+from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal, refuse_tracked
 from mutabot.journal.journal import Journal
 from mutabot.journal.reader import JournalReader
@@ -136,7 +137,7 @@ def open_others(request: Request, progress: Progress) -> list[JournalReader]:
         return []
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Altered:
     """Which mutants the changes since a revision can have altered.
 

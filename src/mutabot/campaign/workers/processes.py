@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from shutil import disk_usage
 
@@ -23,6 +23,7 @@ from mutabot.border.job import JOB_VARIABLE, PIPE_VARIABLE, Job, job_file, write
 from mutabot.border.keeper import FILE as KEEPER
 from mutabot.border.keeper import LEFT
 from mutabot.border.processes import FOLDER, SESSION, SUFFIX
+from mutabot.frozen import frozen
 
 from .removal import remove_folder
 
@@ -33,7 +34,7 @@ _PATIENCE = 15.0
 _ROOM = 1 << 14
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Home:
     """A process's own folder: its job, what it prints, pytest's cache.
 

@@ -24,6 +24,7 @@ from mutabot.border.events import (
 )
 from mutabot.border.job import Job
 from mutabot.border.processes import UNWRITTEN
+from mutabot.frozen import frozen
 
 from .said import last_line
 
@@ -31,7 +32,7 @@ from .said import last_line
 STARTUP_SECONDS = 60.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Task:
     """A job with what the controller needs to run it.
 

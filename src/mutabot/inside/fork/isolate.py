@@ -10,8 +10,9 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import Any
+
+from mutabot.frozen import frozen
 
 from .event_loops import go_on_running, own_event_loops, running_loop
 from .private_files import PrivateFiles, is_below, private_folders
@@ -39,7 +40,7 @@ class Foot:
         go_on_running(self._loop)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Apart:
     """How a process that is forked is kept apart from its parent.
 

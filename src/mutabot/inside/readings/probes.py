@@ -20,6 +20,7 @@ from types import FunctionType
 from typing import Any
 
 from mutabot.errors import nearest_name
+from mutabot.frozen import frozen
 from mutabot.inside.targets.target import resolve
 from mutabot.model import Probe
 from mutabot.model.class_name import class_name
@@ -241,7 +242,7 @@ class Along:
             self._step *= 2
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Rehearsal:
     """What is known of reading the probes once more.
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import re
 import sys
-from dataclasses import dataclass
 from types import FrameType
 from typing import Any
 
 import pytest
 
 from mutabot.extensions import packages
+from mutabot.frozen import frozen
 from mutabot.inside import FOLDER
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.comparisons import FILE as AROUND_COMPARISONS
@@ -31,7 +31,7 @@ PASSED, SKIPPED, XFAILED, XPASSED = "passed", "skipped", "xfailed", "xpassed"
 FAILED = "failed"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ending:
     """Why a test failed; the fields are those of ``TestEnd`` with the same names.
 

@@ -10,14 +10,15 @@ from __future__ import annotations
 import contextlib
 import importlib
 import re
-from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
 import pytest
 
+from mutabot.frozen import frozen
 
-@dataclass(frozen=True, slots=True)
+
+@frozen
 class Plugin:
     """A plug-in to switch off.
 

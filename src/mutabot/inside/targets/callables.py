@@ -120,6 +120,7 @@ class Callables(Targets):
         self._undo: list[Undo] = []
         self._wrappers: list[tuple[Any, Any]] = []
         self._removed = False
+        self._before = set(sys.modules)
 
     def wrap(self, target: str, handler: Handler, overrides: Callable[[type], Handler] | None = None) -> None:
         """Wrap a callable now, or as soon as its module is imported.
@@ -229,8 +230,9 @@ class Callables(Targets):
         while self._undo:
             with suppress(AttributeError, TypeError):  # a test has taken it away itself, or made it read-only
                 self._undo.pop()()
+        loaded = [module for name, module in list(sys.modules.items()) if name not in self._before]
         for original, wrapper in self._wrappers:
-            for _ in _rebind(wrapper, original):  # names that were taken while the wrapper was in place
+            for _ in _rebind(loaded, wrapper, original):  # names that were taken while it was in place
                 pass
 
     def _install(
@@ -258,7 +260,7 @@ class Callables(Targets):
             self.owners[target] = (owner, name)
         self._wrappers.append((original, wrapper))
         if late:
-            self._undo.extend(_rebind(original, wrapper))
+            self._undo.extend(_rebind(list(sys.modules.values()), original, wrapper))
 
 
 def not_imported(module: str, error: Exception, key: str = "call") -> Finding:
@@ -296,19 +298,20 @@ def _as_getter(handler: Handler) -> Handler:
     return get
 
 
-def _rebind(original: Any, wrapper: Any) -> Iterator[Undo]:
-    """Put the wrapper wherever loaded modules, their classes or default arguments refer to the original."""
+def _rebind(modules: Iterable[Any], original: Any, wrapper: Any) -> Iterator[Undo]:
+    """Put the wrapper wherever the modules, their classes or default arguments refer to the original."""
     if isinstance(original, property | classmethod | staticmethod | functools.cached_property):
         return
-    for module in list(sys.modules.values()):
+    for module in modules:
         if not isinstance(module, ModuleType) or module.__name__.startswith("mutabot"):
             continue
         for name, value in list(vars(module).items()):
             if value is original:
                 setattr(module, name, wrapper)
                 yield functools.partial(setattr, module, name, original)
-            elif isinstance(value, FunctionType) and value.__module__ == module.__name__:
-                yield from _rebind_defaults(value, original, wrapper)
+            elif isinstance(value, FunctionType):
+                if value.__module__ == module.__name__ and _has_defaults(value):
+                    yield from _rebind_defaults(value, original, wrapper)
             elif isinstance(value, type) and value.__module__ == module.__name__:
                 yield from _rebind_class(value, original, wrapper)
 
@@ -318,8 +321,12 @@ def _rebind_class(owner: type, original: Any, wrapper: Any) -> Iterator[Undo]:
         if value is original:
             setattr(owner, name, wrapper)
             yield functools.partial(setattr, owner, name, original)
-        elif isinstance(value, FunctionType):
+        elif isinstance(value, FunctionType) and _has_defaults(value):
             yield from _rebind_defaults(value, original, wrapper)
+
+
+def _has_defaults(function: FunctionType) -> bool:
+    return bool(function.__defaults__ or function.__kwdefaults__)
 
 
 def _rebind_defaults(function: FunctionType, original: Any, wrapper: Any) -> Iterator[Undo]:

@@ -10,9 +10,11 @@ from __future__ import annotations
 import inspect
 import time
 from collections.abc import Awaitable, Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
+
+from mutabot.frozen import frozen
 
 from .target import Handler, Means, Where
 
@@ -20,7 +22,7 @@ from .target import Handler, Means, Where
 _PAUSE = 0.01
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Delivery:
     """What the program is to receive in the place of one message.
 

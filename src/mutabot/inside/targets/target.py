@@ -17,11 +17,11 @@ import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Awaitable, Callable, Iterable, Iterator
-from dataclasses import dataclass
 from importlib import import_module
 from types import CodeType, FrameType, ModuleType
 from typing import Any
 
+from mutabot.frozen import frozen
 from mutabot.model import Operation, Role, Span
 from mutabot.model.class_name import class_name
 
@@ -36,7 +36,7 @@ def _later(seconds: float, action: Callable[[], object]) -> None:
     timer.start()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Means:
     """How a call of a middleware comes late, or its answer never; the hook that has the call knows.
 
@@ -63,7 +63,7 @@ class Means:
     once: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Where:
     """Where a use of a target is, if the frames above it do not tell.
 
@@ -95,7 +95,7 @@ class Where:
 Handler = Callable[..., Any]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Finding:
     """What does not fit, or what is worth saying.
 

@@ -14,13 +14,15 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from mutabot.frozen import frozen
+
 _NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _INTEGER = r"[-+]?[0-9]+"
 _WORD = r".+?"
 _DECIMALS = re.compile(r"(?P<plus>\+?)-?(?P<whole>\d*)(?:(?P<point>\.)(?P<decimals>\d*))?")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Field:
     """One field of a notation: its name and its format specification (may be empty)."""
 

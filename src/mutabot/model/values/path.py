@@ -16,18 +16,19 @@ import copy
 import re
 from array import array
 from collections.abc import Iterator
-from dataclasses import dataclass, is_dataclass
 from dataclasses import fields as dataclass_fields
+from dataclasses import is_dataclass
 from typing import Any
 
 from mutabot.errors import PathError, nearest_name
+from mutabot.frozen import frozen
 
 _STEP = re.compile(r"\.(?P<attribute>[^\W\d]\w*)|\[(?P<item>[^\[\]]*)\]")
 _NAME = re.compile(r"[^\W\d]\w*")
 _SLICE = re.compile(r"\s*(-?\d{1,9})?\s*:\s*(-?\d{1,9})?\s*(?::\s*(-?\d{1,9})?\s*)?")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Step:
     """One step of a path: an attribute's name, or an index, key or slice in brackets."""
 
@@ -49,7 +50,7 @@ class Step:
         return slice(*self.bounds) if self.bounds is not None else self.item
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Path:
     """Where a value lies inside an object; without steps it is the object itself.
 

@@ -7,7 +7,6 @@ import math
 import re
 import shutil
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from mutabot.analysis.stored.campaign import StoredCampaign
 from mutabot.analysis.stored.evidence import StoredEvidence
 from mutabot.analysis.suggested import Suggestions
 from mutabot.errors import UsageError
+from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
 from mutabot.report.html.mutant import Recorded, mutant_page
 from mutabot.report.html.overview import campaign_data
@@ -33,7 +33,7 @@ LIMIT = 23_000_000
 _CLIP = re.compile(r"(\d+)(?:[-_. ].*)?\.(mp4|webm|gif|png|jpe?g|svg|webp)", re.IGNORECASE)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Written:
     """What was written.
 
@@ -48,7 +48,7 @@ class Written:
     without: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Contents:
     """What a report is made from.
 

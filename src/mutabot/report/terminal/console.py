@@ -6,7 +6,6 @@ import os
 import re
 import sys
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import IO
 
 from rich import box
@@ -15,6 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.analysis.statistics import Interval
+from mutabot.frozen import frozen
 from mutabot.model import By, Outcome, Verdict
 
 _ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
@@ -105,7 +105,7 @@ def plural(count: int, singular: str, several: str | None = None) -> str:
     return f"{count} {singular if count == 1 else several or singular + 's'}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mark:
     """How an outcome is shown.
 

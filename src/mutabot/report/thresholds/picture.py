@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
@@ -19,12 +18,13 @@ from mutabot.analysis.thresholds.rounds import Above, LadderRound
 from mutabot.analysis.thresholds.thresholds import Thresholds
 from mutabot.analysis.thresholds.words import amount
 from mutabot.errors import UsageError
+from mutabot.frozen import frozen
 from mutabot.report.terminal.console import plural
 
 INK, FAINT, PAPER = "#222222", "#767676", "#ffffff"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Rectangle:
     """A filled rectangle, in pixels from the upper left corner."""
 
@@ -35,7 +35,7 @@ class Rectangle:
     fill: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Words:
     """A line of text.
 
@@ -54,7 +54,7 @@ class Words:
     bold: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Picture:
     """A drawing in pixels."""
 

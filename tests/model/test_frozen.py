@@ -1,0 +1,87 @@
+"""What ``frozen`` makes of a class is what ``dataclass(frozen=True)`` makes of it."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+import pytest
+
+from mutabot.frozen import frozen
+
+
+@frozen
+class Nothing:
+    pass
+
+
+@frozen
+class Thing:
+    name: str
+    sizes: tuple[float, ...] = ()
+    secret: str = field(default="", repr=False)
+    note: str = field(default="", compare=False)
+
+
+@frozen
+class Same:
+    name: str
+    sizes: tuple[float, ...] = ()
+    secret: str = field(default="", repr=False)
+    note: str = field(default="", compare=False)
+
+
+@frozen
+class Loud:
+    name: str
+
+    def __repr__(self) -> str:
+        return self.name.upper()
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    name: str
+    sizes: tuple[float, ...] = ()
+    secret: str = field(default="", repr=False)
+    note: str = field(default="", compare=False)
+
+
+@pytest.mark.parametrize(
+    "arguments", [("a",), ("a", (1.0, 2.0)), ("a", (), "hidden", "seen"), ("b", (), "", "another")]
+)
+def test_it_compares_hashes_and_shows_like_a_frozen_dataclass(arguments: tuple[Any, ...]) -> None:
+    for other in [("a",), ("a", (1.0, 2.0)), ("a", (), "hidden", "another"), ("b",)]:
+        is_equal = Reference(*arguments) == Reference(*other)
+        assert (Thing(*arguments) == Thing(*other)) is is_equal
+        assert (len({Thing(*arguments), Thing(*other)}) == 1) is is_equal
+    assert repr(Thing(*arguments)) == repr(Reference(*arguments)).replace("Reference", "Thing")
+
+
+def test_values_of_two_classes_are_not_equal() -> None:
+    assert Thing("a") != Same("a")
+    assert Thing("a") != ("a", (), "", "")
+    assert Nothing() == Nothing()
+    assert len({Nothing(), Nothing()}) == 1
+
+
+@pytest.mark.parametrize(
+    "again", [copy.copy, copy.deepcopy, lambda one: pickle.loads(pickle.dumps(one)), replace]
+)
+def test_copies_are_equal(again: Callable[[Thing], Thing]) -> None:
+    assert again(Thing("a", (1.0,), note="n")) == Thing("a", (1.0,))
+
+
+def test_it_is_a_dataclass_with_slots_and_keeps_methods_of_its_own() -> None:
+    assert [one.name for one in fields(Thing)] == ["name", "sizes", "secret", "note"]
+    assert not hasattr(Thing("a"), "__dict__")
+    assert repr(Loud("a")) == "A"
+    assert Loud("a") == Loud("a")
+
+
+def test_what_cannot_be_hashed_makes_it_so() -> None:
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(Thing("a", sizes=[1.0]))  # type: ignore[arg-type]
