@@ -156,11 +156,20 @@ class Source:
         """All nodes of a kind."""
         return (node for node in ast.walk(self.tree) if isinstance(node, kind))
 
-    def call_ending(self, line: int, column: int) -> ast.Call:
-        """The call whose closing parenthesis stands there: a chain of calls may start anywhere."""
+    def call_ending(self, line: int, column: int, name: str | None = None) -> ast.Call:
+        """The call whose closing parenthesis stands there: a chain of calls may start anywhere.
+
+        Or one without a place, of what is read there, if it has this name.
+        """
         for node in self.nodes(ast.Call):
             if (node.end_lineno, node.end_col_offset) == (line, column):
                 return node  # type: ignore[no-any-return]
+        for node in self.nodes(ast.For):  # the call whose items are fetched one by one
+            if (node.end_lineno, node.end_col_offset) == (line, column) and isinstance(node.iter, ast.Call):
+                return node.iter
+        for node in self.nodes(ast.Attribute | ast.Name):
+            if (node.end_lineno, node.end_col_offset) == (line, column) and _last_name(node) == name:
+                return ast.Call(node, [], [])
         raise CannotWriteError("no call ends there")
 
 
@@ -169,9 +178,13 @@ class CallEditor:
 
     def __init__(self, facts: Facts, source: Source, mutant: Mapping[str, Any]) -> None:
         self.facts, self.source, self.mutant = facts, source, mutant
+        self._name = mutant["operation"].rpartition(":")[2].rpartition(".")[2]
         span = mutant["span"]
-        self.call = source.call_ending(span["end_line"], span["end_column"] - 1)
+        self.call = source.call_ending(span["end_line"], span["end_column"] - 1, self._name)
         self.operation = facts.operation(mutant["operation"])
+        handed = self._handed()
+        self.callee = handed or self.call.func
+        self.is_handed = handed is not None or not hasattr(self.call, "lineno")
         parent = source.parents.get(self.call)
         self.awaited = parent if isinstance(parent, ast.Await) else None
         self.definition = facts.definition(mutant["operation"])
@@ -319,19 +332,32 @@ class CallEditor:
 
     def _is_simple(self) -> bool:
         """Whether the call can stand twice, or not at all, without a change of anything else."""
+        if self.is_handed:
+            return False
         parts = [self.call.func, *self.call.args, *self.call.keywords]
         if self.is_async and self.awaited is None:
             return False
         return all(isinstance(node, _PURE) for part in parts for node in ast.walk(part))
 
     def _callee(self) -> str:
-        return self.source.text(self.call.func)
+        return self.source.text(self.callee)
+
+    def _handed(self) -> ast.expr | None:
+        """The operation itself, where the call does not make it but is given it: ``submit(arm.move, 1)``."""
+        if _last_name(self.call.func) == self._name:
+            return None
+        given = [*self.call.args, *(one.value for one in self.call.keywords)]
+        also = self.facts.hints.get("handed", {}).get(self.mutant["operation"])
+        found = [node for part in given for node in ast.walk(part)
+                 if _last_name(node) == self._name or ast.unparse(node) == also]  # fmt: skip
+        called = {node.func for part in given for node in ast.walk(part) if isinstance(node, ast.Call)}
+        return next((node for node in found if node not in called), None)  # type: ignore[return-value]
 
     def _with_callee(self, planted: str) -> Edit:
         if self.pattern is not None:
             message, text = self.operation["message"], self.pattern["text"]
             planted = f"{PLANTED}.only_for({self._callee()}, {planted}, {message!r}, {text!r})"
-        return self._replace(self.call.func, planted)
+        return self._replace(self.callee, planted)
 
     def _parameters(self) -> list[str]:
         if self.definition is None and "method" in self.operation:
@@ -364,8 +390,11 @@ class CallEditor:
             return self._replace(message, f"{told}, {self.source.text(message)})")
         root = name.partition(".")[0].partition("[")[0]
         path = name.removeprefix(root)
+        if self.is_handed:
+            given = f"{self._callee()}, {root!r}, {path!r}, {change}, {self._parameters()!r}"
+            return self._with_callee(f"{PLANTED}.with_argument({given})")
         try:
-            given = self._given(root)
+            value = self._given(root)
         except CannotWriteError:
             if any(isinstance(one, ast.Starred) for one in self.call.args) or any(
                 one.arg is None for one in self.call.keywords
@@ -373,17 +402,18 @@ class CallEditor:
                 planted = f"{PLANTED}.with_argument({self._callee()}, {root!r}, {path!r}, {change})"
                 return self._with_callee(planted)
             raise
-        text = self.source.text(given)
+        text = self.source.text(value)
         if not path:
-            plain = minus and not isinstance(given, ast.List | ast.Tuple)
-            is_number = isinstance(given, ast.Constant | ast.UnaryOp | ast.BinOp)
-            return self._replace(given, f"-({text})" if plain and is_number else f"{change}({text})")
-        return self._replace(given, f"{PLANTED}.changed({path!r}, {change}, {text})")
+            plain = minus and not isinstance(value, ast.List | ast.Tuple)
+            is_number = isinstance(value, ast.Constant | ast.UnaryOp | ast.BinOp)
+            return self._replace(value, f"-({text})" if plain and is_number else f"{change}({text})")
+        return self._replace(value, f"{PLANTED}.changed({path!r}, {change}, {text})")
 
     def _result(self, change: str, *, minus: bool = False) -> Edit:
         name = self.mutant["quantity"]
         path = "" if name == "result" else name
-        if self.pattern is not None or (self.is_async and self.awaited is None):
+        is_elsewhere = self.is_handed or (self.is_async and self.awaited is None)
+        if self.pattern is not None or is_elsewhere:
             planted = f"{PLANTED}.answering({self._callee()}, {path!r}, {change})"
             return self._with_callee(planted)
         text = self.source.text(self.whole)
@@ -393,6 +423,12 @@ class CallEditor:
 
     def _replace(self, node: ast.AST, text: str) -> Edit:
         return Edit(self.source.name, *self.source.range(node), text)
+
+
+def _last_name(node: ast.AST) -> str | None:
+    if isinstance(node, ast.Attribute):
+        return node.attr
+    return node.id if isinstance(node, ast.Name) else None
 
 
 def text_edit(source: Source, mutant: Mapping[str, Any]) -> Edit:

@@ -11,7 +11,7 @@ import inspect
 import os
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -123,10 +123,18 @@ def _with_item(value: Any, place: Any, part: Any) -> Any:
     return clone
 
 
-def with_argument(function: Any, name: str, path: str, change: Change) -> Any:
-    """``function`` with one of its arguments changed on the way."""
+def with_argument(
+    function: Any, name: str, path: str, change: Change, names: Sequence[str] | None = None
+) -> Any:
+    """``function`` with one of its arguments changed on the way; ``names`` of them, if it need not tell."""
 
     def called(*given: Any, **named: Any) -> Any:
+        if names is not None and name not in named:
+            index = names.index(name)
+            given = (*given[:index], changed(path, change, given[index]), *given[index + 1 :])
+            return function(*given, **named)
+        if names is not None:
+            return function(*given, **{**named, name: changed(path, change, named[name])})
         bound = inspect.signature(function).bind(*given, **named)
         bound.arguments[name] = changed(path, change, bound.arguments[name])
         return function(*bound.args, **bound.kwargs)

@@ -29,6 +29,7 @@ from mutabot.inside.readings.recording import TestRecording
 from mutabot.inside.targets.callables import Callables
 from mutabot.inside.targets.target import Finding, Handler, Interception
 from mutabot.inside.text.call_sites import CallSites
+from mutabot.inside.text.handing import Handing
 from mutabot.inside.text.returns import Returns
 from mutabot.inside.text.session_text import SessionText
 from mutabot.inside.text.stand_ins import StandIns, last_name
@@ -60,6 +61,7 @@ class Session:
         text: the program text, if it is instrumented.
         call_sites: calls that are seen where they are written.
         standing: what stands there.
+        handing: sees calls of what the program hands on.
         returns: what the program returns to its tests; None if that is not noted.
         recording: what the world does while the test runs.
         test: node id of the running test.
@@ -86,6 +88,7 @@ class Session:
     returns: Returns | None = None
     call_sites: CallSites = field(init=False)
     standing: Standing = field(init=False)
+    handing: Handing = field(init=False)
     test: str = ""
     refused_calls: list[tuple[int, int]] = field(default_factory=list)
     live: set[int] = field(default_factory=set)
@@ -129,7 +132,7 @@ class Session:
             handler = self._handler(operation)
             self.interception.wrap(operation, handler, overrides)
             if operation.kind in (None, "methods"):
-                candidates.append(Candidate(operation, handler, self._doors[-1].use_signature))
+                candidates.append(Candidate(operation, handler, self._doors[-1]))
         self._see_calls(candidates)
         self.instances.watch(probe.owner for probe in vocabulary.probes)
         if vocabulary.wait is not None:
@@ -151,12 +154,14 @@ class Session:
         self.standing = Standing(candidates, callables, self.locator, self._sees_itself)
         self._tell_standing()
         names = {last_name(one.operation) for one in candidates}
-        self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself)
+        self.handing = Handing(self.standing, self.passing.given)
+        self.call_sites = CallSites(names, self.locator.role, self.standing, self._sees_itself, self.handing)
         self.call_sites.install()
 
     def remove(self) -> None:
         """Intercept nothing any more."""
         self.call_sites.remove()
+        self.handing.remove()
         self.interception.remove()
 
     def _tell_standing(self) -> None:

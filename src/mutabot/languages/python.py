@@ -26,7 +26,10 @@ class Python:
     suffixes = (".py",)
 
     def names(self, source: str) -> Mapping[Extent, Name]:
-        """Names of all expressions: a call by the text of its callee, all others by their own."""
+        """Names of all expressions: a call by the text of its callee, all others by their own.
+
+        What a ``for`` or ``with`` does by itself has the place of the whole statement up to Python 3.12.
+        """
         names: dict[Extent, Name] = {}
         tree = ast.parse(source)
         _number(tree, source.encode().splitlines(keepends=True), names)
@@ -35,6 +38,12 @@ class Python:
                 names.setdefault(_definition(node), Name(f"def {node.name}", 1))
             elif isinstance(node, ast.Lambda):
                 names.setdefault((node.lineno, 0, node.lineno, 0), Name("lambda", 1))
+            elif isinstance(node, ast.For | ast.AsyncFor):
+                head = names[extent_of(node.iter)]
+                names.setdefault(extent_of(node), Name(f"for {head.text}", head.occurrence))
+            elif isinstance(node, ast.With | ast.AsyncWith):
+                head = names[extent_of(node.items[0].context_expr)]
+                names.setdefault(extent_of(node), Name(f"with {head.text}", head.occurrence))
         return names
 
     def file_of(self, frame: FrameType) -> str | None:

@@ -94,6 +94,7 @@ class Passing:
         activations: the mutants of calls that are at work: none for the original.
         on_live: told in the baseline of each call that returned the robot's own memory; None in other runs.
         refused: the calls of the running test that the robot refuses in the original.
+        given: where functions of the robot were handed on, for calls that no frame tells of.
         calls: how often each site has been called in the running test, by operation and pattern.
     """
 
@@ -122,6 +123,7 @@ class Passing:
         self._operator = ""
         self.on_live: Callable[[Made], None] | None = None
         self.refused = RefusedCalls()
+        self.given: dict[Door, tuple[Span, Role] | None] = {}
         self._callers = Callers()
         self.calls: Counter[tuple[Span, str, str | None]] = Counter()
 
@@ -151,7 +153,7 @@ class Passing:
                 return wrapped(*args, **kwargs)
             if (where is None or not where.is_again) and not _marks_time(door):
                 self.meter.count()
-            site = self._site(sys._getframe(1), where)
+            site = self._site(sys._getframe(1), where, door)
             if site is None:
                 return wrapped(*args, **kwargs)
             is_direct = self._recorder.answers is not None and self._is_direct(sys._getframe(1), where)
@@ -168,7 +170,7 @@ class Passing:
 
         return handle
 
-    def _site(self, frame: FrameType, where: Where | None) -> tuple[Span, Role] | None:
+    def _site(self, frame: FrameType, where: Where | None, door: Door) -> tuple[Span, Role] | None:
         if where is not None and where.site is not None:
             return where.site
         code = where.code if where is not None else None
@@ -176,6 +178,8 @@ class Passing:
         node = where.node if where is not None else None
         if site is not None and node is not None and self._is_oracle(node):
             return site[0], Role.ORACLE
+        if site is None and code is None:  # in a thread, where no frame tells it
+            site = where.handed if where is not None else self.given.get(door)
         return site
 
     def _is_direct(self, frame: FrameType | None, where: Where | None) -> bool:

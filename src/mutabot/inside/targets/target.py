@@ -74,6 +74,7 @@ class Where:
         means: what can befall the call beside other values; None if nothing can.
         is_again: whether the same call of the program's goes on: it still waits for a message.
         site: the site itself, where the call was seen in the text.
+        handed: the place at which what is called was handed on, if the frames tell none.
         receiver: what was called was read from this object; None if it was not, or that is the instance.
         is_awaited: whether what the call gives is awaited there.
         frame: that makes the call; None if it is the next one.
@@ -84,6 +85,7 @@ class Where:
     means: Means | None = None
     is_again: bool = False
     site: tuple[Span, Role] | None = None
+    handed: tuple[Span, Role] | None = None
     receiver: Any = None
     is_awaited: bool = False
     frame: FrameType | None = None

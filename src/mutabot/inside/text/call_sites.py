@@ -4,6 +4,7 @@ Files of the program and of the oracle are compiled with a question at each call
 operation: ``x.f(args)`` becomes ``S[17](x)(args)``, and ``f(args)`` becomes ``S[17](f)(args)``. The answer is
 what is called: the very object that stands there, or what makes the call a site. So no frame is added to a
 call that is left alone, and lines and columns stay the user's. ``S`` is a plain list under a built-in name.
+In files of the program an operation may also be handed on without being called (``handed_on``).
 """
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ import builtins
 import copy
 import sys
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from types import FrameType
 from typing import Any, Protocol
 
@@ -24,6 +26,7 @@ from mutabot.model import Role
 from mutabot.model.alternative import Extent
 
 from . import loading
+from .handed_on import is_handed_on, note_parts, place_of
 from .instrument import declare_global, is_ours
 from .returns import Function, is_translated
 
@@ -38,7 +41,7 @@ _MOST_OF_METHOD = 30
 
 @dataclass(slots=True, eq=False)
 class CallSite:
-    """A call in the text.
+    """A call in the text, or a place where something is handed on.
 
     Attributes:
         path: its file, as code objects name it.
@@ -46,13 +49,15 @@ class CallSite:
         name: the last name of what is called.
         extent: where it stands, as the interpreter tells of the running call.
         is_awaited: whether it is awaited where it stands.
+        is_given: whether what is handed on is given to the call that stands there.
     """
 
     path: str
     role: Role
     name: str
     extent: Extent
-    is_awaited: bool
+    is_awaited: bool = False
+    is_given: bool = False
 
 
 class Stands(Protocol):
@@ -77,6 +82,7 @@ class CallSites:
         role: whose file a path is.
         stands: decides what is called.
         sees_itself: handlers of what sees its calls itself: of that nothing is asked.
+        hands: decides what is handed on; None to leave that as it is.
 
     Attributes:
         loaded: files that were given questions.
@@ -88,11 +94,13 @@ class CallSites:
         role: Callable[[str], Role | None],
         stands: Stands,
         sees_itself: Collection[Any] = (),
+        hands: Stands | None = None,
     ) -> None:
         self._names = frozenset(names)
         self._role = role
         self._stands = stands
         self._sees_itself = sees_itself
+        self._hands = hands
         self.loaded: list[str] = []
         self._numbers: dict[tuple[str, Extent, str], int] = {}
 
@@ -107,7 +115,7 @@ class CallSites:
         if self._names:
             loading.remove(self)
         self._names = frozenset()
-        self._stands = lambda site, found, receiver, frame: found
+        self._stands = self._hands = lambda site, found, receiver, frame: found
 
     def hook_pytest(self) -> None:
         """Put questions into files that pytest rewrites, too: after it, so that its messages stay."""
@@ -142,18 +150,21 @@ class CallSites:
         role = self._role(path)
         if role is None:
             return
-        writer = _Writer(self._names, lambda node, name, form: self._number(path, role, node, name, form))
+        are_handed = self._hands is not None and role is Role.PROGRAM
+        writer = _Writer(self._names, partial(self._number, path, role), are_handed=are_handed)
         writer.visit(tree)
         if writer.written:
             declare_global(tree, CALLS)
             self.loaded.append(path)
 
-    def _number(self, path: str, role: Role, node: ast.Call, name: str, form: str) -> int:
+    def _number(self, path: str, role: Role, node: ast.expr, name: str, form: str) -> int:
         key = (path, extent_of(node), form)
         number = self._numbers.get(key)
         if number is None:
             number = self._numbers[key] = len(_entries)
-            site = CallSite(path, role, name, extent_of(node), bool(getattr(node, "is_awaited", False)))
+            place = place_of(node) if form.startswith("handed") else node
+            site = CallSite(path, role, name, extent_of(place))
+            site.is_awaited, site.is_given = bool(getattr(node, "is_awaited", False)), place is not node
             _entries.append(getattr(self, f"_{form}")(site))
         return number
 
@@ -189,6 +200,45 @@ class CallSites:
 
         return read
 
+    def _handed_attribute(self, site: CallSite) -> Callable[[Any], Any]:
+        name, frame_of = site.name, sys._getframe
+
+        def read(receiver: Any) -> Any:
+            __tracebackhide__ = True
+            found = getattr(receiver, name)
+            hands = self._hands
+            return found if hands is None else hands(site, found, receiver, frame_of(1))
+
+        return read
+
+    def _handed_name(self, site: CallSite) -> Callable[[Any], Any]:
+        frame_of = sys._getframe
+
+        def read(found: Any) -> Any:
+            hands = self._hands
+            return found if hands is None else hands(site, found, NOTHING, frame_of(1))
+
+        return read
+
+    def _handed_by_name(self, site: CallSite) -> Callable[[Any], Any]:
+        frame_of = sys._getframe
+        sites = {name: replace(site, name=name) for name in self._names}
+
+        def read(function: Any) -> Any:
+            is_ours = function is getattr and self._hands is not None
+            return partial(self._got, sites, frame_of(1)) if is_ours else function
+
+        return read
+
+    def _got(
+        self, sites: dict[str, CallSite], frame: FrameType, /, receiver: Any, name: str, *default: Any
+    ) -> Any:
+        __tracebackhide__ = True
+        found = getattr(receiver, name, *default)
+        if self._hands is None or name not in sites:
+            return found
+        return self._hands(sites[name], found, receiver, frame)
+
 
 class _Writer(ast.NodeTransformer):
     """Writes the questions.
@@ -197,15 +247,20 @@ class _Writer(ast.NodeTransformer):
     its messages show the variable.
     """
 
-    def __init__(self, names: Collection[str], number: Callable[[ast.Call, str, str], int]) -> None:
+    def __init__(
+        self, names: Collection[str], number: Callable[[ast.expr, str, str], int], *, are_handed: bool
+    ) -> None:
         self._names = names
         self._number = number
+        self._are_handed = are_handed
         self._read: dict[str, ast.expr] = {}
         self.written = False
 
     def visit(self, node: ast.AST) -> Any:
         if isinstance(node, Function) and is_translated(node):
             return node
+        if self._are_handed:
+            note_parts(node)
         return super().visit(node)
 
     def visit_Await(self, node: ast.Await) -> ast.AST:  # the name that ast looks for
@@ -233,8 +288,22 @@ class _Writer(ast.NodeTransformer):
             else:
                 given = [function, copy.deepcopy(read.value)]
                 node.func = self._question(self._number(node, read.attr, "pair"), function, given)
+        elif isinstance(read, ast.Name) and read.id == "getattr" and self._are_handed:
+            node.func = self._question(self._number(node, "", "handed_by_name"), function, [function])
         elif isinstance(read, ast.Name) and read.id in self._names:
             node.func = self._question(self._number(node, read.id, "name"), function, [function])
+        return node
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:  # as above
+        self.generic_visit(node)
+        if is_handed_on(node) and node.attr in self._names and not is_ours(node):
+            number = self._number(node, node.attr, "handed_attribute")
+            return self._question(number, node, [node.value])
+        return node
+
+    def visit_Name(self, node: ast.Name) -> ast.AST:  # as above
+        if is_handed_on(node) and node.id in self._names:
+            return self._question(self._number(node, node.id, "handed_name"), node, [node])
         return node
 
     def _question(self, number: int, function: ast.expr, given: list[ast.expr]) -> ast.expr:

@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import Any
 
 from mutabot.inside.targets.target import Finding
-from mutabot.model import ANY, Operation, Role
+from mutabot.model import ANY, Operation, Role, Span
 from mutabot.model.class_name import class_name
 
 from .call_sites import NOTHING, CallSite
@@ -32,6 +32,7 @@ class StandIns:
     _standing: dict[str, dict[str, set[str]]] = field(default_factory=dict)
     _alone: dict[str, dict[str, str]] = field(default_factory=dict)
     _sites: set[CallSite] = field(default_factory=set)
+    _elsewhere: dict[str, set[str]] = field(default_factory=dict)
 
     def note(self, site: CallSite, operation: Operation | None, found: Any, receiver: Any) -> None:
         """This was called at a site, as this operation or as none."""
@@ -43,13 +44,17 @@ class StandIns:
             place = f"{self.relative(site.path)}:{site.extent[0]}"
             self._alone.setdefault(site.name, {})[place] = what
 
+    def note_elsewhere(self, operation: Operation, place: tuple[Span, Role] | None) -> None:
+        """This was called where a frame may tell the place, or nothing does."""
+        if place is None:
+            self._elsewhere.setdefault(operation.target, set()).add(self.test())
+
     def findings(self, operations: Iterable[Operation]) -> Iterator[tuple[Operation, Finding]]:
         """What is to be said about these operations."""
         for operation in operations:
-            stood = self._standing.get(operation.target, {})
-            if stood and not operation.target.startswith(ANY):
-                listed = ", ".join(f"{what} in {_tests(len(tests))}" for what, tests in stood.items())
-                yield operation, Finding("call", f"in its place stands {listed}", is_remark=True)
+            said = list(self._said(operation))
+            if said:
+                yield operation, Finding("call", "; ".join(said), is_remark=True)
             alone = self._alone.pop(last_name(operation), {})
             if alone:
                 listed = ", ".join(f"{place} ({what})" for place, what in list(alone.items())[:_MOST])
@@ -57,6 +62,18 @@ class StandIns:
                 text = f"{_calls(len(alone))} of this name left alone, since nothing says that it is meant"
                 advice = f'if it is, write method = "{last_name(operation)}"'
                 yield operation, Finding("method", f"{text}: {listed}{more}; {advice}", is_remark=True)
+
+    def _said(self, operation: Operation) -> Iterator[str]:
+        """What stood for an operation, and what nobody can place."""
+        stood = self._standing.get(operation.target, {})
+        if stood and not operation.target.startswith(ANY):
+            yield "in its place stands " + ", ".join(
+                f"{what} in {_tests(len(tests))}" for what, tests in stood.items()
+            )
+        elsewhere = self._elsewhere.get(operation.target)
+        if elsewhere:
+            which = _tests(len(elsewhere))
+            yield f"handed on in several places and called in a thread in {which}: such calls are not mutated"
 
 
 def last_name(operation: Operation) -> str:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from types import BuiltinMethodType, FrameType, FunctionType, MethodType, ModuleType
@@ -24,6 +24,7 @@ from typing import Any
 
 import wrapt
 
+from mutabot.inside.calls.door import Door
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.targets.callables import Callables
 from mutabot.inside.targets.target import Handler, Where, named_class
@@ -36,7 +37,8 @@ from .stand_ins import StandIns, is_mock, last_name
 
 #: names in modules, and what they meant
 _Guards = tuple[tuple[dict[str, Any], str, Any], ...]
-_WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
+#: what stands around callables that see their calls themselves
+WRAPPERS = (wrapt.FunctionWrapper, wrapt.BoundFunctionWrapper)
 
 
 @dataclass(slots=True)
@@ -46,12 +48,12 @@ class Candidate:
     Attributes:
         operation: the operation.
         handler: what its calls go through.
-        use_signature: told how its calls are to be read, before the first that goes to something else.
+        door: reads its calls.
     """
 
     operation: Operation
     handler: Handler
-    use_signature: Callable[[inspect.Signature], None]
+    door: Door
     is_told: bool = False
 
 
@@ -97,7 +99,7 @@ class Standing:
                     break
             else:
                 return found
-        one = self._operation(site, found, receiver, frame)
+        one = self.candidate(site, found, receiver, frame)
         if self.noted is not None:
             operation = one.operation if one is not None else None
             self.noted.note(site, operation, found, receiver)
@@ -105,14 +107,11 @@ class Standing:
             if _is_told_by_type(found, receiver):
                 self._left_alone[key] = self._guards(site, frame)
             return found
-        if not one.is_told:
-            one.is_told = True
-            self._tell_signature(one)
         where = Where(
-            site=self._place(site, frame), receiver=None if receiver is NOTHING else receiver,
+            site=self.place(site, frame), receiver=None if receiver is NOTHING else receiver,
             is_awaited=site.is_awaited, frame=frame,
         )  # fmt: skip
-        return partial(self._call, one, where, found, receiver)
+        return partial(self.call, one, where, found, receiver)
 
     def _guards(self, site: CallSite, frame: FrameType) -> _Guards:
         """What must be as it is for the same to be left alone: all that names an operation, or its class."""
@@ -130,11 +129,14 @@ class Standing:
             if isinstance(module, ModuleType) and getattr(module, "__file__", None) in paths:
                 self._names_of(vars(module))
 
-    def _call(
+    def call(
         self, one: Candidate, where: Where, found: Any, receiver: Any, /, *args: Any, **kwargs: Any
     ) -> Any:
         """Make a call as one of an operation."""
         __tracebackhide__ = True
+        if not one.is_told:
+            one.is_told = True
+            self._tell_signature(one)
         owner = self._owner(one)
         is_method = owner is not None or one.operation.target.startswith(ANY)
         instance = receiver if is_method and receiver is not NOTHING else None
@@ -142,25 +144,44 @@ class Standing:
             instance, found, args = args[0], partial(found, args[0]), args[1:]
         return one.handler(found, instance, args, kwargs, where)
 
-    def _place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
+    def place(self, site: CallSite, frame: FrameType) -> tuple[Span, Role]:
+        """Where a site stands."""
         place = self._places.get(id(site))
         if place is None:
             span = Span(self.locator.relative(site.path), *site.extent, function_of(frame.f_code))
             place = self._places[id(site)] = (span, site.role)
         return place
 
-    def _operation(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
-        """The operation that is called, if it does not see its calls itself."""
+    @property
+    def names(self) -> Collection[str]:
+        """Last names of the operations."""
+        return self._by_name
+
+    def is_of_project(self, frame: FrameType) -> bool:
+        """Whether code of the program or of the oracle runs in a frame."""
+        return self.locator.role(frame.f_code.co_filename) is not None
+
+    def candidate_of(self, handler: Handler) -> Candidate | None:
+        """The operation that this handler stands around."""
+        return next((one for ones in self._by_name.values() for one in ones if one.handler is handler), None)
+
+    def candidate(self, site: CallSite, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+        """The operation that stands at a site, if it does not see its calls itself."""
         if self._sees_itself(found):
             return None
-        ones = [one for one in self._by_name[site.name] if not self._is_read(one)]
+        one = self.named(site.name, found, receiver, frame)
+        if one is None and self.known:
+            target = self.known.get(self.place(site, frame)[0])
+            one = next((one for one in self._by_name[site.name] if one.operation.target == target), None)
+        return one
+
+    def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:
+        """The operation of this name in whose place something stands."""
+        ones = [one for one in self._by_name[name] if not self._is_read(one)]
         for find in (self._of_class, self._of_name, self._of_mock, self._of_any):
             one = find(ones, found, receiver, frame)
             if one is not None:
                 return one
-        if self.known:
-            target = self.known.get(self._place(site, frame)[0])
-            return next((one for one in ones if one.operation.target == target), None)
         return None
 
     def _is_read(self, one: Candidate) -> bool:
@@ -169,7 +190,7 @@ class Standing:
 
     def _sees_itself(self, found: Any) -> bool:
         seen = self.sees_itself
-        return any(type(one) in _WRAPPERS and one._self_wrapper in seen for one in _layers(found))
+        return any(type(one) in WRAPPERS and one._self_wrapper in seen for one in _layers(found))
 
     def _of_class(
         self, ones: list[Candidate], found: Any, receiver: Any, frame: FrameType
@@ -226,7 +247,7 @@ class Standing:
             if owner is not None and isinstance(spec, type) and issubclass(spec, owner):
                 return one
             if wrapped is not None and any(
-                type(layer) in _WRAPPERS and layer._self_wrapper is one.handler for layer in _layers(wrapped)
+                type(layer) in WRAPPERS and layer._self_wrapper is one.handler for layer in _layers(wrapped)
             ):
                 return one
         return None
@@ -272,7 +293,7 @@ class Standing:
         if signature is not None and owner is not None and not isinstance(original, staticmethod):
             signature = signature.replace(parameters=list(signature.parameters.values())[1:])
         if signature is not None:
-            one.use_signature(signature)
+            one.door.use_signature(signature)
 
 
 def _is_of_objects(owner: type | None, one: Candidate) -> bool:
@@ -290,7 +311,7 @@ def _layers(found: Any) -> Iterator[Any]:
         kind = type(found)
         if kind is MethodType:
             found = found.__func__
-        elif kind in _WRAPPERS or (kind is FunctionType and "__wrapped__" in vars(found)):
+        elif issubclass(kind, WRAPPERS) or (kind is FunctionType and "__wrapped__" in vars(found)):
             found = found.__wrapped__
         else:
             return
