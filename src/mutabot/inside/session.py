@@ -9,7 +9,7 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
 from random import Random
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.border.events import Acted, Called, Event, SiteSeen, TextsSeen
 from mutabot.border.job import Budget, Job
@@ -20,8 +20,6 @@ from mutabot.inside.calls.locate import Locator
 from mutabot.inside.calls.passing import Aside, Passing
 from mutabot.inside.calls.refusing import Made
 from mutabot.inside.calls.trace import Recorder
-from mutabot.inside.fork.bunch import Bunch
-from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.readings.clock import ClockReader, ProgramTime
 from mutabot.inside.readings.instances import Instances
 from mutabot.inside.readings.probes import Along, Reading, Rehearsal, rehearse, take
@@ -43,6 +41,10 @@ from .inspection import Inspection
 from .limits import Meter
 from .process_fault import ProcessFaults
 from .seeds import derive
+
+if TYPE_CHECKING:  # processes below the tests fork for nobody
+    from mutabot.inside.fork.bunch import Bunch
+    from mutabot.inside.fork.trunk import Trunk
 
 
 @dataclass(slots=True)

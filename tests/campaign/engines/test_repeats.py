@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +15,14 @@ from mutabot.border.events import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.engines import repeats
 from mutabot.campaign.engines.doubt import Doubts
+from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import Repeated
 from mutabot.model import By, Mutant, Outcome, Role, Site, Span, Verdict
 from mutabot.model.mutant import Place
 from tests.campaign.project import CONFIGURATION, Quiet, outcomes, request_for, write_project
-from tests.campaign.scripted import CHECKED, Script
+from tests.campaign.scripted import CHECKED, End, Run, Script
 
 MISSION = """
     def run(arm):
@@ -73,13 +76,41 @@ def test_repeats_beyond_their_time_are_left_and_told(
     tmp_path: Path, script: Script, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     script.kill(FALSE)
-    monkeypatch.setattr(repeats, "SECONDS", 0.0)
-    monkeypatch.setattr(repeats, "SHARE", 0.0)
+    for name in ("SECONDS", "SHARE", "MOST_SECONDS", "MOST_SHARE"):
+        monkeypatch.setattr(repeats, name, 0.0)
     write_project(tmp_path, MISSION, TESTS)
     results, found, progress = campaign(tmp_path, engine="branch", repeats=True)
     assert found[FALSE].verdict is Verdict.KILLED
     assert any("1 were left, as repeats may take 0 s" in line for line in progress.lines)
     assert (results.repeats.doubted, false_kills(results.repeats)) == (Repeated(1, 0, 0), None)
+
+
+def test_more_kills_are_repeated_once_one_does_not_come_out_again(
+    tmp_path: Path, script: Script, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = ("one", "two", "three", "four", "five", "six")
+    mission = "\n\n".join(f"def {name}(arm):\n    arm.move_by(0.2)" for name in names)
+    tests = "\n".join(f"def test_{name}():\n    mission.{name}(Arm())\n" for name in names)
+    lines: dict[bool, str] = {}
+    for comes_again in (True, False):
+
+        def mutated(run: Run, comes_again: bool = comes_again) -> End:
+            is_own = run.mutant is not None and f":{run.test.rpartition('_')[2]}:" in run.mutant.id
+            is_noticed = is_own and run.mutant.id.endswith("reverse") and (comes_again or not run.before)
+            return CHECKED if is_noticed else {}
+
+        script.mutated = mutated
+        clock = count(0.0, 0.5)
+        monkeypatch.setattr(Request, "clock", lambda _, clock=clock: next(clock))
+        text = f"import mission\nfrom robot import Arm\n{tests}"
+        folder = write_project(tmp_path / str(comes_again), mission, text)
+        _, _, progress = campaign(folder, repeats=True)
+        lines[comes_again] = next(line for line in progress.lines if line.startswith("repeats:"))
+    told = r"repeats: (\d) of \1 kills in doubt come out again; (\d) were left, .* 2 s"
+    left = re.fullmatch(told, lines[True])
+    assert left is not None
+    assert int(left[1]) + int(left[2]) == len(names)
+    assert lines[False] == "repeats: 0 of 6 kills in doubt come out again"
 
 
 def test_a_kill_that_came_out_again_is_not_repeated_by_the_next_campaign(

@@ -1,8 +1,8 @@
 """Repeats: kills that may be chance are run once more, and what ``--verify`` asks for.
 
 A kill that does not come out again becomes ``unstable``. If one of a test's kills does not, all its other
-kills are in doubt as well. Kills in doubt are repeated cheapest first, within a bounded share of the
-campaign's time; how many were left is told.
+kills are in doubt as well. Kills in doubt are repeated cheapest first, within a small share of the campaign's
+time, and a larger one as soon as one does not come out again; how many were left is told.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ from .engine import Trial
 from .second_look import Looker, choose, disagreement, flaky_of, unconfirmed
 
 #: repeats of kills in doubt may take this share of the time that the campaign has taken, or so many seconds
-SHARE, SECONDS = 0.2, 10.0
+SHARE, SECONDS = 0.05, 2.0
+#: the same once a kill has not come out again, and for what is left to chance
+MOST_SHARE, MOST_SECONDS = 0.2, 10.0
 #: how often an outcome is repeated whose operator leaves to chance what happens
 RACES = 3
 
@@ -54,9 +56,9 @@ def look_again(campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, spent:
         journal.set_meta(VERIFICATION, to_data(verification))
         progress.note(f"verify: {verification.agreed} of {verification.checked} outcomes agree")
     if request.repeats:
-        seconds = max(SHARE * spent, SECONDS)
-        second.repeat_raced(seconds)
-        second.repeat_doubted(seconds)
+        most = max(MOST_SHARE * spent, MOST_SECONDS)
+        second.repeat_raced(most)
+        second.repeat_doubted(max(SHARE * spent, SECONDS), most)
     journal.set_meta(REPEATS, to_data(second.repeats()))
 
 
@@ -100,15 +102,19 @@ class _SecondLook:
                 f"repeats: {again} of {len(looked)} ends left to chance are always alike{left}"
             )
 
-    def repeat_doubted(self, seconds: float) -> None:
-        """Run the kills in doubt once more, and those which that puts in doubt."""
-        until = self.looker.campaign.request.clock() + seconds
+    def repeat_doubted(self, seconds: float, most: float) -> None:
+        """Run the kills in doubt once more, and those which that puts in doubt.
+
+        This takes so many ``seconds``, and at ``most`` as many if one does not come out again.
+        """
+        began = self.looker.campaign.request.clock()
         raced = set(self.doubts.raced())
         repeated: list[Key] = []
         changed: list[Key] = []
         while due := [key for key in self.doubts.in_doubt() if key not in raced.union(repeated)]:
             new = sorted((key for key in due if key not in self.looker.found), key=self.doubts.cost)
-            self.run(new, until)
+            seconds = max(seconds, most) if changed else seconds
+            self.run(new, began + seconds)
             looked = [key for key in due if key in self.looker.found]
             if not looked:
                 break

@@ -15,12 +15,11 @@ from collections.abc import Callable, Mapping
 from contextvars import ContextVar
 from fnmatch import fnmatchcase
 from types import CodeType, FrameType, FunctionType, MethodType, TracebackType
-from typing import Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import wrapt
 
 from mutabot.extensions import packages
-from mutabot.inside.fork.trunk import Trunk
 from mutabot.inside.limits import Meter
 from mutabot.inside.readings.instances import Instances
 from mutabot.inside.readings.probes import Along
@@ -37,6 +36,9 @@ from .door import Door, here
 from .live import is_live
 from .refusing import Made, RefusedCalls
 from .trace import Recorder
+
+if TYPE_CHECKING:  # processes below the tests fork for nobody
+    from mutabot.inside.fork.trunk import Trunk
 
 #: whether an operation is already under way here: only the outermost is a site
 _under_way: ContextVar[bool] = ContextVar("mutabot_operation_under_way", default=False)
