@@ -7,6 +7,8 @@ import sys
 import weakref
 from typing import Any
 
+import wrapt
+
 _loops: weakref.WeakSet[Any] = weakref.WeakSet()
 _is_on = False
 
@@ -17,9 +19,12 @@ def track_event_loops() -> None:
     if _is_on:
         return
     _is_on = True
-    from asyncio.selector_events import BaseSelectorEventLoop  # noqa: PLC0415  # of no use to other processes
+    # most processes have no loop, and need not import asyncio for it
+    wrapt.register_post_import_hook(_track, "asyncio.selector_events")
 
-    kind: Any = BaseSelectorEventLoop
+
+def _track(selector_events: Any) -> None:
+    kind = selector_events.BaseSelectorEventLoop
     make = kind._make_self_pipe
 
     def made(loop: Any) -> None:
