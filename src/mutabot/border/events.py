@@ -105,6 +105,14 @@ class NotInstrumented:
 
 
 @dataclass(frozen=True, slots=True)
+class KnownLater:
+    """At a site stood an operation, and in another test something that nothing tells to be one."""
+
+    span: Span
+    operation: str
+
+
+@dataclass(frozen=True, slots=True)
 class BranchEnd:
     """A branch has finished a test: the one in which it was forked, or a later one.
 
@@ -406,6 +414,7 @@ Event = (
     | PlacesReached
     | TextsSeen
     | NotInstrumented
+    | KnownLater
     | TestEnd
     | BranchEnd
     | BranchFinished
