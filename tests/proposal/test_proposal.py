@@ -448,7 +448,7 @@ def test_a_program_that_holds_its_robot_is_understood(tmp_path: Path) -> None:
     assert set(operations(tmp_path)) == {"cell:Arm.move_to"}
 
 
-def test_a_robot_that_only_the_tests_know_is_found(tmp_path: Path) -> None:
+def test_a_robot_that_only_the_tests_know_is_found_by_its_methods(tmp_path: Path) -> None:
     write(
         tmp_path,
         {
@@ -468,7 +468,7 @@ def test_a_robot_that_only_the_tests_know_is_found(tmp_path: Path) -> None:
         },
     )
     propose(tmp_path)
-    assert set(operations(tmp_path)) == {"fakes:Arm.move_to"}
+    assert set(operations(tmp_path)) == {"*:*.move_to"}
 
 
 def test_values_come_from_the_program_where_the_tests_call_the_same(tmp_path: Path) -> None:
@@ -677,3 +677,47 @@ def test_objects_that_are_called_and_have_no_name_are_reached(tmp_path: Path) ->
     propose(write(tmp_path, files))
     text = (tmp_path / "robot.toml").read_text(encoding="utf-8")
     assert text.partition("no test reaches")[2].splitlines()[1:] == ["#   mission.py:12  self.park"]
+
+
+STAND_INS = {
+    "mission.py": """
+        def run(arm, lamp, plain):
+            arm.move_by(0.25, speed=0.5)
+            lamp.set_output(True)
+            plain.rotate(yaw_deg=30.0)
+    """,
+    "robot.py": """
+        class Lamp:
+            def set_output(self, on: bool): ...
+    """,
+    "test_mission.py": """
+        from unittest.mock import MagicMock, Mock
+
+        import mission
+        from robot import Lamp
+
+        class FakeArm:
+            def move_by(self, dx, speed=0.1): ...
+
+        class FakeLamp(Lamp):
+            def set_output(self, on): ...
+
+        def test_with_fakes():
+            mission.run(FakeArm(), FakeLamp(), Mock())
+
+        def test_with_mocks():
+            mission.run(Mock(), MagicMock(spec=Lamp), Mock())
+    """,
+}
+
+
+def test_where_the_tests_stand_in_for_the_robot_methods_are_proposed(tmp_path: Path) -> None:
+    for name, text in STAND_INS.items():
+        (tmp_path / name).write_text(textwrap.dedent(text), encoding="utf-8")
+    lines = propose(tmp_path)
+    operations = {one.target: one for one in load(["robot.toml"], tmp_path).operations}
+    assert set(operations) == {"*:*.move_by", "robot:Lamp.set_output", "*:*.rotate"}
+    assert str(operations["*:*.move_by"].signature) == "(dx, speed=0.1)"
+    assert [one.name for one in operations["*:*.rotate"].arguments] == ["yaw_deg"]
+    said = "the tests hand in mocks or fakes: move_by, rotate count for whatever object has them (method = …)"
+    assert said in lines

@@ -225,6 +225,14 @@ class NotInstrumented:
 
 
 @frozen
+class KnownLater:
+    """At a site stood an operation, and in another test something that nothing tells to be one."""
+
+    span: Span
+    operation: str
+
+
+@frozen
 class BranchEnd:
     """A branch has finished a test: the one in which it was forked, or a later one.
 
@@ -526,6 +534,7 @@ Event = (
     | PlacesReached
     | TextsSeen
     | NotInstrumented
+    | KnownLater
     | TestEnd
     | BranchEnd
     | BranchFinished

@@ -136,6 +136,7 @@ class Job:
         oracle_nodes: resolved names of the tests' own nodes, in which ``*`` stands for any text.
         refused: the calls that the robot refuses in the original, by node id: a mutant that is refused there
             as well is judged by its tests.
+        known: sites at which all of an operation's name is one, whatever it is: elsewhere in the suite it is.
         evidence: whether to record what the world does while tests run.
         pictures: which test is filmed; None for none.
         extensions: references to what packages bring, by kind and name, see ``extensions.use``.
@@ -163,6 +164,7 @@ class Job:
     private_files: bool = True
     oracle_nodes: tuple[str, ...] = ()
     refused: Mapping[str, tuple[RefusedAt, ...]] = field(default_factory=dict)
+    known: tuple[tuple[Span, str], ...] = ()
     evidence: bool = False
     pictures: Pictures | None = None
     extensions: Mapping[str, Mapping[str, str]] = field(default_factory=dict)

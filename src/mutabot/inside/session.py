@@ -11,7 +11,7 @@ from functools import partial
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from mutabot.border.events import Acted, Called, Event, SiteSeen, TextsSeen
+from mutabot.border.events import Acted, Called, Event, KnownLater, SiteSeen, TextsSeen
 from mutabot.border.job import Budget, Job
 from mutabot.inside.calls.activation import Activation, is_refusal
 from mutabot.inside.calls.answers import Answers, handles_of
@@ -170,7 +170,9 @@ class Session:
         """Tell what the baseline saw at the sites of the job's mutants, and whether anybody asks for more."""
         mutants = self.job.branching.mutants if self.job.branching is not None else ()
         own = (self.job.mutant,) if self.job.mutant is not None else ()
-        self.standing.known = {one.site.span: one.operation for one in (*mutants, *own)}
+        self.standing.known = dict(self.job.known) | {
+            one.site.span: one.operation for one in (*mutants, *own)
+        }
         if self.job.inspect:
             self.standing.noted = StandIns(lambda: self.test, self.locator.relative)
 
@@ -413,12 +415,20 @@ class Session:
             self.trunk.finish()
         if self.text is not None:
             self.text.finish(texts)
+        if self.job.record and self.job.mutant is None:
+            self._tell_known_later()
         if self.job.inspect:
             self.inspect_targets()
             self.inspection.tell_uncovered(self.interception)
             if self.standing.noted is not None:
                 for operation, finding in self.standing.noted.findings(self.job.vocabulary.operations):
                     self.inspection.tell(operation.source, finding)
+
+    def _tell_known_later(self) -> None:
+        """Tell of sites at which an operation stood in some tests and something unknown in others."""
+        stood = self.standing.stood | {seen.span: seen.operation for seen in self.recorder.sites}
+        for span in sorted(self.standing.alone & stood.keys()):
+            self._send(KnownLater(span, stood[span]))
 
     def inspect_targets(self) -> None:
         """Look at every target of the vocabulary, also of what no test has led to."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mutabot.errors import ConfigurationError, UsageError
+from mutabot.model import ANY
 from mutabot.proposal.commands import commands_of, tells_commands
 from mutabot.proposal.vocabulary_text import vocabulary_text
 from mutabot.vocabulary import load
@@ -30,6 +31,7 @@ class _Look:
         seen: the watched run of the tests.
         known: shipped vocabularies that fit it.
         named: proposed operations that have a name on a middleware.
+        stood_in: names of methods that only what stands in for the robot has.
         found: proposed operations that no shipped vocabulary has.
         others: calls of which nothing shows what they mean.
         oracle: files on the tests' side that read from the robot.
@@ -41,7 +43,8 @@ class _Look:
         tell("running the tests once, to see what the program calls")
         self.seen: Observed = observe(self.layout, limit)
         self.program = [self.layout.relative(path) for path in self.layout.program]
-        calls = [call for call in self.seen.calls if call.sites]
+        calls = without_doubles([call for call in self.seen.calls if call.sites])
+        self.stood_in = [call.name for call in calls if call.target.startswith(ANY)]
         self.known: list[Known] = known_vocabularies(self.layout, calls)
         groups = compared_with(self.layout)
         self.named: list[Entry] = entries(self.seen.names)
@@ -128,6 +131,12 @@ def propose(
         _write(root / VOCABULARY, text)
     _write(root / CONFIGURATION, _configuration(found))
     return _told(found)
+
+
+def without_doubles(calls: Sequence[SeenCall]) -> list[SeenCall]:
+    """Without methods of whatever has them where the robot's own was seen: a mock of it is one."""
+    owned = {call.name for call in calls if not call.target.startswith(ANY) and call.facts["owner"]}
+    return [call for call in calls if not (call.target.startswith(ANY) and call.name in owned)]
 
 
 def _says_more(call: SeenCall) -> bool:
@@ -231,6 +240,10 @@ def _told(found: _Look) -> list[str]:
     ]
     if found.needs_vocabulary:
         lines.append(_about_vocabulary(found))
+    taken = [one.call.name for one in found.found if one.call.name in found.stood_in]
+    if taken:
+        text = "count for whatever object has them (method = …)"
+        lines.append(f"the tests hand in mocks or fakes: {', '.join(taken)} {text}")
     return [*lines, _next(found)]
 
 

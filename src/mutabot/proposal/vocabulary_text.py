@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from mutabot.model import ANY
 from mutabot.proposal.compared import Unreached
 from mutabot.proposal.guess import Guess, is_complete
 from mutabot.proposal.named.entries import Described, Entry
@@ -95,7 +96,7 @@ def operation_text(proposal: Proposal) -> str:
     lines = [f"[[operation]]  # {_where(call)}"]
     if call.facts["problem"]:
         lines.append(f"# {call.facts['problem']}")
-    lines.append(f"call = {value_text(proposal.target)}")
+    lines += _subject(proposal)
     if proposal.is_plain:
         lines.append("command = true  # guess: it is skipped and repeated; say what its values mean")
     lines += [f"{key} = {value_text(value)}  # guess" for key, value in _references(proposal)]
@@ -104,6 +105,20 @@ def operation_text(proposal: Proposal) -> str:
     if proposal.message is not None:
         lines += _pattern_lines(proposal)
     return "\n".join(lines)
+
+
+def _subject(proposal: Proposal) -> Iterator[str]:
+    """What is called."""
+    call = proposal.call
+    if not call.target.startswith(ANY):
+        yield f"call = {value_text(call.target)}"
+        return
+    yield f"method = {value_text(call.name)}  # of whatever object has it: the tests stand in for the robot"
+    if call.facts["has_signature"]:
+        yield f"signature = {value_text(call.facts['signature'])}"
+    elif call.arguments and not call.positional:  # of a mock, which tells no order
+        names = ", ".join(f"{name}=…" for name in call.arguments)
+        yield f'signature = "({names})"  # guess'
 
 
 def _commented(text: str) -> str:
@@ -118,8 +133,9 @@ def _where(call: SeenCall) -> str:
 
 
 def _references(proposal: Proposal) -> list[tuple[str, Any]]:
+    current, opposite = (one and one.removeprefix(f"{ANY}.") for one in (proposal.current, proposal.opposite))
     pairs: list[tuple[str, Any]] = [
-        ("current", proposal.current), ("opposite", proposal.opposite), ("refusals", proposal.refusals),
+        ("current", current), ("opposite", opposite), ("refusals", proposal.refusals),
         ("message", proposal.message),
     ]  # fmt: skip
     return [(key, value) for key, value in pairs if value]

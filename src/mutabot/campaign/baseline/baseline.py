@@ -15,7 +15,7 @@ from mutabot.border.job import Budget, RefusedAt
 from mutabot.campaign.comparing.observation import Observation, as_steady
 from mutabot.faults import Original, Planned, Preparation
 from mutabot.frozen import frozen
-from mutabot.model import Mutant, Vocabulary
+from mutabot.model import Mutant, Span, Vocabulary
 from mutabot.model.mutant import Place
 
 from .answers import RecordedAnswers
@@ -66,6 +66,7 @@ class Baseline(Original):
         prepared: what the providers have found out before, by their names.
         faults: the mutants of the plan.
         remarks: what is to be known about the vocabulary.
+        known: see ``Job.known``.
         early: places that are reached before any test begins, while the program or a test file is imported:
             a mutant there needs a process of its own.
         unread: whether nobody uses what the calls of a place return.
@@ -91,6 +92,7 @@ class Baseline(Original):
     prepared: Mapping[str, Preparation] = field(default_factory=dict)
     faults: PlantedFaults = field(default_factory=PlantedFaults)
     remarks: tuple[Remark, ...] = ()
+    known: tuple[tuple[Span, str], ...] = ()
     early: set[Place] = field(default_factory=set)
     uneven: set[tuple[int, str]] = field(default_factory=set)
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from mutabot.border.events import Event, Remark, TestEnd
+from mutabot.border.job import Job
 from mutabot.campaign.comparing.moments import moments_in, note_moments, strides_of
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.workers.executor import Executor
@@ -15,7 +17,7 @@ from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
 from mutabot.frozen import frozen
-from mutabot.model import Instrumentation, ProgramText
+from mutabot.model import Instrumentation, ProgramText, Span
 from mutabot.model.mutant import Place
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
@@ -28,6 +30,10 @@ from .readability import note_readability, refuse_unreadable
 from .site_names import Sources
 
 REPETITIONS = 2
+_KNOWN_LATER = (
+    "at {} sites some tests call an operation and others what nothing tells to be one: it counts there "
+    "as one, and the tests are recorded again"
+)
 #: pytest's exit code where tests failed
 _FAILED = 1
 
@@ -47,6 +53,7 @@ class _Suite:
     Attributes:
         results: by round and repetition.
         remarks: what is to be known about the vocabulary.
+        known: see ``Job.known``.
     """
 
     request: Request
@@ -54,6 +61,7 @@ class _Suite:
     progress: Progress
     results: dict[tuple[int, int], Result] = field(default_factory=dict)
     remarks: list[Remark] = field(default_factory=list)
+    known: dict[Span, str] = field(default_factory=dict)
 
     def run(self, tasks: Iterable[Task]) -> None:
         """Run these; one that cannot be a baseline ends all. Raises as ``take_baseline``."""
@@ -63,6 +71,16 @@ class _Suite:
             _refuse(result, self.request.arguments)
             which = f"round {run.round + 1}, run {run.repetition + 1}"
             self.progress.advance(f"baseline, {which}: {_counts(result)}")
+
+    def job(self, round: int, **details: Any) -> Job:
+        """A run of the original in a round."""
+        return self.request.job(round, record=True, known=tuple(self.known.items()), **details)
+
+    def learns(self) -> bool:
+        """Whether the runs so far tell of operations where they did not know of them in all tests."""
+        for result in self.results.values():
+            self.known.update(result.known_later)
+        return bool(self.known)
 
     def of(self, round: int) -> list[Result]:
         """The runs of a round, in their order."""
@@ -103,14 +121,18 @@ def take_baseline(
             progress.note(f"operators of family {family!r} are not asked for: add --family {family}")
     progress.stage("baseline", request.rounds * repetitions)
     suite = _Suite(request, executor, progress)
-    suite.run(_tasks(request, texts, may_share))
+    suite.run(_tasks(suite, texts, may_share))
+    if suite.learns():
+        progress.note(_KNOWN_LATER.format(len(suite.known)))
+        suite.remarks.clear()
+        suite.run(_tasks(suite, texts, may_share))
     strides = suite.strides()
     if repetitions > 1:
-        suite.run(_again(request, repetitions, strides, may_share))
+        suite.run(_again(suite, repetitions, strides, may_share))
     else:  # was it chance, or the round's seed?
         failing = rounds_to_repeat({run[0]: result.ends for run, result in suite.results.items()})
         suite.run(
-            Task(_SuiteRun(round, 1), request.job(round, record=True), startup=300.0, may_share=may_share)
+            Task(_SuiteRun(round, 1), suite.job(round), startup=300.0, may_share=may_share)
             for round in failing
         )
     baseline = _read(suite, prepared, strides)
@@ -124,7 +146,8 @@ def _read(
     """What all runs tell, and what is to be said about it."""
     request, progress = suite.request, suite.progress
     remarks = tuple(dict.fromkeys(suite.remarks))
-    baseline = Baseline(strides=strides, remarks=remarks, prepared=prepared)
+    known = tuple(suite.known.items())
+    baseline = Baseline(strides=strides, remarks=remarks, prepared=prepared, known=known)
     sources = Sources(request.root)
     failing: dict[tuple[int, str], TestEnd] = {}
     for round in range(request.rounds):
@@ -186,21 +209,21 @@ def _told_as_they_come(
             progress.note(str(event[1]))
 
 
-def _tasks(request: Request, texts: tuple[ProgramText, ...], may_share: bool) -> Iterator[Task]:
+def _tasks(suite: _Suite, texts: tuple[ProgramText, ...], may_share: bool) -> Iterator[Task]:
     """The first run of each round."""
     recording = Instrumentation(texts, record=True) if texts else None
-    for round in range(request.rounds):
-        job = request.job(round, record=True, inspect=round == 0, instrumentation=recording)
+    for round in range(suite.request.rounds):
+        job = suite.job(round, inspect=round == 0, instrumentation=recording)
         yield Task(_SuiteRun(round, 0), job, startup=300.0, may_share=may_share)
 
 
 def _again(
-    request: Request, repetitions: int, strides: Mapping[tuple[int, str], int], may_share: bool
+    suite: _Suite, repetitions: int, strides: Mapping[tuple[int, str], int], may_share: bool
 ) -> Iterator[Task]:
     """Further runs, of the text as it stands: neither looking at it nor probes may change anything."""
     for repetition in range(1, repetitions):
-        for round in range(request.rounds):
-            job = request.job(round, record=True, moments=moments_in(strides, round))
+        for round in range(suite.request.rounds):
+            job = suite.job(round, moments=moments_in(strides, round))
             yield Task(_SuiteRun(round, repetition), job, startup=300.0, may_share=may_share)
 
 

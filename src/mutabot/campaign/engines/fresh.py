@@ -137,6 +137,7 @@ def task(
         budgets=budgets,
         moments=moments_in(baseline.strides, round),
         refused=baseline.refused_in(round, tests),
+        known=baseline.known,
         instrumentation=baseline.faults.instrumentation([mutant], active=True),
         faults=baseline.faults.in_process(mutant),
     )

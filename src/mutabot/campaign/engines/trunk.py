@@ -224,6 +224,7 @@ class _Trunk:
             budgets=budgets,
             moments=moments_in(baseline.strides, round),
             refused=baseline.refused_in(round, in_order),
+            known=baseline.known,
             branching=branching,
             instrumentation=text,
         )

@@ -10,6 +10,7 @@ from mutabot.border.events import (
     Acted,
     Called,
     Event,
+    KnownLater,
     NotInstrumented,
     PlacesReached,
     Problem,
@@ -25,6 +26,7 @@ from mutabot.border.events import (
 from mutabot.border.job import Job
 from mutabot.border.processes import UNWRITTEN
 from mutabot.frozen import frozen
+from mutabot.model import Span
 
 from .said import last_line
 
@@ -70,6 +72,7 @@ class Result:
         called_at_import: the calls of operations before any test.
         seen: what a recording saw of the program text.
         not_instrumented: files whose mutants cannot run, with the reason.
+        known_later: operations by sites at which only some tests tell that they stand there.
         in_mutated_call: whether it was in the midst of a mutated call when it was last heard of.
         held: tokens that it and its branches held when it was last heard of.
         running: test that was under way when it ended, or None.
@@ -96,6 +99,7 @@ class Result:
     called_at_import: list[Called] = field(default_factory=list)
     seen: TextsSeen | None = None
     not_instrumented: dict[str, str] = field(default_factory=dict)
+    known_later: dict[Span, str] = field(default_factory=dict)
     in_mutated_call: bool = False
     held: int = 0
     running: str | None = None
@@ -135,6 +139,8 @@ class Result:
                 self.seen = line
             case NotInstrumented():
                 self.not_instrumented[line.file] = line.reason
+            case KnownLater():
+                self.known_later[line.span] = line.operation
             case TokensHeld():
                 self.held = line.held
             case TestEnd():

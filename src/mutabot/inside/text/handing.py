@@ -98,6 +98,7 @@ class Handing:
             own = self._standing.candidate_of(found._self_wrapper)
             if own is None:
                 return found
+            self._standing.stood[place[0]] = own.operation.target
             if type(found) is wrapt.FunctionWrapper:  # all names of a function mean this very object
                 known = self._given.setdefault(own.door, place)
                 if known == place or not site.is_given:

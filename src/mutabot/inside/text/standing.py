@@ -70,6 +70,8 @@ class Standing:
     Attributes:
         known: operations by the sites of this session's mutants.
         noted: what is to be told of it; None if nobody asks.
+        stood: operations that stood at sites which something was left alone at, or could be.
+        alone: where something was left alone.
     """
 
     candidates: Iterable[Candidate]
@@ -78,6 +80,8 @@ class Standing:
     sees_itself: Collection[Handler]
     known: Mapping[Span, str] = field(default_factory=dict)
     noted: StandIns | None = None
+    stood: dict[Span, str] = field(default_factory=dict)
+    alone: set[Span] = field(default_factory=set)
     _by_name: dict[str, list[Candidate]] = field(default_factory=dict)
     _left_alone: dict[tuple[CallSite, type, Any], _Guards] = field(default_factory=dict)
     _places: dict[int, tuple[Span, Role]] = field(default_factory=dict)
@@ -173,6 +177,10 @@ class Standing:
         if one is None and self.known:
             target = self.known.get(self.place(site, frame)[0])
             one = next((one for one in self._by_name[site.name] if one.operation.target == target), None)
+        if one is None:
+            self.alone.add(self.place(site, frame)[0])
+        else:
+            self.stood[self.place(site, frame)[0]] = one.operation.target
         return one
 
     def named(self, name: str, found: Any, receiver: Any, frame: FrameType) -> Candidate | None:

@@ -10,11 +10,12 @@ import sys
 import textwrap
 import typing
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 from mutabot.inside.targets.target import NotFoundError, resolve
+from mutabot.model import ANY
 from mutabot.model.class_name import class_name
 
 from .described import of_type
@@ -70,6 +71,12 @@ def method_of(value: Any, name: str) -> Callee | None:
     return _nameable(f"{class_name(owner)}.{name}", vars(owner)[name], owner)
 
 
+def any_method(name: str, seen: Callee | None = None) -> Callee:
+    """The method ``name`` of whatever has it; its arguments are those of one that was seen."""
+    target = f"{ANY}.{name}"
+    return Callee(target, None, None, "") if seen is None else replace(seen, target=target)
+
+
 def function_of(found: Any, spelt: str = "") -> Callee | None:
     """A function by the name it has where it is defined, or as it is spelt."""
     if isinstance(found, MethodType):
@@ -93,11 +100,12 @@ def facts(callee: Callee) -> dict[str, Any]:
         "file": callee.file,
         "line": getattr(getattr(function, "__code__", None), "co_firstlineno", 0),
         "owner": owner.__name__ if owner is not None else "",
-        "doc": (inspect.getdoc(function) or "")[:1500],
+        "doc": (inspect.getdoc(function) or "")[:1500] if function is not None else "",
         "owner_doc": (owner.__doc__ or "")[:1500] if owner is not None else "",
         "is_property": _is_property(callee.raw),
         "has_signature": signature is not None,
         "annotations": {one.name: _written(one.annotation) for one in parameters},
+        "signature": _bare(signature),
         "returns": _written(signature.return_annotation) if signature is not None else "",
         "refusals": list(dict.fromkeys(_raised_by(function))),
         "problem": _problem(callee),
@@ -133,6 +141,16 @@ def _is_property(raw: Any) -> bool:
     return isinstance(raw, property | functools.cached_property)
 
 
+def _bare(signature: inspect.Signature | None) -> str:
+    """A signature without annotations; defaults that no vocabulary could hold are dots."""
+    parameters = []
+    for one in signature.parameters.values() if signature is not None else ():
+        is_plain = one.default is one.empty or type(one.default) in (int, float, str, bool, type(None))
+        default = one.default if is_plain else ...
+        parameters.append(one.replace(annotation=one.empty, default=default))
+    return str(inspect.Signature(parameters)).replace("Ellipsis", "…")
+
+
 def _written(annotation: Any) -> str:
     """An annotation as it is written."""
     if annotation is inspect.Parameter.empty:
@@ -144,6 +162,8 @@ def _written(annotation: Any) -> str:
 
 def _problem(callee: Callee) -> str:
     """Why its calls cannot be intercepted; empty if they can."""
+    if callee.target.startswith(ANY):
+        return ""
     module, _, qualname = callee.target.partition(":")
     owner, name, raw = resolve(sys.modules[module], qualname)
     try:

@@ -23,9 +23,11 @@ from typing import Any
 
 from mutabot.inside.targets.target import Where
 from mutabot.inside.text import loading, scripts
+from mutabot.inside.text.stand_ins import is_mock
+from mutabot.model import ANY
 from mutabot.model.class_name import class_name
 
-from .callee import Callee, facts, function_of, method_of
+from .callee import Callee, any_method, facts, function_of, method_of
 from .described import Leaves, ToldApart
 from .named import NamesSeen
 
@@ -200,7 +202,10 @@ class Watch:
         self._reached[place, name] = None
         if isinstance(found, type):
             return found
-        return self._wrapped(found, self._of(self._method(value, name), place), place)
+        callee = self._method(value, name)
+        if not self._is_of_tests(place):
+            callee = self._stood_for(value, name, callee)
+        return self._wrapped(found, self._of(callee, place), place)
 
     def named(self, function: Any, place: int) -> Any:
         """A function is about to be called by its name."""
@@ -266,6 +271,20 @@ class Watch:
         if key not in self._known:
             self._known[key] = method_of(value, name)
         return self._known[key]
+
+    def _stood_for(self, value: Any, name: str, callee: Callee | None) -> Callee | None:
+        """What a method of a mock or of a class of the tests stands for: the robot's, or any of its name."""
+        mock = sys.modules.get("unittest.mock")
+        if mock is not None and is_mock(mock, value):
+            kind = vars(value).get("_spec_class")
+            return (method_of(kind, name) if kind is not None else None) or any_method(name)
+        if callee is None or callee.owner is None or callee.file not in self._tests:
+            return callee
+        for kind in callee.owner.__mro__[1:]:
+            meant = method_of(kind, name)
+            if meant is not None and meant.file not in self._tests:
+                return meant
+        return any_method(name, callee)
 
     def _of(self, callee: Callee | None, place: int) -> _Seen | None:
         """What this side, program or tests, has seen of a callable; None for one that is no robot's."""
@@ -368,7 +387,7 @@ class Watch:
 
     def _data(self, seen: _Seen) -> dict[str, Any]:
         found = facts(seen.callee)
-        if seen.returns_coroutine:
+        if seen.returns_coroutine and not seen.callee.target.startswith(ANY):
             found["problem"] = "it returns a coroutine but is no coroutine function: name the one behind it"
         return {
             **found,
