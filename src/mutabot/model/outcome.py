@@ -299,7 +299,7 @@ class Outcome:
         repeats: how often it was run once more in a fresh process and had the same verdict.
         beside: how it had ended before, beside other processes on a busy machine, if the wall clock had ended
             it and it was run once more alone; else None.
-        looked: of a survivor, the tests that ran it and what they checked.
+        looked: of a survivor, the tests that reach it and what they checked.
         diverged: how the recordings of its tests differ from the original's, the worst first; empty if they
             do not, or if there are none.
         figures: of a survivor, figures of merit that differ from the original's by more than their tolerance.

@@ -162,7 +162,11 @@ def _read(
     _note_exclusive(baseline, progress)
     why = _not_private(suite.results.values())
     if why is not None:
-        progress.note(f"runs cannot keep their files to themselves ({why}): what one leaves, others may find")
+        progress.note(
+            f"runs cannot keep their files to themselves ({why}): what one leaves, others may find, and each "
+            "mutant runs in a process of its own. User namespaces would allow it, in a container --cap-add "
+            "SYS_ADMIN --security-opt apparmor=unconfined"
+        )
     note_moments(ends, progress)
     return baseline
 

@@ -37,11 +37,6 @@ class Remainder:
     reasons: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
-    def leave(self, mutant: Mutant, round: int, test: str, reason: str) -> None:
-        """Leave a mutant because of a test."""
-        self.trials.append((mutant, round))
-        self.reasons.setdefault(test, reason)
-
     def set_apart(self, mutant: Mutant, round: int, reason: str) -> None:
         """Leave a mutant whatever its tests."""
         self.apart.append((mutant, round))

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from mutabot.border.events import TestEnd
 from mutabot.border.processes import OWN_FAULT
+from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.observation import Observation, compare, farthest
 from mutabot.errors import MutabotError
@@ -163,14 +164,16 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
         kills=_kills(run, message)[: None if request.every_test else 1] if verdict.is_killed else (),
         commands=end.commands if end is not None else None,
         stuck=run.death.where if run.death is not None else None,
-        looked=_looked(run) if verdict is Verdict.SURVIVED else (),
+        looked=_looked(run, baseline) if verdict is Verdict.SURVIVED else (),
     )
     return _compared(campaign, outcome, run) if verdict is Verdict.SURVIVED else outcome
 
 
-def _looked(run: Run) -> tuple[Looked, ...]:
-    """The tests that ran a survivor, those first in which it acted."""
-    found = [Looked(end.test, end.acted > 0, end.checks, end.more_checks) for end in run.ends]
+def _looked(run: Run, baseline: Baseline) -> tuple[Looked, ...]:
+    """The tests that reach a survivor, those first in which it acted."""
+    reaching = baseline.tests_reaching(run.round, run.mutant)
+    ends = (end for end in run.ends if end.test in reaching)
+    found = [Looked(end.test, end.acted > 0, end.checks, end.more_checks) for end in ends]
     return tuple(sorted(found, key=lambda one: not one.acted)[:_MOST_LOOKED])
 
 

@@ -96,8 +96,12 @@ class Branch:
 
 def _tell(campaign: Campaign, left: Remainder) -> None:
     progress = campaign.progress
+    tests: dict[str, list[str]] = {}
     for test, reason in left.reasons.items():
-        progress.note(f"no branches in {test}: {reason}; its mutants run in processes of their own")
+        tests.setdefault(reason, []).append(test)
+    for reason, (first, *others) in tests.items():
+        more = f" and {len(others)} more" if others else ""
+        progress.note(f"no branches in {first}{more}: {reason}; mutants there run in processes of their own")
     for why, number in Counter(left.why_apart.values()).items():
         what = "mutants act while the program is imported" if why == EARLY else f"mutants: each {why}"
         progress.note(f"{number} {what}: each runs in a process of its own")
