@@ -30,6 +30,7 @@ from mutabot.model.values.signature import (
 
 from .target import Finding, Handler, NotFoundError, Targets, Tell, resolve
 
+_ONLY_READ = "only its reading is seen; describe the method that its setter calls"
 #: how deep decorators are looked into for the function that they wrap
 _DEPTH = 5
 
@@ -43,12 +44,16 @@ def look_at(operation: Operation, original: Any) -> Iterator[Finding]:
     """
     callable = getattr(original, "__func__", original)
     described = operation.described
+    if isinstance(original, property | functools.cached_property):
+        for key in described.values():
+            yield Finding(key, f"{operation.target} is a property: {_ONLY_READ}")
+        return
     signature = signature_of(callable)
     if operation.signature is not None:
         signature = parse_signature(operation.signature)
     elif signature is None or takes_anything(signature):
         unnamed = [root for root in described if signature is None or root not in signature.parameters]
-        if unnamed and not isinstance(original, property):
+        if unnamed:
             yield Finding("signature", _advice(operation, callable, signature is None), is_remark=True)
         return
     if any(one.kind is inspect.Parameter.VAR_KEYWORD for one in signature.parameters.values()):
