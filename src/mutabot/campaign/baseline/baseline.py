@@ -70,6 +70,7 @@ class Baseline(Original):
         early: places that are reached before any test begins, while the program or a test file is imported:
             a mutant there needs a process of its own.
         unread: whether nobody uses what the calls of a place return.
+        shares_files: whether runs see each other's files.
     """
 
     ends: dict[tuple[int, str], TestEnd] = field(default_factory=dict)
@@ -95,6 +96,7 @@ class Baseline(Original):
     known: tuple[tuple[Span, str], ...] = ()
     early: set[Place] = field(default_factory=set)
     uneven: set[tuple[int, str]] = field(default_factory=set)
+    shares_files: bool = False
 
     @property
     def places(self) -> list[Place]:
@@ -114,6 +116,10 @@ class Baseline(Original):
         reaching, suite = set(self.tests_reaching(round, mutant)), self.suite(round)
         first = next((number for number, test in enumerate(suite) if test in reaching), len(suite))
         return suite[first:]
+
+    def is_exclusive(self, round: int) -> bool:
+        """Whether nothing may run beside the suite: other processes would get in its way."""
+        return self.shares_files or self.why_exclusive(round) is not None
 
     def why_exclusive(self, round: int) -> tuple[str, str] | None:
         """A test of the suite that gets in the way of other processes, and how; None if there is none."""

@@ -161,11 +161,12 @@ def _read(
     note_readability(request.vocabulary, ends, progress)
     _note_exclusive(baseline, progress)
     why = _not_private(suite.results.values())
+    baseline.shares_files = why is not None or not request.configuration.private_files
     if why is not None:
         progress.note(
-            f"runs cannot keep their files to themselves ({why}): what one leaves, others may find, and each "
-            "mutant runs in a process of its own. User namespaces would allow it, in a container --cap-add "
-            "SYS_ADMIN --security-opt apparmor=unconfined"
+            f"runs cannot keep their files to themselves ({why}): each mutant runs in a process of its own, "
+            "one after the other, and what one leaves, others may find. User namespaces would allow it, in a "
+            "container --cap-add SYS_ADMIN --security-opt apparmor=unconfined"
         )
     note_moments(ends, progress)
     return baseline

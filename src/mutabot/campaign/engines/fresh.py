@@ -143,7 +143,7 @@ def task(
     )
     least = request.configuration.timeout_seconds
     startup = max(least, WALL_FACTOR * baseline.startup)
-    return Task((mutant, round), job, walls, least, startup, alone=baseline.why_exclusive(round) is not None)
+    return Task((mutant, round), job, walls, least, startup, alone=baseline.is_exclusive(round))
 
 
 def wall_limit(campaign: Campaign, round: int, test: str) -> float:

@@ -212,7 +212,7 @@ class _Trunk:
             wall=longest,
             choices={mutant: found for mutant, found in choices.items() if found},
             every_test=request.every_test,
-            serial=baseline.why_exclusive(round) is not None,
+            serial=baseline.is_exclusive(round),
             at_start=self._at_start(),
         )
         factor = request.configuration.timeout_factor
