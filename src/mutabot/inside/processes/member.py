@@ -121,7 +121,7 @@ class Member:
             self.file.send(site)
         self._told = _copy_of(session.evidence)
         self._attend()
-        session.pipe = self
+        session.pipe, session.branch = self, None  # it tells its own sites, also below a branch
         if session.text is not None:
             session.text.pipe = self
         self._watch_text()
