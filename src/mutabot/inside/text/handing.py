@@ -25,7 +25,7 @@ from typing import Any
 import wrapt
 
 from mutabot.inside.calls.door import Door
-from mutabot.inside.calls.passing import is_coroutine_function
+from mutabot.inside.calls.passing import is_coroutine_function, is_under_way
 from mutabot.inside.targets.target import Where
 from mutabot.model import Role, Span
 
@@ -165,7 +165,7 @@ class Handing:
         own = vars(mock)
         mark = own.get(_MARK)
         name = own.get("_mock_new_name") or own.get("_mock_name")
-        if mark is None and name not in self._standing.names:
+        if is_under_way() or (mark is None and name not in self._standing.names):
             return original(mock, *args, **kwargs)
         caller = _caller(frame)
         if mark is not None:
