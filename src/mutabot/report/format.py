@@ -12,8 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from mutabot.analysis.stored.campaign import StoredCampaign
-from mutabot.analysis.stored.changes import Changes
+from mutabot.analysis.stored import Changes, StoredCampaign
 from mutabot.model import Span
 
 

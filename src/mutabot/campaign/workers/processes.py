@@ -24,7 +24,7 @@ from mutabot.border.keeper import FILE as KEEPER
 from mutabot.border.keeper import LEFT
 from mutabot.border.processes import FOLDER, SESSION, SUFFIX
 
-from .removal import remove_folder
+from .remains import remove_folder
 
 _LOG_BYTES = 4000
 #: seconds that a keeper may take to end all it looks after

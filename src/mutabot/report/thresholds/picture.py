@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from mutabot.analysis.thresholds.ladders import Ladder
-from mutabot.analysis.thresholds.rounds import Above, LadderRound
+from mutabot.analysis.thresholds.ladders import Above, Ladder, LadderRound
 from mutabot.analysis.thresholds.thresholds import Thresholds
 from mutabot.analysis.thresholds.words import amount
 from mutabot.errors import UsageError
