@@ -44,16 +44,13 @@ from mutabot.border.events import (
 )
 from mutabot.border.job import Branching
 from mutabot.campaign.beginning import begin, open_executor, plan_of, selected
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, Sink
 from mutabot.campaign.engines.choice import run_trials
 from mutabot.campaign.evidence import Evidence, recorded, without_recording
 from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies
-from mutabot.campaign.reuse.snapshot import Snapshot
-from mutabot.campaign.reuse.state import State
-from mutabot.campaign.sink import Sink
-from mutabot.campaign.workers.executor import Executor
-from mutabot.campaign.workers.task import Result, Task
+from mutabot.campaign.reuse.snapshot import Snapshot, State
+from mutabot.campaign.workers.task import Executor, Result, Task
 from mutabot.cli.request import request_of
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import mutabot
-from mutabot.analysis.stored.evidence import StoredEvidence
+from mutabot.analysis.stored import StoredEvidence
 from mutabot.border.events import TestEnd
 from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Track, to_bytes
 from mutabot.journal.journal import Journal

@@ -18,7 +18,7 @@ from statistics import NormalDist, median
 
 import numpy as np
 
-from mutabot.analysis.thresholds.interval import median_between
+from mutabot.analysis.thresholds.ladders import median_between
 from mutabot.campaign.search.search import LadderSearch
 from mutabot.model.graded import Bracket, Seen, bracket_of
 

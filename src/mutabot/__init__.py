@@ -11,8 +11,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .analysis.stored.campaign import StoredCampaign as StoredCampaign
-    from .analysis.stored.campaign import open as open
+    from mutabot.analysis.stored import StoredCampaign as StoredCampaign
+    from mutabot.analysis.stored import open as open
+
     from .errors import MutabotError as MutabotError
     from .model import Call as Call
     from .model import Kind as Kind
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
-    "analysis.stored.campaign": ("StoredCampaign", "open"),
+    "analysis.stored": ("StoredCampaign", "open"),
     "errors": ("MutabotError",),
     "model": ("Call", "Kind", "Middleware", "Mode", "Operation", "Pattern", "Proceed", "Quantity", "Reply"),
     "operators": ("Example", "Need", "Operator", "Subject"),

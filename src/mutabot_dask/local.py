@@ -18,7 +18,7 @@ from pathlib import Path
 
 from mutabot.campaign.workers.interruption import interruptible
 from mutabot.campaign.workers.remains import end_below
-from mutabot.campaign.workers.said import last_line
+from mutabot.campaign.workers.task import last_line
 from mutabot.errors import ClusterError
 
 #: what the processes run; nothing outlives whoever started it

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 from mutabot.campaign.request import ExecutorChoice, Request
-from mutabot.campaign.workers.executor import Executor
+from mutabot.campaign.workers.task import Executor
 from mutabot.errors import UsageError
 from mutabot.settings.table import ProjectFiles, Table
 

@@ -18,7 +18,7 @@ import typer
 
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.pause import Pause
+from mutabot.campaign.workers.interruption import Pause
 from mutabot.cli import options
 from mutabot.cli.campaign import show_end
 from mutabot.cli.output import tell

@@ -15,13 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.analysis.results import MutantResult
-from mutabot.analysis.stored.campaign import StoredCampaign
-from mutabot.analysis.stored.campaign import open as open_campaign
-from mutabot.analysis.stored.evidence import StoredEvidence
+from mutabot.analysis.stored import StoredCampaign, StoredEvidence
+from mutabot.analysis.stored import open as open_campaign
 from mutabot.errors import JournalError
-from mutabot.report.html.folder import script_of
+from mutabot.report.html.folder import campaign_data, script_of
 from mutabot.report.html.mutant import Recorded, mutant_page
-from mutabot.report.html.overview import campaign_data
 from mutabot.report.texts import Cleaner, portable
 
 #: seconds between two looks into the journal, at least; and how many times as long as one takes

@@ -15,7 +15,7 @@ from typing import Annotated
 import typer
 
 from mutabot.analysis.results import MutantResult, Results, find_mutant, read_results
-from mutabot.analysis.stored.evidence import StoredEvidence
+from mutabot.analysis.stored import StoredEvidence
 from mutabot.border.codec import from_data
 from mutabot.campaign.again import anew
 from mutabot.campaign.request import Progress, Request

@@ -31,8 +31,7 @@ from mutabot.border.events import (
 )
 from mutabot.border.job import Job
 from mutabot.campaign.request import Request
-from mutabot.campaign.workers.executor import Executor
-from mutabot.campaign.workers.task import Result, Task
+from mutabot.campaign.workers.task import Executor, Result, Task
 from mutabot.families import CONTROL
 from mutabot.model import By, Mutant, Operation, Quantity, Span, TextPlace
 from mutabot.model.alternative import Sighting

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.analysis.stored.evidence import StoredEvidence
+from mutabot.analysis.stored import StoredEvidence
 from mutabot.campaign.run import run_campaign
 from mutabot.journal.journal import Journal
 from mutabot.journal.recordings import recordings_path

@@ -16,8 +16,7 @@ import typer
 import mutabot
 from analysis import samples
 from mutabot.campaign import run as campaign
-from mutabot.cli.app import app, main
-from mutabot.cli.gone import _OPTIONS
+from mutabot.cli.app import _OPTIONS, app, main
 from mutabot.cli.request import request_of
 from mutabot.errors import BaselineError, ControlError, MutabotError, UnstableError
 from mutabot.model import Outcome, Verdict

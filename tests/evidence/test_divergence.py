@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.evidence.divergence import diverged, noise_between
 from mutabot.evidence.recording import Recording, Told
+from mutabot.evidence.story import diverged, noise_between
 from mutabot.evidence.tracks import Seen
 from tests.evidence.worlds import SHELF, TABLE, Place, apart, line, recorded, story
 

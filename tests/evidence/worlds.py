@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 
 from mutabot.evidence import tape as tapes
-from mutabot.evidence.divergence import diverged
 from mutabot.evidence.feed import Feed
 from mutabot.evidence.recording import Recording, Told
+from mutabot.evidence.story import diverged
 from mutabot.evidence.tracks import Seen
 from mutabot.model.outcome import Diverged
 

@@ -18,7 +18,7 @@ import pytest
 from analysis import samples
 from mutabot.analysis.gate import decide
 from mutabot.analysis.results import find_mutant, read_results
-from mutabot.analysis.stored.campaign import open as open_campaign
+from mutabot.analysis.stored import open as open_campaign
 from mutabot.analysis.thresholds.thresholds import thresholds_of
 from mutabot.border.events import TestEnd
 from mutabot.cli.app import main
@@ -35,7 +35,7 @@ from mutabot.report.choice import format_of
 from mutabot.report.format import Material
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.mutant.detail import print_mutant
+from mutabot.report.terminal.mutant import print_mutant
 from mutabot.report.texts import portable
 
 TIMES, SEED = 1000, 24

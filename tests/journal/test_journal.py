@@ -19,8 +19,9 @@ from analysis import samples
 from mutabot.border.events import TestEnd
 from mutabot.errors import JournalError
 from mutabot.journal.database import SCHEMA_VERSION, connect, guarded
-from mutabot.journal.files import is_written, previous_of
+from mutabot.journal.files import previous_of
 from mutabot.journal.journal import Journal
+from mutabot.journal.lock import is_written
 from mutabot.journal.records import Kept
 from mutabot.journal.store import Store
 from mutabot.model import By, Outcome, Verdict

@@ -14,8 +14,8 @@ import pytest
 
 from analysis import samples
 from mutabot.errors import JournalError
-from mutabot.journal.files import is_written
 from mutabot.journal.journal import Journal
+from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Outcome, Verdict
 

@@ -11,9 +11,8 @@ from mutabot.settings.configuration import load_configuration
 from mutabot.suggestion.checks import Check, Expected, band_of
 from mutabot.suggestion.project import Project, diff_of
 from mutabot.suggestion.prove import texts_with
-from mutabot.suggestion.readings import PROBE, WAY, Reading
+from mutabot.suggestion.readings import PROBE, WAY, Reading, commands_of, watch_of
 from mutabot.suggestion.styles.choice import place_of
-from mutabot.suggestion.watches import commands_of, watch_of
 from mutabot.vocabulary import load
 
 from .projects import STYLES, make, passes, patched

@@ -10,7 +10,7 @@ from mutabot.suggestion.measure import Measured
 from mutabot.suggestion.project import Project
 from mutabot.suggestion.readings import PROBE, Reading
 from mutabot.suggestion.style import Place
-from mutabot.suggestion.survivors import why_unsolved
+from mutabot.suggestion.suggest import why_unsolved
 
 SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)
 MUTANT = Mutant(1, "robot", "skip", SITE, "robot:go", None, None, "", "arm.go: do nothing")

@@ -9,7 +9,7 @@ from typing import Any
 from mutabot.border.codec import from_data
 from mutabot.errors import SelectionError, unknown_name_text
 from mutabot.frozen import frozen
-from mutabot.journal.files import is_written
+from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import (
     ALTERED,

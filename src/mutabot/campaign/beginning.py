@@ -7,19 +7,17 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.ranges import note_ranges
 from mutabot.campaign.baseline.taking import take_baseline
-from mutabot.campaign.baseline.unfit import refuse_unfit, refuse_unhooked
+from mutabot.campaign.baseline.unfit import note_ranges, refuse_unfit, refuse_unhooked
 from mutabot.campaign.engines.choice import first_engine, repetitions_for
 from mutabot.campaign.faults.providers import prepare
 from mutabot.campaign.plan.plan import Plan, draw, make_plan
 from mutabot.campaign.plan.selection import refuse_typos, select
 from mutabot.campaign.workers.descriptors import provide
-from mutabot.campaign.workers.executor import Executor
 from mutabot.campaign.workers.interruption import interruptions_kept
-from mutabot.campaign.workers.task import Result
+from mutabot.campaign.workers.task import Executor, Result
 from mutabot.errors import NothingToDoError
-from mutabot.journal.files import at_work
+from mutabot.journal.lock import at_work
 
 from .campaign import Campaign
 from .evidence import Evidence

@@ -1,15 +1,20 @@
 """A campaign under way: what is asked, what is known of the original, who runs tasks, and who is told.
 
-It is made once the baseline is taken, and goes as one to all that give mutants their outcomes.
+It is made once the baseline is taken, and goes as one to all that give mutants their outcomes. These go into
+the journal, each with the key of what it depends on.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.site_names import Sources
-from mutabot.campaign.workers.executor import Executor
+from mutabot.campaign.workers.task import Executor
+from mutabot.frozen import frozen
+from mutabot.journal.journal import Journal
+from mutabot.model import Outcome
 
 from .evidence import Evidence
 from .request import Progress, Request
@@ -40,3 +45,25 @@ class Campaign:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sources", Sources(self.request.root))
+
+
+def _no_key(outcome: Outcome) -> str:
+    return ""
+
+
+@frozen
+class Sink:
+    """The journal of a campaign, for whoever finds outcomes.
+
+    Attributes:
+        journal: where they go.
+        key_of: what an outcome depends on. The empty key says that nobody knows, and that it is not to be
+            reused.
+    """
+
+    journal: Journal
+    key_of: Callable[[Outcome], str] = _no_key
+
+    def add_outcome(self, outcome: Outcome) -> None:
+        """Add one outcome; a later one of the same mutant and round takes its place."""
+        self.journal.add_outcome(outcome, key=self.key_of(outcome))

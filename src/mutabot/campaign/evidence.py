@@ -9,8 +9,8 @@ from functools import lru_cache
 
 from mutabot.border.events import TestEnd
 from mutabot.errors import JournalError
-from mutabot.evidence.divergence import diverged, noise_between
 from mutabot.evidence.recording import bytes_of, from_bytes
+from mutabot.evidence.story import diverged, noise_between
 from mutabot.evidence.tracks import Seen
 from mutabot.journal.fitting import UNFIT
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings

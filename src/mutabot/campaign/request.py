@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from mutabot.border.job import Job
-from mutabot.campaign.workers.executor import Executor
-from mutabot.campaign.workers.pause import Pause
+from mutabot.campaign.workers.interruption import Pause
+from mutabot.campaign.workers.task import Executor
 from mutabot.extensions import told_to_processes
 from mutabot.families import USUAL
 from mutabot.faults import Project

@@ -18,24 +18,18 @@ from mutabot.campaign.budget.budget import OUT_OF_TIME, run_within
 from mutabot.campaign.engines.choice import first_engine, run_mutants
 from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
-from mutabot.campaign.faults.demanded import demanded_of
-from mutabot.campaign.faults.ladders import apart
+from mutabot.campaign.faults.demanded import apart, demanded_of
 from mutabot.campaign.faults.providers import family_of
-from mutabot.campaign.plan.earlier import carry, note_outdated
-from mutabot.campaign.plan.plan import Plan
-from mutabot.campaign.plan.told import drawing, reaching, summaries
+from mutabot.campaign.plan.plan import Plan, carry, drawing, note_outdated, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.campaign.reuse.reuse import Reused, reuse
-from mutabot.campaign.reuse.snapshot import Snapshot
-from mutabot.campaign.reuse.state import State
+from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.search.search import run_ladders
 from mutabot.campaign.sharding.shards import part_of, write_shard
-from mutabot.campaign.since.git import Revision
-from mutabot.campaign.since.since import Altered, only_altered, open_others
-from mutabot.campaign.workers.executor import Executor
+from mutabot.campaign.since.since import Altered, Revision, only_altered, open_others
 from mutabot.campaign.workers.interruption import interruptions_kept
-from mutabot.campaign.workers.task import Result
+from mutabot.campaign.workers.task import Executor, Result
 from mutabot.errors import JournalError
 from mutabot.journal.journal import Journal
 from mutabot.journal.reader import JournalReader
@@ -43,10 +37,9 @@ from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACH
 from mutabot.model import LeftOut, Mutant, Outcome
 
 from .beginning import at_it, begin, plan_of, selected
-from .campaign import Campaign
+from .campaign import Campaign, Sink
 from .evidence import Evidence, recorded, without_recording
 from .request import Progress, Request
-from .sink import Sink
 
 #: rows that could not be stored, as far as they are told one by one
 _UNSTORED = 5

@@ -1,28 +1,109 @@
 """The command line. Exceptions become exit codes in ``main`` and nowhere else.
 
 Each group of commands has a file; what a command needs is imported inside it, so that ``--help`` is fast.
+SIGTERM ends a command as Ctrl-C does: nothing is lost, and nothing is left behind.
 """
 
 from __future__ import annotations
 
+import re
+import signal
 import sys
+import threading
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from itertools import zip_longest
 from pathlib import Path
+from types import FrameType
 from typing import Annotated
 
 import typer
 
+from mutabot.cli import campaign, init, report, results, suggest, thresholds
 from mutabot.errors import MutabotError, UsageError
 from mutabot.exit_codes import ExitCode
+from mutabot.extensions import not_installed
 from mutabot.limits import shortened
 
-from . import campaign, init, report, results, suggest, thresholds
 from .commands import SETTINGS, Commands
-from .gone import gone
 from .options import Version, with_options
-from .termination import terminated_like_ctrl_c
+
+_COMMANDS = {"compare": "`make comparison` in a clone of mutabot compares families of mutants"}
+_OPTIONS = {
+    "--selection": "use --only @FILE",
+    "--when": "use -o when=MOMENT",
+    **dict.fromkeys(("--order", "--pairs"), "a mutant is one fault, no pair of them"),
+    "--baseline": "use -o baseline_repetitions=N",
+    "--table": "`mutabot results` prints the table",
+    "--serve": "`mutabot live` runs a campaign with its page",
+    "--tls-ca": "use -o cluster.ca=FILE",
+    "--tls-cert": "use -o cluster.cert=FILE",
+    "--tls-key": "use -o cluster.key=FILE",
+    "--one-per-site": "use --sample",
+    "--whole-ladders": "every magnitude is run only where the search needs it",
+    "--sites-only": "--since runs what a change can have altered",
+    "--confirm": "use --verify N",
+    "--repeats": "kills that may be a coincidence are re-run anyway",
+    "--no-repeats": "use -o repeats=false",
+    "--write": "apply the diff that it prints",
+    "--mixed": "workers run with the same versions as this machine",
+    **{
+        option: f"use `mutabot motion MUTANT {option}`"
+        for option in ("--test", "--video", "--view", "--rerun", "--rrd", "--mcap")
+    },
+}
+
+
+def gone(error: Exception) -> str | None:
+    """What to say of the parser's error; None if it is about nothing that there ever was, or could be."""
+    option: str = getattr(error, "option_name", None) or ""
+    if option in _OPTIONS:
+        return f"{option} is gone; {_OPTIONS[option]}"
+    found = re.match(r"No such command '([^']*)'", getattr(error, "message", ""))
+    command = found[1] if found is not None else ""
+    if command in _COMMANDS:
+        return f"the command {command} is gone; {_COMMANDS[command]}"
+    missing = not_installed(option.removeprefix("--"), "executors") or not_installed(command, "commands")
+    return None if missing is None else f"{option or f'the command {command}'} {missing}"
+
+
+class Termination:
+    """The handler of SIGTERM.
+
+    Attributes:
+        has_come: whether there was one.
+    """
+
+    def __init__(self) -> None:
+        self.has_come = False
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        """Do what Ctrl-C does at this moment."""
+        self.has_come = True
+        on_interrupt = signal.getsignal(signal.SIGINT)
+        if callable(on_interrupt):
+            on_interrupt(signal.SIGINT, frame)
+
+
+@contextmanager
+def terminated_like_ctrl_c() -> Iterator[Termination]:
+    """Inside, SIGTERM does what Ctrl-C does.
+
+    Does nothing in other threads than the main one, which Python tells nothing of signals, and where somebody
+    else handles it already or it is ignored.
+    """
+    termination = Termination()
+    is_main = threading.current_thread() is threading.main_thread()
+    if not is_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
+        yield termination
+        return
+    signal.signal(signal.SIGTERM, termination)
+    try:
+        yield termination
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
 
 #: signs of a message about the command line
 _LONGEST = 400

@@ -32,7 +32,7 @@ def init(
 
 def operators(family: options.Families = None, json: options.Json = False) -> None:
     """List the operators: what each plants, where it applies, and which bugs it stands for."""
-    from mutabot.campaign.plan.rules import listed_rules
+    from mutabot.campaign.plan.plan import listed_rules
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.listing import print_rules
 

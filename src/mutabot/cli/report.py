@@ -20,8 +20,7 @@ from . import options
 from .output import print_json, tell
 
 if TYPE_CHECKING:
-    from mutabot.analysis.stored.campaign import StoredCampaign
-    from mutabot.analysis.stored.changes import Changes
+    from mutabot.analysis.stored import Changes, StoredCampaign
     from mutabot.report.format import Format, Material
 
 _FOLDER = Path(__file__).parent.parent / "report" / "formats"
@@ -71,7 +70,7 @@ def report(
 
     It reads the journal alone, also that of a campaign that was interrupted or still runs.
     """
-    from mutabot.analysis.stored.campaign import open as open_campaign
+    from mutabot.analysis.stored import open as open_campaign
     from mutabot.report.format import Material
     from mutabot.report.texts import portable
 
@@ -144,7 +143,7 @@ def _check_folder(folder: Path, *, with_changes: bool) -> None:
 
 
 def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: str | None) -> None:
-    from mutabot.analysis.stored.evidence import StoredEvidence
+    from mutabot.analysis.stored import StoredEvidence
     from mutabot.analysis.suggested import kept_suggestions
     from mutabot.report.html.folder import Contents, write_folder
     from mutabot.report.texts import Cleaner
@@ -170,9 +169,8 @@ def _folder(prefix: str) -> str:
 
 
 def _changes(campaign: StoredCampaign, journal: Path, old: Path) -> Changes:
-    from mutabot.analysis.stored.campaign import journal_at
-    from mutabot.analysis.stored.campaign import open as open_campaign
-    from mutabot.analysis.stored.changes import changes
+    from mutabot.analysis.stored import changes, journal_at
+    from mutabot.analysis.stored import open as open_campaign
     from mutabot.journal.files import previous_of
     from mutabot.report.texts import portable
 

@@ -27,11 +27,11 @@ def show(
 ) -> None:
     """Show everything about one mutant."""
     from mutabot.analysis.results import find_mutant, read_results
-    from mutabot.analysis.stored.evidence import StoredEvidence
+    from mutabot.analysis.stored import StoredEvidence
     from mutabot.analysis.suggested import kept_suggestions
     from mutabot.journal.reader import JournalReader
     from mutabot.report.terminal.console import make_console
-    from mutabot.report.terminal.mutant.detail import print_mutant
+    from mutabot.report.terminal.mutant import print_mutant
 
     path = find_journal(context.obj)
     with JournalReader.open(path) as journal:
@@ -62,7 +62,7 @@ def replay(
     from mutabot.journal.reader import JournalReader
     from mutabot.report.as_json import replayed_data
     from mutabot.report.terminal.console import make_console
-    from mutabot.report.terminal.mutant.detail import print_replayed
+    from mutabot.report.terminal.mutant import print_replayed
 
     path = find_journal(context.obj)
     with JournalReader.open(path) as journal:

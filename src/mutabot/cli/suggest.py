@@ -46,8 +46,8 @@ def suggest(
     from mutabot.analysis.results import read_results
     from mutabot.analysis.suggested import keep_suggestions
     from mutabot.journal.reader import JournalReader
-    from mutabot.report.suggested import print_suggestions, suggested_data
     from mutabot.report.terminal.console import make_console
+    from mutabot.report.terminal.suggested import print_suggestions, suggested_data
     from mutabot.suggestion import suggest as find_checks
 
     path = find_journal(context.obj)

@@ -102,8 +102,8 @@ def _show(found: Thresholds, *, steps: bool, json: bool) -> None:
 
 
 def _compare(results: Results, journal: Path, old: Path, *, json: bool) -> None:
-    from mutabot.analysis.stored.campaign import journal_at
-    from mutabot.analysis.thresholds.comparing import compare
+    from mutabot.analysis.stored import journal_at
+    from mutabot.analysis.thresholds.thresholds import compare
 
     other = journal_at(old)
     if other.exists() and other.samefile(journal):

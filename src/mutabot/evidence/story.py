@@ -1,20 +1,26 @@
-"""What happened in a mutant's test that did not in the original: one sentence made from events and paths.
+"""What happened in a mutant's test that did not in the original: when first, how far, and in a sentence.
 
 Contacts tell the most, where a simulator reports them: what was never touched, what was let go too early,
-what was hit, where things lie in the end. Then how far things strayed, and where they ended.
+what was hit, where things lie in the end. Then how far things strayed, and where they ended. A timeline shows
+calls and contacts of both beside each other, around where they part.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from difflib import SequenceMatcher
+from math import inf, isclose
+from typing import Any
 
-from mutabot.model.outcome import Apart, Near
+from mutabot.frozen import frozen
+from mutabot.model.outcome import Apart, Diverged, Near
+from mutabot.model.values.quantity import is_number, told_apart, value_text
 
-from .recording import Block, Moment, Recording
-from .tracks import TURNED, Seen
+from .recording import Block, Moment, Recording, Told
+from .tracks import TURNED, Seen, approaches, differences, noise_of
 
 #: parts of a sentence
-_MOST = 3
+_MOST_PARTS = 3
 #: seconds by which a contact that ends earlier than in the original is worth telling
 _EARLIER = 0.3
 #: m: what is nearer than this to something that it does not touch in the original is worth telling
@@ -49,7 +55,7 @@ def story_of(
     ]
     if not parts and apart:
         parts = ["all went the same way, at other times"]
-    return "; ".join(list(dict.fromkeys(parts))[:_MOST])
+    return "; ".join(list(dict.fromkeys(parts))[:_MOST_PARTS])
 
 
 class _Contacts:
@@ -213,3 +219,214 @@ def amount(value: float, unit: str = "m") -> str:
         millimetres = 1e3 * value if value >= 1e-4 else 0.0
         return f"{millimetres:.0f} mm" if millimetres >= 10.0 else f"{millimetres:.2g} mm"
     return f"{value:.3g} {unit}".strip()
+
+
+#: differences and approaches that are told
+_MOST = 8
+#: by so much may equal numbers of a trace differ, as where no probe has a tolerance
+_ROUNDING = 1e-6
+
+
+def diverged(
+    test: str,
+    original: Seen,
+    mutant: Seen,
+    noise: Mapping[str, float] | None = None,
+    *,
+    is_cut: bool = False,
+) -> Diverged | None:
+    """How a mutant's test differs from the original's; None if nothing that was recorded does.
+
+    Args:
+        test: node id.
+        noise: by how much each thing is apart in equal runs of the original.
+        is_cut: whether something ended the mutant's test before its end.
+    """
+    end = mutant.recording.times[-1] if is_cut and mutant.recording.times else inf
+    apart = differences(original.paths, mutant.paths, noise, end)
+    call = first_difference(original.recording.calls, mutant.recording.calls)
+    if not apart and call is None:
+        return None
+    near = approaches(original.paths, mutant.paths, mutant.recording.blocks)
+    at, what = _first(apart, call, original.recording.calls, mutant.recording.calls)
+    return Diverged(
+        test=test,
+        at=at,
+        what=what,
+        story=story_of(original, mutant, apart, near, is_cut=is_cut),
+        apart=tuple(apart[:_MOST]),
+        near=tuple(near[:_MOST]),
+        fault=mutant.recording.fault,
+        is_simulated=mutant.recording.is_simulated and original.recording.is_simulated,
+    )
+
+
+def noise_between(one: Seen, other: Seen) -> dict[str, float]:
+    """By how much each thing is apart in two equal runs of the original."""
+    return noise_of(one.paths, other.paths)
+
+
+def first_difference(original: list[Told], mutant: list[Told]) -> int | None:
+    """The number of the first call, from 0, that differs; None if they are the same calls."""
+    for number, (one, other) in enumerate(zip(original, mutant, strict=False)):
+        if not _is_same(one, other):
+            return number
+    return None if len(original) == len(mutant) else min(len(original), len(mutant))
+
+
+def _is_same(one: Told, other: Told) -> bool:
+    if (one.operation, one.place, one.pattern) != (other.operation, other.place, other.pattern):
+        return False
+    return _are_equal(one.written, other.written) and _are_equal(one.read, other.read)
+
+
+def _are_equal(values: Any, others: Any) -> bool:
+    """Whether values are equal, numbers up to what rounding does to them."""
+    if isinstance(values, Mapping) and isinstance(others, Mapping):
+        return values.keys() == others.keys() and all(_are_equal(values[key], others[key]) for key in values)
+    if isinstance(values, list | tuple) and isinstance(others, list | tuple):
+        return len(values) == len(others) and all(map(_are_equal, values, others))
+    if is_number(values) and is_number(others):
+        return isclose(values, others, rel_tol=_ROUNDING, abs_tol=_ROUNDING)
+    return bool(values == others)
+
+
+def _first(
+    apart: list[Apart], call: int | None, original: list[Told], mutant: list[Told]
+) -> tuple[float | None, str]:
+    """The first moment at which anything differs, s, and what."""
+    found = [(one.first, f"{one.name} is not where it is in the original") for one in apart]
+    if call is not None:
+        text, time = _call_text(call, original, mutant)
+        if time is None:
+            return min(found)[0] if found else None, text
+        found.append((time, text))
+    return min(found)
+
+
+def _call_text(number: int, original: list[Told], mutant: list[Told]) -> tuple[str, float | None]:
+    if number >= len(mutant):
+        one = original[number]
+        return f"{_name(one)} is not called any more", one.began
+    other = mutant[number]
+    if number >= len(original):
+        return f"{_name(other)} is called once more", other.began
+    one = original[number]
+    if (one.operation, one.place, one.pattern) != (other.operation, other.place, other.pattern):
+        return f"{_name(other)} is called instead of {_name(one)}", other.began
+    for before, after, verb in ((one.written, other.written, "sends"), (one.read, other.read, "reads")):
+        for name in {**before, **after}:
+            if not _are_equal(before.get(name), after.get(name)):
+                usual, found = told_apart(before.get(name), after.get(name), value_text, 4)
+                return f"{_name(other)} {verb} {name} {found} instead of {usual}", other.began
+    return f"{_name(other)} differs", other.began
+
+
+def _name(call: Told) -> str:
+    return f"{call.place} {call.operation.rpartition(':')[2]}"
+
+
+#: rows before the first that differs, and after it
+_BEFORE, _AFTER = 3, 12
+_WORDS = {"touch": "touches", "part": "leaves"}
+
+
+@frozen
+class Entry:
+    """Something that was done or happened.
+
+    Attributes:
+        time: s; None without a clock.
+        text: in words.
+    """
+
+    time: float | None
+    text: str
+
+
+@frozen
+class Row:
+    """The same thing in the original and in the mutant; None where it did not happen.
+
+    Attributes:
+        is_fault: whether the mutant changed something here for the first time.
+    """
+
+    original: Entry | None
+    mutant: Entry | None
+    is_fault: bool = False
+
+    @property
+    def is_same(self) -> bool:
+        """Whether both have it, at the same time."""
+        one, other = self.original, self.mutant
+        return one is not None and other is not None and _shown(one.time) == _shown(other.time)
+
+
+def timeline(original: Recording, mutant: Recording) -> list[Row]:
+    """All rows, in their order."""
+    before, after = entries(original), entries(mutant)
+    fault = _fault(mutant)
+    rows = []
+    for one, other in _side_by_side(before, after):
+        rows.append(Row(one, other, fault is not None and other == fault))
+    return rows
+
+
+def around(rows: Sequence[Row]) -> tuple[Sequence[Row], int, int]:
+    """The rows around the first that differs, and how many are left out before and after them."""
+    first = next((number for number, row in enumerate(rows) if row.is_fault or not row.is_same), len(rows))
+    start, end = max(0, first - _BEFORE), min(len(rows), first + _AFTER)
+    return rows[start:end], start, len(rows) - end
+
+
+def entries(recording: Recording) -> list[Entry]:
+    """Calls and what happened, in their order."""
+    calls = [(one.began, Entry(one.began, call_text(one))) for one in recording.calls]
+    if any(began is None for began, _ in calls):
+        return [entry for _, entry in calls]
+    happened = [(one.time, Entry(one.time, _moment_text(one.what, one.text))) for one in recording.moments]
+    # a contact that begins during a call is told after it
+    return [entry for _, entry in sorted([*calls, *happened], key=lambda one: one[0] or 0.0)]
+
+
+def call_text(call: Told) -> str:
+    """``move_by y 0.2``, ``position → x 0.1``; beside other values, zeros are left out."""
+    name = call.pattern or call.operation.rpartition(":")[2]
+    read = f" → {_values(call.read)}" if call.read else ""
+    moved = {key: value for key, value in call.written.items() if value or isinstance(value, bool)}
+    return f"{name} {_values(moved or call.written)}".rstrip() + read
+
+
+def _values(values: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name.lstrip('.')} {value_text(value)}".strip() for name, value in values.items())
+
+
+def _moment_text(what: str, text: str) -> str:
+    one, _, other = text.partition(", ")
+    return f"{one} {_WORDS[what]} {other}" if what in _WORDS else text
+
+
+def _fault(mutant: Recording) -> Entry | None:
+    """The entry of the call that the mutant changed first."""
+    number = mutant.faulty_call
+    if number is None or number >= len(mutant.calls):
+        return None
+    faulty = mutant.calls[number]
+    return Entry(faulty.began, call_text(faulty))
+
+
+def _side_by_side(
+    before: Sequence[Entry], after: Sequence[Entry]
+) -> Iterator[tuple[Entry | None, Entry | None]]:
+    matcher = SequenceMatcher(None, [one.text for one in before], [one.text for one in after], autojunk=False)
+    for _, i, j, k, m in matcher.get_opcodes():
+        if j - i == m - k and [one.text for one in before[i:j]] == [one.text for one in after[k:m]]:
+            yield from zip(before[i:j], after[k:m], strict=True)
+            continue
+        yield from ((one, None) for one in before[i:j])
+        yield from ((None, other) for other in after[k:m])
+
+
+def _shown(time: float | None) -> str:
+    return "" if time is None else f"{time:.1f}"

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.border.events import TestEnd
+from mutabot.journal.lock import WriterLock, refuse_tracked
 from mutabot.model import LeftOut, Mutant, Outcome
 
 from .database import (
@@ -30,7 +31,6 @@ from .database import (
     VERSION_KEY,
     guarded,
 )
-from .files import WriterLock, refuse_tracked
 from .reader import JournalReader
 from .records import ALTERED, Row
 from .store import Store, dump, keep_copy, make_way

@@ -19,8 +19,9 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import Any
 
+from mutabot.journal.lock import WriterLock
+
 from .database import COLUMNS, TABLES, Execute, connect, connect_to_read, decode, loaded, stored, write_anew
-from .files import WriterLock
 from .fitting import is_round
 
 _FUNCTION = "mutabot_mark"

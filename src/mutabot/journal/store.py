@@ -19,6 +19,8 @@ from typing import Any, Self
 from mutabot.border.codec import to_data
 from mutabot.border.storable import storable
 from mutabot.errors import JournalError
+from mutabot.journal.files import previous_of
+from mutabot.journal.lock import WriterLock, refuse_tracked
 
 from .database import (
     OF_ONE_ROW,
@@ -34,7 +36,6 @@ from .database import (
     stored,
     write_anew,
 )
-from .files import WriterLock, previous_of, refuse_tracked
 from .fitting import UNFIT, load
 from .marks import Mirrored, remove_unmarked
 

@@ -12,10 +12,9 @@ from rich.text import Text
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group
-from mutabot.analysis.stored.changes import Changes, Pair
+from mutabot.analysis.stored import Changes, Ends
 from mutabot.frozen import frozen
 from mutabot.report.as_json import FORMAT, facts, mutant_data
-from mutabot.report.status import rounds_text, status_of
 from mutabot.report.terminal.campaign import WIDE
 from mutabot.report.terminal.console import (
     add_row,
@@ -26,6 +25,8 @@ from mutabot.report.terminal.console import (
     short_place,
 )
 from mutabot.report.texts import escaped, table
+
+from .texts import rounds_text, status_of
 
 
 @frozen
@@ -85,7 +86,7 @@ def score_rows(changes: Changes) -> Iterator[tuple[str, str, str, str]]:
         yield f"{family} · {role}", _percent(before), _percent(after), by
 
 
-def _told(pair: Pair) -> str:
+def _told(pair: Ends) -> str:
     old = f"before: {rounds_text(pair.old)}" if pair.old is not None else "a new mutant"
     return f"{rounds_text(pair.new)}; {old}" if pair.new is not None else old
 
@@ -108,8 +109,8 @@ def changes_data(changes: Changes) -> dict[str, Any]:
         "fixed_survivors": _pairs(changes.fixed),
         "changed_survivors": _pairs(changes.changed),
         "unknown_survivors": _pairs(changes.unknown),
-        "gone_mutants": _pairs(Pair(one, None) for one in changes.gone),
-        "new_mutants": _pairs(Pair(None, one) for one in changes.added),
+        "gone_mutants": _pairs(Ends(one, None) for one in changes.gone),
+        "new_mutants": _pairs(Ends(None, one) for one in changes.added),
         "groups": [
             {"family": family, "role": role, "old": _score(old), "new": _score(new)}
             for (family, role), (old, new) in changes.scores.items()
@@ -117,7 +118,7 @@ def changes_data(changes: Changes) -> dict[str, Any]:
     }
 
 
-def _pairs(pairs: Iterable[Pair]) -> list[dict[str, Any]]:
+def _pairs(pairs: Iterable[Ends]) -> list[dict[str, Any]]:
     return [
         {**mutant_data(pair.either.mutant), "old": _result(pair.old), "new": _result(pair.new)}
         for pair in pairs

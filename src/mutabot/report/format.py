@@ -11,8 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from mutabot.analysis.stored.campaign import StoredCampaign
-from mutabot.analysis.stored.changes import Changes
+from mutabot.analysis.stored import Changes, StoredCampaign
 from mutabot.frozen import frozen
 from mutabot.model import Span
 

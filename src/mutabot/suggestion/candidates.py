@@ -13,7 +13,8 @@ from mutabot.suggestion.measure import Measured, Read
 from mutabot.suggestion.project import Project
 from mutabot.suggestion.readings import HAND, PROBE, WAY, Reading
 from mutabot.suggestion.style import Place
-from mutabot.suggestion.watches import watch_of
+
+from .readings import watch_of
 
 #: values a label may have, runs that each must have been seen in, labels and partners that are tried
 _LABELS, _SEEN, _TRIED = 4, 4, 8

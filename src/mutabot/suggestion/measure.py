@@ -20,8 +20,9 @@ from mutabot.suggestion.project import Insertion, Project, changed_texts
 from mutabot.suggestion.readings import ORACLE, PROBE, Reading, of_objects, readings_at
 from mutabot.suggestion.style import Addition, Place
 from mutabot.suggestion.styles.choice import insertions_of
-from mutabot.suggestion.watches import Command, commands_of
-from mutabot.suggestion.workspace import copy_of
+
+from .project import copy_of
+from .readings import Command, commands_of
 
 #: what notes readings in the tests' process, and the probe that carries them out of it
 _NOTED = "mutabot.inside.readings.noted"

@@ -18,7 +18,8 @@ from mutabot.suggestion.checks import Check
 from mutabot.suggestion.project import Project, changed_texts
 from mutabot.suggestion.style import Place
 from mutabot.suggestion.styles.choice import insertions_of
-from mutabot.suggestion.workspace import copy_of
+
+from .project import copy_of
 
 
 @dataclass(slots=True)

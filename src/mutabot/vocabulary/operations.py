@@ -11,11 +11,9 @@ from mutabot.model.values.units import UNITS, Dimension, dimension_of
 from mutabot.settings.mistakes import Check, shown
 from mutabot.settings.toml_lines import KeyPath
 from mutabot.vocabulary.cases.when import Undecided, in_cases
-from mutabot.vocabulary.named.names import read_current, read_refused
 
 from .cases.when import in_case, read_when
-from .named.entries import is_named, read_named
-from .named.names import NAMING
+from .named import NAMING, is_named, read_current, read_named, read_refused
 from .patterns import read_patterns
 from .quantities import read_arguments, read_result
 from .schema import ClockTable, OperationTable, ProbeTable, WaitTable, is_name, read_idle, target_fault

@@ -10,7 +10,7 @@ import pytest
 
 import mutabot
 from analysis import samples
-from mutabot.analysis.stored.campaign import StoredCampaign
+from mutabot.analysis.stored import StoredCampaign
 from mutabot.border.codec import to_data
 from mutabot.errors import JournalError, SelectionError
 from mutabot.journal.records import Reaching

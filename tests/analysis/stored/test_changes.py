@@ -12,7 +12,7 @@ import pytest
 import mutabot
 from analysis import samples
 from mutabot.analysis.results import Results
-from mutabot.analysis.stored.changes import Changes, changes
+from mutabot.analysis.stored import Changes, changes
 from mutabot.model import By, Mutant, Outcome, Verdict
 
 A, B = samples.REVERSE, samples.SKIP

@@ -11,7 +11,7 @@ import pytest
 
 import mutabot
 from analysis import samples
-from mutabot.analysis.stored.table import COLUMNS, rows
+from mutabot.analysis.stored import COLUMNS, rows
 from mutabot.errors import UsageError
 from mutabot.model import Outcome, Verdict
 

@@ -9,7 +9,7 @@ import pytest
 from analysis import samples
 from analysis.thresholds import journals
 from analysis.thresholds.journals import SIZES, Rungs
-from mutabot.analysis.thresholds.comparing import Change, compare
+from mutabot.analysis.thresholds.thresholds import Change, compare
 from mutabot.model import Role
 
 LATE, SOON = "SSSSCCC", "SSCCCCC"

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mutabot.analysis.thresholds.interval import (
+from mutabot.analysis.thresholds.ladders import (
     binomial_at_most,
     exact,
     lower_limit,

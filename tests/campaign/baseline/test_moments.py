@@ -9,8 +9,7 @@ import pytest
 
 from mutabot.border.events import TestEnd
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.comparing.moments import strides_of
-from mutabot.campaign.comparing.observation import Event, Observation, compare
+from mutabot.campaign.comparing.observation import Event, Observation, compare, strides_of
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers.forkserver import _template
 from mutabot.model import Outcome, Probe, Verdict, Vocabulary

@@ -12,6 +12,7 @@ import pytest
 from mutabot.campaign.engines import kinds
 from mutabot.campaign.engines.choice import all_engines
 from mutabot.cli.options import ENGINES
+from mutabot.errors import UsageError
 from mutabot.model import Verdict
 from tests.campaign.project import run, write_project
 
@@ -71,3 +72,8 @@ def test_an_engine_is_a_file(more: Path, tmp_path: Path) -> None:
     assert len(found) > 1
     assert found.pop("skip") == (Verdict.ERROR, "idle")
     assert set(found.values()) == {(Verdict.NO_EFFECT, "idle")}
+
+
+def test_an_engine_that_there_is_not_is_told_before_the_tests_run(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"'brunch'.*branch"):
+        run(write_project(tmp_path, MISSION, TESTS), engine="brunch")

@@ -7,8 +7,7 @@ from textwrap import dedent
 
 import pytest
 
-from mutabot.campaign.pieces.lines import Lines
-from mutabot.campaign.pieces.project import Project
+from mutabot.campaign.pieces.project import Lines, Project
 from mutabot.campaign.pieces.reach import Reach
 
 FILES = {

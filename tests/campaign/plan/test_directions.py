@@ -8,8 +8,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.campaign.baseline.answers import RecordedAnswers
-from mutabot.campaign.baseline.baseline import Baseline, Hit
+from mutabot.campaign.baseline.baseline import Baseline, Hit, RecordedAnswers
 from mutabot.campaign.plan.plan import Plan, make_plan
 from mutabot.families import CATALOGUE, GRADED, MIDDLEWARE, ROBOT
 from mutabot.faults import Project

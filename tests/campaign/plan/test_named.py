@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from mutabot.campaign.baseline.answers import RecordedAnswers
-from mutabot.campaign.baseline.baseline import Baseline, Hit
+from mutabot.campaign.baseline.baseline import Baseline, Hit, RecordedAnswers
 from mutabot.campaign.plan.plan import make_plan
 from mutabot.families import ROBOT
 from mutabot.faults import Project

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from mutabot import operators
-from mutabot.analysis.stored.campaign import StoredCampaign
-from mutabot.analysis.stored.campaign import open as open_campaign
+from mutabot.analysis.stored import StoredCampaign
+from mutabot.analysis.stored import open as open_campaign
 from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.run import run_campaign
 from mutabot.families import ROBOT

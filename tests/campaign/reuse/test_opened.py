@@ -10,10 +10,9 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign import run as campaign
-from mutabot.campaign.reuse.counted import counted
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
-from mutabot.campaign.reuse.snapshot import Snapshot
+from mutabot.campaign.reuse.snapshot import Snapshot, counted
 from tests.campaign.project import Quiet, request_for, write_project
 
 MISSION = """

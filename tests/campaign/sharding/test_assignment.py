@@ -7,7 +7,7 @@ from collections import Counter, defaultdict
 
 import pytest
 
-from mutabot.campaign.sharding.assignment import Item, assign
+from mutabot.campaign.sharding.shards import Item, assign
 
 SIZES = ((60, 4), (400, 8), (1500, 16))
 

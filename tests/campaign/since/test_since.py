@@ -15,7 +15,7 @@ import pytest
 from mutabot.analysis.gate import decide
 from mutabot.analysis.results import read_results
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.since.git import Revision
+from mutabot.campaign.since.since import Revision
 from mutabot.errors import UsageError
 from mutabot.exit_codes import ExitCode
 from mutabot.journal.journal import Journal

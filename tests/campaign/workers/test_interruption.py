@@ -14,8 +14,7 @@ from typing import Any
 import pytest
 
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers import forkserver, workers
-from mutabot.campaign.workers import token_pool as tokens
+from mutabot.campaign.workers import forkserver, waiting, workers
 from mutabot.campaign.workers.interruption import interruptible, interruptions_kept
 from mutabot.journal.journal import Journal
 from tests.campaign.project import REPLAY, Quiet, request_for, write_project
@@ -134,7 +133,7 @@ def after(original: Callable[..., Any]) -> Callable[..., Any]:
 
 #: moments at which something is open that nobody looks after yet, or not any more
 MOMENTS = {
-    "the pool has been made": (tokens.TokenPool, "__init__"),
+    "the pool has been made": (waiting.TokenPool, "__init__"),
     "a worker's folder has been made": (workers.Home, "make"),
     "a worker has been started": (workers.Spawned, "__init__"),
     "a fork server has been started": (forkserver.ForkServer, "__init__"),

@@ -17,7 +17,7 @@ import pytest
 from campaign.project import Quiet, outcomes, request_for, write_project
 from mutabot.campaign.engines import trunk
 from mutabot.campaign.run import run_campaign
-from mutabot.campaign.workers.pause import Pause
+from mutabot.campaign.workers.interruption import Pause
 
 MISSION = """
     def run(arm):

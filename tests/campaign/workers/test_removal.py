@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.campaign.workers.removal import remove_folder
+from mutabot.campaign.workers.remains import remove_folder
 
 
 @pytest.fixture
@@ -86,7 +86,7 @@ def test_a_folder_that_is_gone_is_no_problem(tmp_path: Path) -> None:
 def test_what_stays_is_told(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "file").touch()
     lock("+i", folder / "file")
-    monkeypatch.setattr("mutabot.campaign.workers.removal._free", lambda path: None)
+    monkeypatch.setattr("mutabot.campaign.workers.remains._free", lambda path: None)
     told = remove_folder(folder)
     assert told is not None
     assert str(folder) in told

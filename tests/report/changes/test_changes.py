@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from analysis import samples
-from mutabot.analysis.stored.changes import Changes, changes
+from mutabot.analysis.stored import Changes, changes
 from mutabot.model import By, Outcome, Verdict
 from mutabot.report.as_json import dumps
 from mutabot.report.changes import change_lines, changes_data, print_changes

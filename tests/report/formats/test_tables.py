@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from analysis import samples
-from mutabot.analysis.stored.table import COLUMNS, rows
+from mutabot.analysis.stored import COLUMNS, rows
 from mutabot.report.texts import portable
 from report.material import HOSTILE, made, stored, with_text
 

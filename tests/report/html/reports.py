@@ -10,7 +10,7 @@ from typing import Any
 
 import mutabot
 from analysis import samples
-from mutabot.analysis.stored.evidence import StoredEvidence
+from mutabot.analysis.stored import StoredEvidence
 from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Track, to_bytes
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
 from mutabot.model.outcome import Apart, Diverged, Near

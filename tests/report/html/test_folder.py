@@ -16,8 +16,7 @@ from mutabot.analysis.suggested import Suggestions
 from mutabot.errors import UsageError
 from mutabot.journal.files import REPORT_MARK
 from mutabot.report.html import folder as folders
-from mutabot.report.html.folder import check_folder
-from mutabot.report.html.overview import Rows
+from mutabot.report.html.folder import Rows, check_folder
 from report.html import reports
 from report.terminal.test_suggested import CHECK
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mutabot.model import Span
-from mutabot.report.terminal.mutant.detail import excerpt
+from mutabot.report.terminal.mutant import excerpt
 
 
 def span(line: int, column: int, end_line: int, end_column: int) -> Span:

@@ -12,7 +12,7 @@ from mutabot.analysis.results import find_mutant, read_results
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
 from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.mutant.detail import print_mutant
+from mutabot.report.terminal.mutant import print_mutant
 
 
 def shown(folder: Path, mutant: Mutant, width: int = 120) -> str:

@@ -12,9 +12,9 @@ from mutabot.analysis.results import MutantResult, find_mutant, read_results
 from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved, keep_suggestions, kept_suggestions
 from mutabot.journal.journal import Journal
 from mutabot.model import Mutant
-from mutabot.report.suggested import check_on_page
 from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.mutant.detail import print_mutant
+from mutabot.report.terminal.mutant import print_mutant
+from mutabot.report.terminal.suggested import check_on_page
 
 CHECK = Suggestion(
     test="tests/test_box.py::test_arrives",

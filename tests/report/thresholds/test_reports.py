@@ -15,8 +15,7 @@ import pytest
 from analysis import samples
 from analysis.thresholds import journals
 from analysis.thresholds.journals import Rungs
-from mutabot.analysis.thresholds.comparing import compare
-from mutabot.analysis.thresholds.thresholds import SORTS, Thresholds, thresholds_of
+from mutabot.analysis.thresholds.thresholds import SORTS, Thresholds, compare, thresholds_of
 from mutabot.cli.thresholds import _SORTS
 from mutabot.model import Operation, Role, Vocabulary
 from mutabot.model.outcome import Figure

@@ -13,9 +13,7 @@ from mutabot.model import Kind, Outcome, Verdict
 from mutabot.model.graded import Demand, Seen, is_at_least, is_same, seen
 from mutabot.model.mutant import is_like
 
-from .interval import lower_limit, rounds_for, upper_limit
-from .ladders import Ladder
-from .rounds import LadderRound
+from .ladders import Ladder, LadderRound, lower_limit, rounds_for, upper_limit
 from .words import amount, in_rounds
 
 _UNSOUND = {Verdict.UNSTABLE: "is unstable", Verdict.ERROR: "ended in error"}

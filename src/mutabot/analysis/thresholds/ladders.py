@@ -1,21 +1,238 @@
-"""Ladders: all magnitudes of one fault at one site, quantity, operator and direction, over all rounds."""
+"""Ladders: all magnitudes of one fault at one site, quantity, operator and direction, round by round.
+
+The thresholds of R rounds are taken as independent draws. How many of them lie below the median is then a
+binomial number, whatever their distribution is, so that two of them, in order, hold the median between them
+with a known probability. As each is known only as a bracket, the interval goes from the lower end of one to
+the upper end of the other, which can only widen it. Measured by ``benchmarks/threshold_coverage.py``.
+"""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from enum import StrEnum
 from itertools import pairwise
 
 from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.statistics import Interval
+from mutabot.analysis.statistics import LEVEL, Interval
 from mutabot.frozen import frozen
-from mutabot.model import Mutant, Outcome, Quantity
-from mutabot.model.graded import OFFSET, Seen, is_same, seen
+from mutabot.model import By, Mutant, Outcome, Quantity, Verdict
+from mutabot.model.graded import OFFSET, Bracket, Seen, bracket_of, is_same, seen
 from mutabot.model.values.units import UNITS
 
-from .interval import Between, exact, median_between, share_noticed
-from .rounds import LadderRound, noticer
+#: halvings of an interval until no digit changes
+_HALVINGS = 60
+
+
+@frozen
+class Between:
+    """Where the median threshold of further rounds like these lies: above ``low``, at most at ``high``.
+
+    Attributes:
+        low: a magnitude that was missed; 0 where none was.
+        high: a magnitude that was noticed; infinite where none was.
+        level: how often such an interval holds the median, at least.
+    """
+
+    low: float
+    high: float
+    level: float
+
+
+def median_between(lows: Sequence[float], highs: Sequence[float], level: float = LEVEL) -> Between | None:
+    """The interval of the median threshold, from the brackets of the rounds; None with fewer than two.
+
+    Args:
+        lows: their lower ends, in any order; 0 where even the smallest fault was noticed.
+        highs: their upper ends; infinite where none was noticed.
+        level: the least level. Where even all rounds do not reach it, they are taken from the first to the
+            last, and the interval has the level that this gives.
+    """
+    rounds = len(lows)
+    if rounds < 2:
+        return None
+    first, last = ranks(rounds, level) or (1, rounds)
+    outside = binomial_at_most(first - 1, rounds, 0.5) + binomial_at_most(rounds - last, rounds, 0.5)
+    return Between(sorted(lows)[first - 1], sorted(highs)[last - 1], 1.0 - outside)
+
+
+def ranks(rounds: int, level: float = LEVEL) -> tuple[int, int] | None:
+    """Which rounds, counted in the order of their thresholds from 1, have the median between them.
+
+    None if there are too few rounds for the level.
+    """
+    tail = (1.0 - level) / 2.0
+    first = 0
+    while binomial_at_most(first, rounds, 0.5) <= tail:
+        first += 1
+    return (first, rounds + 1 - first) if first else None
+
+
+def share_noticed(rounds: int, level: float = LEVEL) -> float:
+    """The share of rounds that at least notice what all of these rounds notice (Wilks 1941)."""
+    return float((1.0 - level) ** (1.0 / rounds)) if rounds else 0.0
+
+
+def rounds_for(share: float, level: float = LEVEL) -> int:
+    """How many rounds must all notice to show that at least this share of all rounds does; share below 1."""
+    return math.ceil(math.log(1.0 - level) / math.log(share)) if share > 0.0 else 1
+
+
+def exact(count: int, of: int, level: float = LEVEL) -> Interval | None:
+    """Clopper and Pearson's interval of a share, whose true level is never less; None without trials."""
+    if not of:
+        return None
+    tail = (1.0 - level) / 2.0
+    return Interval(lower_limit(count, of, 1.0 - tail), upper_limit(count, of, 1.0 - tail), level)
+
+
+def lower_limit(count: int, of: int, level: float = LEVEL) -> float:
+    """The exact one-sided lower limit of a share."""
+    if not count:
+        return 0.0
+    return _turn(lambda share: 1.0 - binomial_at_most(count - 1, of, share) > 1.0 - level)
+
+
+def upper_limit(count: int, of: int, level: float = LEVEL) -> float:
+    """The exact one-sided upper limit of a share."""
+    if count >= of:
+        return 1.0
+    return _turn(lambda share: binomial_at_most(count, of, share) <= 1.0 - level)
+
+
+def binomial_at_most(count: int, of: int, share: float) -> float:
+    """The probability of at most ``count`` successes."""
+    return math.fsum(math.comb(of, k) * share**k * (1.0 - share) ** (of - k) for k in range(count + 1))
+
+
+def _turn(holds: Callable[[float], bool]) -> float:
+    """Where, from 0 to 1, something begins to hold."""
+    low, high = 0.0, 1.0
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2.0
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return high
+
+
+#: what ends a ladder without a word about the tests
+_NOTHING_THERE = frozenset({Verdict.NO_EFFECT, Verdict.INVALID})
+
+
+class Above(StrEnum):
+    """What is above the largest magnitude that was missed."""
+
+    NOTICED = "noticed"
+    LARGEST = "missed up to the largest"
+    REFUSED = "refused"
+    NO_EFFECT = "no effect"
+    #: it was not run, or nobody knows
+    OPEN = "open"
+
+
+@frozen
+class LadderRound:
+    """One ladder in one round.
+
+    Attributes:
+        number: 0-based round.
+        outcomes: by magnitude, rising, those that were run.
+        zero: the outcome of magnitude 0; None if it was not run.
+        bracket: where the threshold lies.
+        above: what is above the largest magnitude that was missed.
+    """
+
+    number: int
+    outcomes: Mapping[float, Outcome]
+    zero: Outcome | None
+    bracket: Bracket
+    above: Above
+
+    @classmethod
+    def of(
+        cls, number: int, sizes: Sequence[float], outcomes: Mapping[float, Outcome], zero: Outcome | None
+    ) -> LadderRound:
+        """From the planned magnitudes above 0, rising, and the outcomes of those that were run."""
+        bracket = bracket_of({size: seen(one) for size, one in outcomes.items()})
+        if any(one.verdict is Verdict.NOT_COVERED for one in outcomes.values()):
+            bracket = Bracket(low=sizes[-1])  # what no test reaches, none reaches at any magnitude
+        return cls(number, outcomes, zero, bracket, _above(bracket, sizes, outcomes))
+
+    @property
+    def fails_without_fault(self) -> bool:
+        """Whether the tests fail at magnitude 0, so that nothing they notice is due to the fault."""
+        return self.zero is not None and seen(self.zero) is Seen.NOTICED
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether a test reaches the site."""
+        return not any(one.verdict is Verdict.NOT_COVERED for one in self.outcomes.values())
+
+    @property
+    def why_out(self) -> str:
+        """Why the round does not count; empty if it does."""
+        if self.fails_without_fault:
+            return "fails without a fault"
+        if not self.outcomes:
+            return "was not run"
+        if not self.bracket.is_known:
+            return _without_valid(self.outcomes)
+        if self.above is Above.OPEN:
+            return "is not judged to the end of the ladder"
+        return ""
+
+    @property
+    def counts(self) -> bool:
+        """Whether it says something about the tests."""
+        return not self.why_out
+
+    @property
+    def noticed_by(self) -> str | None:
+        """Who notices at the upper end of the bracket: ``check``, ``exception`` or ``timeout``."""
+        return noticer(self.outcomes[self.bracket.high]) if self.bracket.high is not None else None
+
+
+def noticer(outcome: Outcome) -> str | None:
+    """Who noticed a fault: ``check``, ``exception`` or ``timeout``; None if nobody did."""
+    if outcome.verdict is Verdict.TIMEOUT:
+        return Verdict.TIMEOUT.value
+    return (outcome.by or By.EXCEPTION).value if outcome.verdict is Verdict.KILLED else None
+
+
+def _above(bracket: Bracket, sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> Above:
+    if bracket.high is not None:
+        return Above.NOTICED
+    above = [size for size in sizes if bracket.low is None or size > bracket.low]
+    if not above:
+        return Above.LARGEST
+    if bracket.refused is not None:
+        return Above.REFUSED
+    # the next one tells: what changes nothing there is beyond what the robot takes
+    ends = list(_verdicts(above, outcomes))
+    return Above.NO_EFFECT if ends and set(ends) <= _NOTHING_THERE and above[0] in outcomes else Above.OPEN
+
+
+def _verdicts(sizes: Sequence[float], outcomes: Mapping[float, Outcome]) -> Iterator[Verdict]:
+    return (outcomes[size].verdict for size in sizes if size in outcomes)
+
+
+def _without_valid(outcomes: Mapping[float, Outcome]) -> str:
+    verdicts = {one.verdict for one in outcomes.values()}
+    for verdict, words in _WORDS.items():
+        if verdict in verdicts:
+            return words
+    return "says nothing"
+
+
+#: why nothing is known of a round, the worst first
+_WORDS = {
+    Verdict.ERROR: "ended in error",
+    Verdict.UNSTABLE: "is unstable",
+    Verdict.REFUSED: "the robot refuses every magnitude that was tried",
+    Verdict.NO_EFFECT: "has no effect",
+    Verdict.INVALID: "is invalid",
+}
+
 
 _SIGNS = {"+": "+", "-": "−"}
 

@@ -6,8 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Iterator
 
-from .ladders import Ladder
-from .rounds import Above, LadderRound
+from .ladders import Above, Ladder, LadderRound
 
 
 def amount(magnitude: float, unit: str | None) -> str:

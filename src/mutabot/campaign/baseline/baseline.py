@@ -2,24 +2,204 @@
 
 It tells which tests reach which site with which values, how long they take, and whether they can be
 relied on. What differs between the two runs of a round is flaky, and is set aside before any mutant runs.
+What calls of one place returned says what a mutant that leaves them out answers.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mutabot.border.events import Remark, TestEnd
-from mutabot.border.job import Budget, RefusedAt
+from mutabot.border.job import Budget, Idle, InProcess, RefusedAt
 from mutabot.campaign.comparing.observation import Observation, as_steady
-from mutabot.faults import Original, Planned, Preparation
+from mutabot.errors import MutabotError
+from mutabot.families import CALLS, CONTROL, MESSAGES
+from mutabot.faults import Original, Planned, Planted, Preparation
 from mutabot.frozen import frozen
-from mutabot.model import Mutant, Span, Vocabulary
+from mutabot.model import (
+    FATAL,
+    IDENTITY,
+    Choice,
+    Instrumentation,
+    Mutant,
+    Operation,
+    Pattern,
+    ProgramText,
+    Span,
+    Vocabulary,
+)
 from mutabot.model.mutant import Place
+from mutabot.model.values.answer import is_plain
+from mutabot.operators.command import Identity
 
-from .answers import RecordedAnswers
-from .planted import PlantedFaults
+#: what a control is at a place of a fault that is put in place by its provider's own code
+_CONTROLS = "mutabot.inside.process_fault"
+
+
+@dataclass(slots=True)
+class PlantedFaults:
+    """What the providers have planted.
+
+    Attributes:
+        by_id: the mutants of the first order.
+        left_out_beforehand: those left out for another reason than that they would change nothing in the
+            calls of the baseline.
+        texts: program text with the alternatives that can run.
+        providers: who told of a place, for all places but those of calls.
+    """
+
+    by_id: dict[str, Planted] = field(default_factory=dict)
+    left_out_beforehand: list[Planted] = field(default_factory=list)
+    texts: tuple[ProgramText, ...] = ()
+    providers: dict[Place, str] = field(default_factory=dict)
+    _numbers: dict[Place, int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, planned: Mapping[str, Planned]) -> PlantedFaults:
+        """Of what each provider made of a baseline."""
+        made = cls()
+        for provider, found in planned.items():
+            made.texts += found.texts
+            made.providers.update((place, provider) for _, place in found.reached)
+            for one in found.mutants:
+                if one.reason is None:
+                    made.by_id[one.mutant.id] = one
+                    if one.choice is not None:
+                        made._numbers.setdefault(Place.of(one.mutant), one.choice.place)
+                elif provider not in (CALLS, MESSAGES):
+                    made.left_out_beforehand.append(one)
+        return made
+
+    def provider_at(self, place: Place) -> str:
+        """The provider whose way into the program mutants at a place take."""
+        return self.providers.get(place, CALLS)
+
+    def choices(self, mutant: Mutant) -> tuple[Choice, ...]:
+        """The alternatives in the program text that a mutant is."""
+        choice = self._choice(mutant)
+        return () if choice is None else (choice,)
+
+    def in_process(self, mutant: Mutant) -> dict[str, InProcess]:
+        """What puts a mutant in place that its provider does by itself, by the mutant's id."""
+        how = self._in_process(mutant)
+        return {} if how is None else {mutant.id: how}
+
+    def instrumentation(self, mutants: Iterable[Mutant], *, active: bool = False) -> Instrumentation | None:
+        """The program text with the places of these mutants, or None if they have none there.
+
+        Args:
+            mutants: the mutants.
+            active: whether their alternatives are in force from the start.
+        """
+        choices = [choice for mutant in mutants for choice in self.choices(mutant)]
+        if not choices:
+            return None
+        needed = {choice.place for choice in choices}
+        texts = [
+            replace(text, places=tuple(place for place in text.places if place.number in needed))
+            for text in self.texts
+        ]
+        return Instrumentation(
+            tuple(text for text in texts if text.places), active=tuple(choices) if active else ()
+        )
+
+    def _choice(self, mutant: Mutant) -> Choice | None:
+        if mutant.family == CONTROL:
+            number = self._numbers.get(Place.of(mutant))
+            index = IDENTITY if mutant.operator == Identity.name else FATAL
+            return Choice(number, index) if number is not None else None
+        planted = self.by_id.get(mutant.id)
+        return planted.choice if planted is not None else None
+
+    def _in_process(self, mutant: Mutant) -> InProcess | None:
+        if mutant.family == CONTROL:
+            place = Place.of(mutant)
+            is_own = place in self.providers and place not in self._numbers
+            return InProcess(f"{_CONTROLS}:{mutant.operator.capitalize()}") if is_own else None
+        planted = self.by_id.get(mutant.id)
+        return planted.in_process if planted is not None else None
+
+
+#: characters that all answers of one mutant may take; they go to every process that runs it
+LIMIT = 1_000_000
+_MISSING = object()
+
+
+class NoAnswerError(MutabotError):
+    """Nobody knows what the program would get if the robot did nothing; the text says why."""
+
+
+@dataclass(slots=True)
+class RecordedAnswers:
+    """The notes of what calls of one place returned, as ``inside.calls.answers`` writes them.
+
+    Attributes:
+        first: note of the first call that returned, by test (``Idle.key``).
+        varying: the tests in which later calls returned something else.
+        has_raised: whether any call raised.
+    """
+
+    first: dict[str, Any] = field(default_factory=dict)
+    varying: dict[str, None] = field(default_factory=dict)
+    has_raised: bool = False
+
+    @property
+    def is_nothing(self) -> bool:
+        """Whether all calls that returned, returned nothing (None)."""
+        return not self.varying and all(note is None for note in self.first.values())
+
+    def add(self, round: int, test: str, note: Any) -> None:
+        """The next call of the place in this test has returned, or raised."""
+        if isinstance(note, dict) and "raised" in note:
+            self.has_raised = True
+            return
+        key = Idle.key(round, test)
+        first = self.first.setdefault(key, note)
+        if first is note or note == {"same": True}:
+            return
+        if type(first) is not type(note) or first != note:
+            self.varying[key] = None
+
+
+def idle_of(operation: Operation, pattern: Pattern | None, answers: RecordedAnswers) -> Any:
+    """What the program gets when the command is left out, as a mutant carries it.
+
+    What the vocabulary says goes first. Raises NoAnswerError.
+    """
+    told = pattern.idle if pattern is not None and pattern.idle is not None else operation.idle
+    if told is not None:
+        return Idle((told,)).data()
+    if not answers.first:
+        raise NoAnswerError(f"no recorded call returned, so nobody knows what it answers; {_HINT}")
+    numbers: dict[str, int] = {}
+    of_test = {}
+    kept: list[Any] = []
+    for key, note in answers.first.items():
+        data = _kept(note)
+        number = numbers.setdefault(json.dumps(data), len(numbers))
+        if number == len(kept):
+            kept.append(data)
+        of_test[key] = number
+    if sum(map(len, numbers)) > LIMIT:
+        raise NoAnswerError(f"what it answers in all tests is more than {LIMIT} characters; {_HINT}")
+    is_single = len(kept) == 1 and not answers.varying
+    return Idle(tuple(kept), {} if is_single else of_test, tuple(answers.varying)).data()
+
+
+_HINT = "say in the vocabulary what to answer while the robot does nothing: idle = …"
+
+
+def _kept(note: Any) -> Any:
+    if is_plain(note):
+        return note
+    data = note.get("kept", _MISSING)
+    if data is _MISSING:
+        raise NoAnswerError(f"what it answers cannot be kept ({note['opaque']}); {_HINT}")
+    return data
+
 
 #: operations and simulated seconds that a test may use beyond its multiple of the baseline
 SPARE_OPERATIONS, SPARE_SIMULATED = 200, 10.0

@@ -1,33 +1,146 @@
-"""Taking the baseline: the runs of the suite on the original, and what they tell."""
+"""Taking the baseline: the runs of the suite on the original, and what they tell.
+
+Tests that fail on the original are an error if they do in every round, and are set aside where they do so in
+some. Each is named with its seed and with the command that makes plain pytest draw the seeds of that round.
+Whether the probes can be read at all is looked at here: without them comparisons would say nothing.
+"""
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from mutabot.border.events import Event, Remark, TestEnd
+from mutabot.border.events import Event, Problem, Remark, TestEnd
 from mutabot.border.job import Job
-from mutabot.campaign.comparing.moments import moments_in, note_moments, strides_of
+from mutabot.campaign.comparing.observation import moments_in, note_moments, strides_of
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.workers.executor import Executor
-from mutabot.campaign.workers.said import ABNORMAL, said_in
-from mutabot.campaign.workers.task import Result, Task, at, death
+from mutabot.campaign.workers.task import ABNORMAL, Executor, Result, Task, at, death, said_in
 from mutabot.errors import BaselineError, NothingToDoError
 from mutabot.families import OF_CALLS
 from mutabot.faults import Preparation, TextSeen
 from mutabot.frozen import frozen
-from mutabot.model import Instrumentation, ProgramText, Span
+from mutabot.model import Instrumentation, Probe, ProgramText, Span, Vocabulary
 from mutabot.model.mutant import Place
+from mutabot.model.seed import CAMPAIGN_SEED_VARIABLE, DEFAULT_SEED, ROUND_VARIABLE, derive
 from mutabot.operators import load_all
 from mutabot.vocabulary import problem_error
 
-from .answers import RecordedAnswers
-from .baseline import Baseline, Hit, cost
-from .failing import refuse_failing, rounds_to_repeat, why_set_aside
+from .baseline import Baseline, Hit, RecordedAnswers, cost
 from .observed import observations_of, places_of, refused_of
-from .readability import note_readability, refuse_unreadable
 from .site_names import Sources
+
+#: how the reason begins why such a test is set aside: its seed makes it fail, not chance
+FAILS = "fails on the unmutated program"
+#: the tests that fail in all runs of a round, by (round, test)
+Failing = Mapping[tuple[int, str], TestEnd]
+
+
+def rounds_to_repeat(ends: Mapping[int, Iterable[TestEnd]]) -> list[int]:
+    """The rounds that a second run says more about: tests fail in them, and none fails in all rounds.
+
+    With a single round, that is the one if tests fail in it.
+    """
+    failed = {round: {end.test for end in these if end.outcome == "failed"} for round, these in ends.items()}
+    if len(failed) > 1 and set.intersection(*failed.values()):
+        return []
+    return [round for round, tests in sorted(failed.items()) if tests]
+
+
+def repeat_command(request: Request, round: int, test: str) -> str:
+    """What to type to run this test with plain pytest as in this round, from the project's folder."""
+    variables = f"{ROUND_VARIABLE}={round + 1}"
+    if request.seed != DEFAULT_SEED:
+        variables += f" {CAMPAIGN_SEED_VARIABLE}={request.seed}"
+    return f"{variables} {shlex.join(['pytest', *request.configuration.pytest_args, test])}"
+
+
+def why_set_aside(request: Request, round: int, end: TestEnd) -> str:
+    """Why a test that fails on the original in this round is set aside in it."""
+    seed = derive(request.seed, round, end.test)
+    text = f"{FAILS} with seed {seed}: {_first_line(end)}"
+    return f"{text}; repeat it by {repeat_command(request, round, end.test)}"
+
+
+def refuse_failing(request: Request, failing: Failing) -> None:
+    """Raise BaselineError if a test fails in all rounds."""
+    rounds = range(request.rounds)
+    always = [end for (_, test), end in failing.items() if all((round, test) in failing for round in rounds)]
+    found = list({end.test: end for end in reversed(always)}.values())[::-1]
+    if not found:
+        return
+    where = "in round 1" if request.rounds == 1 else f"in all {request.rounds} rounds"
+    shown = "\n".join(f"  {end.test}: {_first_line(end)}" for end in found[:10])
+    more = f"\n  … and {len(found) - 10} more" if len(found) > 10 else ""
+    noun = "test fails" if len(found) == 1 else "tests fail"
+    again = f"\nrepeat by {repeat_command(request, 0, found[0].test)}"
+    raise BaselineError(
+        f"{len(found)} {noun} on the unmutated program {where}:\n{shown}{more}{again}",
+        tests=[end.test for end in found],
+    )
+
+
+def _first_line(end: TestEnd) -> str:
+    lines = (end.message or "").strip().splitlines()
+    return lines[0] if lines else "no message"
+
+
+#: why a probe says nothing that was read without an error
+_NOTHING = "it reads nothing (None); a probe returns what it reads"
+
+
+def refuse_unreadable(vocabulary: Vocabulary, ends: Sequence[TestEnd]) -> None:
+    """Refuse a probe that no test of the original can read.
+
+    ``ends``: the tests that passed.
+
+    Raises ConfigurationError that names the key, the reason and what is needed.
+    """
+    ends = _with_calls(ends)
+    for probe in vocabulary.probes:
+        reasons = [_why_not(probe, end) for end in ends]
+        if reasons and all(reasons):
+            text = f"{probe.target} cannot be read at the end of any test: {reasons[0]}"
+            raise problem_error(Problem(probe.source, "call", text))
+
+
+def note_readability(vocabulary: Vocabulary, ends: Sequence[TestEnd], progress: Progress) -> None:
+    """Say which probes some tests cannot read, and that a clock never ticks."""
+    ends = _with_calls(ends)
+    for probe in vocabulary.probes:
+        blind = {end.test: why for end in ends if (why := _why_not(probe, end)) is not None}
+        if blind:
+            test, why = next(iter(blind.items()))
+            count = len({end.test for end in ends})
+            progress.note(
+                f"{probe.target} cannot be read in {len(blind)} of {count} tests, such as {test} ({why}): "
+                "what survives there is not called indistinguishable"
+            )
+    if vocabulary.clock is not None and ends and all(end.simulated is None for end in ends):
+        progress.note(
+            f"the clock {vocabulary.clock.tick} never ticks in a test: there is no limit of simulated time"
+        )
+
+
+def _with_calls(ends: Sequence[TestEnd]) -> Sequence[TestEnd]:
+    """The tests that have anything to do with the robot; all of them if none has."""
+    return [end for end in ends if end.trace] or [end for end in ends if end.outcome != "skipped"]
+
+
+def is_read(probe: Probe, names: Iterable[str]) -> bool:
+    """Whether there is a value of the probe among these names."""
+    return any(
+        name == probe.target or (name.startswith(probe.target) and name[len(probe.target)] in ".[#")
+        for name in names
+    )
+
+
+def _why_not(probe: Probe, end: TestEnd) -> str | None:
+    if probe.target in end.unread:
+        return end.unread[probe.target]
+    return None if is_read(probe, end.probes) else _NOTHING
+
 
 REPETITIONS = 2
 _KNOWN_LATER = (

@@ -12,14 +12,13 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from mutabot.border.codec import to_data
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, Sink
 from mutabot.campaign.engines.choice import run_trials
 from mutabot.campaign.engines.engine import Trial
-from mutabot.campaign.faults.ladders import apart
+from mutabot.campaign.faults.demanded import apart
 from mutabot.campaign.plan.plan import shuffled
 from mutabot.campaign.reuse.reuse import Reused
 from mutabot.campaign.search.search import run_ladders
-from mutabot.campaign.sink import Sink
 from mutabot.campaign.workers.interruption import OutOfTimeError, limited
 from mutabot.journal.records import BUDGET, Budgeted
 from mutabot.model import Mutant, Outcome, Verdict

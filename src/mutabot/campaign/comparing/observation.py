@@ -1,19 +1,142 @@
-"""Comparing how a test ended as a mutant with how it ended as the original."""
+"""Comparing how a test ended as a mutant with how it ended as the original.
+
+Probes are read along the way of a test too, as often as they cost next to nothing; they are compared at
+moments that mutant and original have in common.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from typing import Any
+from typing import Any, Protocol
 
+from mutabot.border.events import TestEnd
+from mutabot.campaign.request import Progress
 from mutabot.frozen import frozen
 from mutabot.model import Compared, Operation, Probe
 from mutabot.model.outcome import Figure
 from mutabot.model.values.quantity import is_number, told_apart, value_text
 
 from .orientations import Angles, Command, Turned, turned_parts, values_apart
-from .way import compare_moments
+
+#: share of a test's processor time that readings along the way may take, and the seconds that any test may
+_SHARE, _LEAST = 0.01, 0.005
+#: after every how many commands; a coarser one where this takes too long
+_STRIDES = (1, 4, 16, 64)
+#: readings before the first thinning inside
+_FULL = 100
+
+
+def strides_of(ends: Mapping[tuple[int, str], TestEnd]) -> dict[tuple[int, str], int]:
+    """After every how many commands the probes are read, by round and test; tests without are left out."""
+    read = [end for end in ends.values() if end.reading is not None]
+    if not read or any(end.not_along for end in ends.values()):
+        return {}
+    seconds = min(end.reading for end in read if end.reading is not None)
+    found = {}
+    for key, end in ends.items():
+        may_take = max(_LEAST, _SHARE * end.cpu)
+        possible = [one for one in _STRIDES if one <= end.commands]
+        fitting = [one for one in possible if _readings_at(end.commands, one) * seconds <= may_take]
+        if fitting:
+            found[key] = fitting[0]
+    return found
+
+
+def moments_in(strides: Mapping[tuple[int, str], int], round: int) -> dict[str, int]:
+    """The strides of a round, by test, for its jobs."""
+    return {test: stride for (where, test), stride in strides.items() if where == round}
+
+
+def note_moments(ends: Iterable[TestEnd], progress: Progress) -> None:
+    """Say once why probes are not read along the way."""
+    why = next((end.not_along for end in ends if end.not_along), None)
+    if why is not None:
+        progress.note(f"the probes are read at the ends of tests only, not along the way: {why}")
+
+
+def _readings_at(commands: int, stride: int) -> int:
+    """About how many readings a test has."""
+    moments = commands // stride
+    return moments if moments <= _FULL else _FULL + 50 * (moments // _FULL).bit_length()
+
+
+#: differences of two readings, each with its distance, greatest first
+Differences = Callable[[Mapping[str, Any], Mapping[str, Any]], Sequence[tuple[float, str]]]
+
+
+class Called(Protocol):
+    """One call of a trace."""
+
+    @property
+    def key(self) -> str:
+        """Where and what."""
+
+
+class Seen(Protocol):
+    """What is needed of a test."""
+
+    @property
+    def events(self) -> Sequence[Called]:
+        """The calls in order."""
+
+    @property
+    def moments(self) -> Sequence[Any] | None:
+        """As in ``TestEnd.moments``; None if they are not to be compared."""
+
+
+@frozen
+class Way:
+    """How far the way of a mutant's test is from the original's.
+
+    Attributes:
+        distance: the greatest difference, in multiples of its probe's tolerance; None if there is nothing to
+            compare.
+        line: that difference in words, with the call after which it was seen.
+        count: moments that were compared.
+    """
+
+    distance: float | None = None
+    line: str = ""
+    count: int = 0
+
+
+def compare_moments(original: Seen, mutant: Seen, differences: Differences) -> Way:
+    """Compare readings after the same calls, as far as both made the same calls."""
+    before, after = _readings(original.moments or ()), _readings(mutant.moments or ())
+    same = _same_calls(original, mutant)
+    common = [call for call in before if call in after and call <= same]
+    if not common:
+        return Way()
+    worst, line = 0.0, ""
+    for call in common:
+        if before[call] == after[call]:
+            continue
+        for distance, text in differences(before[call], after[call])[:1]:
+            if distance > worst:
+                worst = distance
+                line = f"on the way, after call {call}, {mutant.events[call - 1].key}: {text}"
+    return Way(worst, line, len(common))
+
+
+def _same_calls(original: Seen, mutant: Seen) -> int:
+    """How many calls at the beginning are the same."""
+    for number, (before, after) in enumerate(zip(original.events, mutant.events, strict=False)):
+        if before.key != after.key:
+            return number
+    return min(len(original.events), len(mutant.events))
+
+
+def _readings(moments: Sequence[Any]) -> dict[int, dict[str, Any]]:
+    """All parts at each moment; a trace that is cut off has its last number more than once."""
+    found: dict[int, dict[str, Any]] = {}
+    last: dict[str, Any] = {}
+    for call, parts, is_whole in moments:
+        last = dict(parts) if is_whole else {**last, **parts}
+        found.setdefault(call, last)
+    return found
+
 
 #: greatest difference of two equal numbers where the vocabulary names no probe
 DEFAULT_TOLERANCE = 1e-6

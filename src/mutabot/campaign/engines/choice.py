@@ -7,9 +7,9 @@ import pkgutil
 from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import cache
 
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, Sink
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.sink import Sink
+from mutabot.errors import UsageError, unknown_name_text
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
 
@@ -29,8 +29,12 @@ def all_engines() -> tuple[Engine, ...]:
 
 
 def engines_of(request: Request) -> tuple[Engine, ...]:
-    """The engines that a campaign may use, in the order in which they are asked."""
-    return tuple(engine for engine in all_engines() if request.engine in (AUTO, engine.name))
+    """The engines that a campaign may use, in the order of asking. Raises UsageError if none."""
+    found = tuple(engine for engine in all_engines() if request.engine in (AUTO, engine.name))
+    if not found:
+        names = (AUTO, *(engine.name for engine in all_engines()))
+        raise UsageError(unknown_name_text("engine", request.engine, names))
+    return found
 
 
 def first_engine(request: Request) -> Engine:

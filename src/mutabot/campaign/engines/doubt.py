@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.baseline.failing import FAILS
+from mutabot.campaign.baseline.taking import FAILS
 from mutabot.campaign.faults.providers import provider
 from mutabot.model import Mutant, Outcome, Verdict
 

@@ -10,7 +10,7 @@ from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.observed import observation, places_of
 from mutabot.campaign.baseline.site_names import Sources
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.comparing.moments import moments_in
+from mutabot.campaign.comparing.observation import moments_in
 from mutabot.campaign.workers.task import Result, Task, death
 from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.outcome import in_words

@@ -11,9 +11,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from mutabot.border.codec import to_data
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, Sink
 from mutabot.campaign.request import Progress
-from mutabot.campaign.sink import Sink
 from mutabot.journal.records import (
     FLAKY,
     REPEATS,

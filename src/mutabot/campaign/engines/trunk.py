@@ -25,8 +25,7 @@ from mutabot.border.events import (
 from mutabot.border.job import Branching
 from mutabot.campaign.baseline.observed import observation, place_of
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.comparing.moments import moments_in
-from mutabot.campaign.comparing.observation import Observation
+from mutabot.campaign.comparing.observation import Observation, moments_in
 from mutabot.campaign.workers.task import Result, Task, at, death, how_ended
 from mutabot.families import CONTROL
 from mutabot.model import Instrumentation, Mutant, Outcome

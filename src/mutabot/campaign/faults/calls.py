@@ -1,4 +1,6 @@
-"""Faults of calls and of messages: operators at places make mutants; what cannot matter is left out."""
+"""Faults of calls and of messages: operators at places make mutants, at every call or at moments; what cannot
+matter is left out, with the reason.
+"""
 
 from __future__ import annotations
 
@@ -9,23 +11,85 @@ from dataclasses import replace
 from random import Random
 from typing import Any, ClassVar
 
-from mutabot.campaign.baseline.answers import NoAnswerError, RecordedAnswers, idle_of
-from mutabot.campaign.baseline.baseline import Baseline, Hit
+from mutabot.campaign.baseline.baseline import Baseline, Hit, NoAnswerError, RecordedAnswers, idle_of
 from mutabot.errors import OperatorError
 from mutabot.families import CALLS, CATALOGUE, GRADED, MESSAGES, MIDDLEWARE, ROBOT
 from mutabot.faults import FaultProvider, Original, Planned, Planted, Preparation, Project
 from mutabot.frozen import frozen
-from mutabot.model import Call, Kind, Middleware, Mutant, Operation, Reply, Role, Site, Vocabulary
-from mutabot.model.mutant import Place
-from mutabot.model.values.quantity import is_reading_of
-from mutabot.operators import Need, Operator, Subject, load_all
+from mutabot.model import Call, Kind, Middleware, Moment, Mutant, Operation, Reply, Role, Site, Vocabulary
+from mutabot.model.mutant import Place, When
+from mutabot.model.values.quantity import is_number, is_reading_of
+from mutabot.operators import Need, Operator, Subject, load_all, operator
 from mutabot.operators.operator import with_operation
 from mutabot.operators.passage import Passage, rehearse
 from mutabot.operators.registry import operator as operator_of
 
 from .demanded import ladders_last, with_demanded
-from .moments import at_moments
-from .signs import NO_SIGN, has_negative
+
+
+def at_moments(
+    planted: Sequence[Planted], baseline: Baseline, vocabulary: Vocabulary, wanted: Sequence[Moment | None]
+) -> list[Planted]:
+    """Each mutant at each of these moments; None is every call."""
+    found = [one for one in planted if one.reason is not None]
+    for one in planted:
+        for moment in wanted if one.reason is None else ():
+            made = one.mutant if moment is None else _at(one.mutant, moment, baseline)
+            reason = _why_not(made, vocabulary, baseline)
+            order = one.order if reason is None else (1, *one.order[1:])  # left out here: behind the others
+            found.append(replace(one, mutant=made, reason=reason, order=order))
+    return found
+
+
+def _at(mutant: Mutant, moment: Moment, baseline: Baseline) -> Mutant:
+    if moment.when is When.ONCE:
+        counts = {f"{round} {test}": count for (round, test), count in _calls_at(mutant, baseline).items()}
+        moment = replace(moment, calls=counts)
+    return replace(mutant, moment=moment, description=f"{mutant.description}, {moment.words}")
+
+
+def _why_not(mutant: Mutant, vocabulary: Vocabulary, baseline: Baseline) -> str | None:
+    moment = mutant.moment
+    if moment is None:
+        return None
+    if Need.MEMORY in operator(mutant.operator).needs:
+        return "what it does to a call depends on earlier ones, so that it acts at all of them"
+    if moment.asks_time and vocabulary.clock is None:
+        return "the vocabulary names no clock"
+    most = max(_calls_at(mutant, baseline).values(), default=0)
+    if moment.first > most and not moment.asks_time:
+        return f"no test makes call {moment.first:g} here; the most are {most}"
+    return None
+
+
+def _calls_at(mutant: Mutant, baseline: Baseline) -> Counter[tuple[int, str]]:
+    """How many calls the site has in each test of each round."""
+    return Counter(hit.where for hit in baseline.hits.get(Place.of(mutant), ()))
+
+
+#: why a speed or ratio is not reversed
+NO_SIGN = (
+    "no negative value was recorded, so it may be a mere magnitude; if it has a direction, give it an axis, "
+    "or a range or clip that goes below 0"
+)
+
+
+def has_negative(baseline: Baseline, place: Place, subject: Subject) -> bool:
+    """Whether any call of the same command has a negative value of the subject's quantity."""
+    name = subject.quantity.name if subject.quantity is not None else ""
+    return any(
+        number < 0
+        for other, hits in baseline.hits.items()
+        if (other.operation, other.pattern) == (place.operation, place.pattern)
+        for hit in hits
+        for number in _numbers({**hit.read, **hit.written}.get(name))
+    )
+
+
+def _numbers(value: Any) -> list[float]:
+    items = value if isinstance(value, list | tuple) else [value]
+    return [item for item in items if is_number(item)]
+
 
 _LOST_WRITE = (
     "the program writes to what the call returns, which is the robot's own memory: "

@@ -1,22 +1,29 @@
 """The plan: the mutants of all providers that are asked for, with their numbers, or a random sample of them.
 
 What is drawn depends on the campaign's seed and the mutants' ids alone, so it is the same on every machine; a
-new mutant elsewhere takes the place of one other at most, and a larger sample holds the smaller one.
+new mutant elsewhere takes the place of one other at most, and a larger sample holds the smaller one. Mutants
+of earlier campaigns stay in the journal with their outcomes, and reports show them beside those of the last.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from hashlib import blake2b
 from itertools import groupby
 
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.faults.providers import asked_for
+from mutabot.campaign.faults.providers import asked_for, provider, rules_of
+from mutabot.campaign.request import Request
+from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.faults import Preparation, Project
 from mutabot.frozen import frozen
-from mutabot.journal.records import Drawing, Stratum
+from mutabot.journal.journal import Journal
+from mutabot.journal.records import Drawing, Kept, Reaching, Stratum
 from mutabot.model import LeftOut, Mutant
+from mutabot.model.mutant import Place
+from mutabot.operators.operator import Rule, in_order
+from mutabot.settings.families import known_families
 from mutabot.settings.options import Sample
 
 
@@ -90,3 +97,132 @@ def make_plan(baseline: Baseline, project: Project) -> Plan:
         made = [one.mutant for one in found if one.reason is None]
         plan.mutants.extend(replace(one, number=number) for number, one in enumerate(made, start=first))
     return plan
+
+
+def summaries(mutants: Iterable[Mutant]) -> dict[str, str]:
+    """The summary of each operator that made one of the mutants, by its name."""
+    mutants = list(mutants)
+    providers = {one.provider: provider(one.provider) for one in mutants}
+    known = {(name, rule.name): rule.summary for name, one in providers.items() for rule in one.rules()}
+    used = sorted({(one.family, one.operator, one.provider) for one in mutants})
+    return {name: known[by, name] for _, name, by in used if (by, name) in known}
+
+
+def drawing(mutants: Iterable[Mutant]) -> list[str]:
+    """The names of the operators among them that draw a number for each round."""
+    used = {(mutant.provider, mutant.operator) for mutant in mutants}
+    return sorted(name for by, name in used if provider(by).draws(name))
+
+
+def reaching(baseline: Baseline, mutants: Iterable[Mutant]) -> Reaching:
+    """Which tests reach the sites of the mutants in any round."""
+    numbers: dict[str, int] = {}
+    sites: dict[str, set[int]] = {}
+    for place in dict.fromkeys(map(Place.of, mutants)):
+        reached = sites.setdefault(place.site.id, set())
+        for round in range(len(baseline.tests)):
+            tests = baseline.reaching.get((round, place), ())
+            reached.update(numbers.setdefault(test, len(numbers)) for test in tests)
+    return Reaching(tuple(numbers), {site: tuple(sorted(found)) for site, found in sites.items()})
+
+
+def carry(
+    known: Iterable[Mutant], request: Request, planned: Sequence[Mutant], whole: Iterable[Mutant]
+) -> list[Mutant]:
+    """The mutants of earlier campaigns that the program still has and that are not planned now.
+
+    ``whole``: all that the program has now, of the families of this campaign, with their numbers. Mutants of
+    other families are kept, for of these nothing is known now. A number that is taken gives way.
+    """
+    now = {mutant.id: mutant for mutant in whole}
+    done = {mutant.id for mutant in planned}
+    found = [
+        now.get(mutant.id, mutant)
+        for mutant in known
+        if mutant.id not in done and (mutant.id in now or mutant.family not in request.families)
+    ]
+    return renumbered(found, planned)
+
+
+def renumbered(mutants: Sequence[Mutant], planned: Sequence[Mutant]) -> list[Mutant]:
+    """Mutants beside a plan, by number; a number that is taken gives way."""
+    taken = {mutant.number for mutant in planned}
+    last = max((mutant.number for mutant in (*planned, *mutants)), default=0)
+    found = []
+    for mutant in sorted(mutants, key=lambda mutant: mutant.number):
+        if mutant.number in taken:
+            last += 1
+            found.append(replace(mutant, number=last))
+        else:
+            found.append(mutant)
+        taken.add(found[-1].number)
+    return found
+
+
+def note_outdated(journal: Journal, request: Request, dependencies: Dependencies) -> None:
+    """Find out which mutants of earlier campaigns depend on something that has changed since."""
+    known = [mutant for mutant, _ in journal.known()]
+    if not known:
+        return
+    kept = journal.kept()
+    journal.set_known(
+        [(mutant, _is_outdated(mutant, journal, kept, request, dependencies)) for mutant in known]
+    )
+    journal.add_parts(dependencies.new_parts())
+
+
+def _is_outdated(
+    mutant: Mutant,
+    journal: Journal,
+    kept: dict[tuple[str, int], Kept],
+    request: Request,
+    dependencies: Dependencies,
+) -> bool:
+    for round in range(request.rounds):
+        outcome = kept.get((mutant.id, round))
+        if outcome is None:
+            return True
+        if mutant.family not in request.families:
+            if not dependencies.still_hold(outcome.key, journal.parts(outcome.key.split()[1]) or {}):
+                return True
+        elif dependencies.holding(outcome.key, mutant, round) is None:
+            return True
+    return False
+
+
+@frozen
+class ListedRule:
+    """One operator.
+
+    Attributes:
+        name, family, summary: the operator's own.
+        where: where it applies, in the words of vocabularies; empty if it does not say.
+        source: the bug class that it stands for, or the published operators that it makes; else empty.
+    """
+
+    name: str
+    family: str
+    summary: str
+    where: str
+    source: str
+
+
+def listed_rules(families: Collection[str] = ()) -> list[ListedRule]:
+    """The operators of these families, or all: by family, in the order of the documentation.
+
+    Raises OperatorError for a plug-in that is of no use.
+    """
+    wanted = [family for family in known_families() if not families or family in families]
+    rules = rules_of(wanted)
+    return [
+        ListedRule(rule.name, rule.family, rule.summary, rule.where, _source(rule))
+        for family in wanted
+        for rule in in_order(rule for rule in rules if rule.family == family)
+    ]
+
+
+def _source(rule: Rule) -> str:
+    if rule.stands_for or not rule.published:
+        return rule.stands_for
+    rows = "; ".join(f"{row.original} → {row.mutant}" for row in rule.published)
+    return f"Published operators: {rows}."

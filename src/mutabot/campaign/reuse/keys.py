@@ -33,8 +33,7 @@ from mutabot.campaign.pieces.reach import Reach, Reached
 from mutabot.campaign.request import Request
 from mutabot.model import Mutant, Outcome, Vocabulary
 
-from .snapshot import _HASH, _digest_of
-from .state import State, read
+from .snapshot import _HASH, State, _digest_of, read
 
 #: what something is made of: names, and a digest or a plain value for each
 Parts = Mapping[str, str]

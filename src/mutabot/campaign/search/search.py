@@ -18,11 +18,10 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
-from mutabot.campaign.campaign import Campaign
+from mutabot.campaign.campaign import Campaign, Sink
 from mutabot.campaign.engines.choice import run_trials
 from mutabot.campaign.engines.engine import Trial
-from mutabot.campaign.faults.ladders import Ladder
-from mutabot.campaign.sink import Sink
+from mutabot.campaign.faults.demanded import Ladder
 from mutabot.model import Outcome
 from mutabot.model.graded import Seen, bracket_of, seen
 

@@ -25,7 +25,7 @@ from mutabot.border.keeper import LEFT
 from mutabot.border.processes import FOLDER, SESSION, SUFFIX
 from mutabot.frozen import frozen
 
-from .removal import remove_folder
+from .remains import remove_folder
 
 _LOG_BYTES = 4000
 #: seconds that a keeper may take to end all it looks after

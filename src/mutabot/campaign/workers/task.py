@@ -1,10 +1,17 @@
-"""Tasks and results: a job with what is needed to run it, and what became of the process that ran it."""
+"""Tasks and results: a job with what is needed to run it, and what became of the process; and what runs them.
+
+An executor only runs what it is given, in worker processes on this machine or on others: which tasks there
+are, and what their results mean, is the engines' business. A package brings another executor by a
+``campaign.request.ExecutorChoice``.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 from mutabot.border.events import (
     Acted,
@@ -28,7 +35,36 @@ from mutabot.border.processes import UNWRITTEN
 from mutabot.frozen import frozen
 from mutabot.model import Span
 
-from .said import last_line
+#: pytest's exit statuses after which a run of the suite says nothing about its tests
+ABNORMAL = {2: "it was interrupted", 3: "an internal error", 4: "a wrong command line or configuration"}
+_ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
+#: what pytest prints around a mistake explains nothing
+_OF_NO_USE = re.compile(
+    r"\s*(inifile|rootdir|configfile|cachedir|plugins|testpaths): |platform |collected \d|=+ .* =+$"
+    r"|.*usage: .*\[options\]"
+)
+_LINES = 20
+
+
+def said_in(log: str) -> str:
+    """The last lines of what a process printed, in their own layout, as an appendix to a message."""
+    lines = [line.rstrip() for line in _ESCAPES.sub("", log).splitlines() if line.strip()]
+    lines = [_without_frame(line) for line in lines if not _OF_NO_USE.match(line)] or lines
+    if not lines:
+        return ""
+    return "; pytest said:" + "".join(f"\n  {line}" for line in lines[-_LINES:])
+
+
+def _without_frame(line: str) -> str:
+    """A line without the exclamation marks that pytest fills it up with."""
+    return line.strip("! ") if line.startswith("!!!") else line
+
+
+def last_line(log: str) -> str:
+    """The last line with text in it."""
+    lines = [line.strip() for line in log.splitlines() if line.strip()]
+    return lines[-1][:300] if lines else ""
+
 
 #: seconds a worker may take until its first test begins, at least
 STARTUP_SECONDS = 60.0
@@ -184,3 +220,32 @@ def how_ended(code: int) -> str:
 def at(result: Result) -> str:
     """Where a worker was when its time was up, to be added to how it ended; empty if that is not known."""
     return f"; it was at {result.where}" if result.where is not None else ""
+
+
+class Executor(Protocol):
+    """Runs tasks, as many at a time as it may. Leaving its context ends whatever still runs.
+
+    Attributes:
+        spread: how many places share nothing, neither trunks nor fork servers: work is worth cutting into
+            parts for them, and to begin with its longest. 1 on one machine.
+        remarks: what is to be known of where tasks ran, for whoever reads the journal.
+    """
+
+    @property
+    def spread(self) -> int: ...
+
+    @property
+    def remarks(self) -> Sequence[str]: ...
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[Result]:
+        """Results in the order in which tasks end. Tasks are taken from the iterable as places free up."""
+
+    def events(self, tasks: Iterable[Task]) -> Iterator[Result | tuple[Task, Event]]:
+        """The same, with each event as it comes.
+
+        A task whose job branches is a trunk: the executor gives it and its branches the tokens by which they
+        share its places with the other tasks. A task that is ``alone`` has nothing beside it.
+        """
+
+    def apart(self) -> AbstractContextManager[Executor]:
+        """An executor for one task at a time, which shares nothing with what runs here meanwhile."""

@@ -1,4 +1,4 @@
-"""Workers that only wait, for what may never come: until their time is up they need no processor.
+"""Workers that only wait, for what may never come, and who may compute in their place.
 
 A place that such a worker holds is lent to the next task. What a mutant of a message does to a program is
 often just that: it waits. One place at a time stays one place: whoever asks for no neighbours has none.
@@ -6,12 +6,18 @@ often just that: it waits. One place at a time stays one place: whoever asks for
 Nothing is lent where nobody can tell waiting from being kept waiting: a process that gets little of a busy
 machine is not idle. So what counts is what the tasks of a worker ask for, not what they get; and as long as
 processors are short on the machine, whoever uses them, nothing is lent at all.
+
+Of the token pool this is the controller's side: a pipe with one byte per free token, as many tokens as
+processes may compute. A trunk is started with a token that the controller took for it; from then on it takes
+and gives back by itself and says how many it holds, so that the tokens of a trunk that dies are not lost.
 """
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Protocol
 
@@ -102,3 +108,49 @@ def asks_for_little(before: Accounts, now: Accounts, seconds: float) -> bool:
         return False
     asked = sum(one.ran + one.queued for one in now.values())
     return asked - sum(one.ran + one.queued for one in before.values()) < seconds
+
+
+_BYTE = b"t"
+#: bytes that a pipe holds at most
+_MOST_TOKENS = 1 << 20
+
+
+class TokenPool:
+    """A pool of ``size`` tokens, all of them free at first."""
+
+    def __init__(self, size: int) -> None:
+        self._size = size
+        self.reading, self._writing = os.pipe()
+        # whatever a test puts there or takes away, nobody may wait for it
+        os.set_blocking(self.reading, False)
+        os.set_blocking(self._writing, False)
+        self.give_back(size)
+
+    @property
+    def descriptors(self) -> tuple[int, int]:
+        """Reading and writing end, for a trunk."""
+        return self.reading, self._writing
+
+    def take(self) -> bool:
+        """Take a free token, if there is one."""
+        try:
+            return bool(os.read(self.reading, 1))
+        except BlockingIOError:
+            return False
+
+    def give_back(self, count: int) -> None:
+        """Put tokens back; never more than there are."""
+        if count > 0:
+            with suppress(BlockingIOError):
+                os.write(self._writing, _BYTE * min(count, self._size))
+
+    def refill(self) -> None:
+        """Make all tokens free again; only when nobody holds any."""
+        with suppress(BlockingIOError):
+            os.read(self.reading, _MOST_TOKENS)
+        self.give_back(self._size)
+
+    def close(self) -> None:
+        """Close both ends."""
+        os.close(self.reading)
+        os.close(self._writing)

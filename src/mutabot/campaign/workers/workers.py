@@ -21,14 +21,11 @@ from mutabot.border.time_used import MOST, TimeUsed
 from mutabot.errors import JournalError
 
 from .forkserver import LOOKS, Copy, ForkServer
-from .interruption import interruptible
-from .pause import Pause
+from .interruption import Pause, interruptible
 from .processes import EventStream, Home, Spawned, refuse_full_disk
-from .remains import claim, end_abandoned, end_left_over
-from .removal import remove_folder
+from .remains import claim, end_abandoned, end_left_over, remove_folder
 from .task import Result, Task
-from .token_pool import TokenPool
-from .waiting import PERIOD, Waiting
+from .waiting import PERIOD, TokenPool, Waiting
 
 #: said of a process whose own folder somebody deleted while it ran: what it kept there is lost
 _HOME_LOST = Untrusted("the folder in which the tests' process worked was deleted or closed while it ran")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 
-from mutabot.analysis.stored.table import COLUMNS, rows
+from mutabot.analysis.stored import COLUMNS, rows
 from mutabot.report.format import Format, Material
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from mutabot.analysis.results import MutantResult
 from mutabot.report.format import Format, Material
-from mutabot.report.status import survivor_text
+from mutabot.report.texts import survivor_text
 
 #: annotations of each level; the tenth notice says what is not shown
 _LIMITS = {"warning": 10, "notice": 9}

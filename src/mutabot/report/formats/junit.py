@@ -10,8 +10,7 @@ from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group, groups_of
 from mutabot.model import Verdict
 from mutabot.report.format import Format, Material
-from mutabot.report.status import reason_of, rounds_text, short_reason, status_of, why_alone
-from mutabot.report.texts import one_line
+from mutabot.report.texts import one_line, reason_of, rounds_text, short_reason, status_of, why_alone
 
 #: state to the element that says so; states that are not here passed
 _ELEMENT: Mapping[Verdict | None, str] = {

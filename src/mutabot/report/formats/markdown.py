@@ -13,8 +13,7 @@ from mutabot.analysis.thresholds.words import line_of
 from mutabot.model import Verdict
 from mutabot.report.changes import change_lines
 from mutabot.report.format import Format, Material
-from mutabot.report.status import rounds_text, short_reason, status_of, why_alone
-from mutabot.report.texts import escaped, table
+from mutabot.report.texts import escaped, rounds_text, short_reason, status_of, table, why_alone
 
 #: rows of a table of mutants; GitHub takes no summary of more than a megabyte
 _ROWS = 100

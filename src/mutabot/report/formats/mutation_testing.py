@@ -14,7 +14,7 @@ from mutabot.analysis.results import MutantResult
 from mutabot.model import Mutant, Outcome, Span, Verdict
 from mutabot.report.as_json import dumps
 from mutabot.report.format import Format, Material, utf16
-from mutabot.report.status import reason_of, status_of
+from mutabot.report.texts import reason_of, status_of
 
 _SCHEMA_VERSION = "2.0"
 #: in percent; what the page paints green and red. They are the schema's customary ones, and no limit of ours

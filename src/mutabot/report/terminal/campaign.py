@@ -30,8 +30,9 @@ from mutabot.report.terminal.console import (
     plural,
     short_place,
 )
-from mutabot.report.terminal.mutant.happened import unlooked_lines
-from mutabot.report.terminal.trust import budget_lines, control_lines, error_lines, since_lines, trust_lines
+
+from .mutant import unlooked_lines
+from .trust import budget_lines, control_lines, error_lines, since_lines, trust_lines
 
 #: verdicts outside the score that a user should look at, in this order
 _TOLD = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)

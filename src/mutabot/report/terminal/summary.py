@@ -11,7 +11,6 @@ from rich.text import Text
 from mutabot.analysis.results import Results
 from mutabot.model import Verdict
 from mutabot.report.terminal.console import between, heading, make_table, percent
-from mutabot.report.terminal.mutant.happened import unlooked_lines
 from mutabot.report.terminal.trust import budget_lines, error_lines, since_lines, trust_lines
 
 from .campaign import (
@@ -23,6 +22,7 @@ from .campaign import (
     survivor_lines,
     title,
 )
+from .mutant import unlooked_lines
 
 #: survivors that are shown
 _SURVIVORS = 10

@@ -6,11 +6,9 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from mutabot.analysis.thresholds.comparing import Comparison
 from mutabot.analysis.thresholds.demands import suggested
-from mutabot.analysis.thresholds.ladders import Ladder, Step
-from mutabot.analysis.thresholds.rounds import LadderRound
-from mutabot.analysis.thresholds.thresholds import Floor, Thresholds
+from mutabot.analysis.thresholds.ladders import Ladder, LadderRound, Step
+from mutabot.analysis.thresholds.thresholds import Comparison, Floor, Thresholds
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.model.graded import OFFSET
 from mutabot.report.as_json import FORMAT, facts, interval_data

@@ -13,8 +13,7 @@ from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
 
-from mutabot.analysis.thresholds.ladders import Ladder
-from mutabot.analysis.thresholds.rounds import Above, LadderRound
+from mutabot.analysis.thresholds.ladders import Above, Ladder, LadderRound
 from mutabot.analysis.thresholds.thresholds import Thresholds
 from mutabot.analysis.thresholds.words import amount
 from mutabot.errors import UsageError

@@ -10,10 +10,8 @@ from rich.console import Console, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from mutabot.analysis.thresholds.comparing import Change, Compared, Comparison
-from mutabot.analysis.thresholds.interval import Between
-from mutabot.analysis.thresholds.ladders import Ladder, Step
-from mutabot.analysis.thresholds.thresholds import Floor, Thresholds
+from mutabot.analysis.thresholds.ladders import Between, Ladder, Step
+from mutabot.analysis.thresholds.thresholds import Change, Compared, Comparison, Floor, Thresholds
 from mutabot.analysis.thresholds.words import amount, line_of, rounds_left_out, violations_in_words
 from mutabot.report.terminal.console import heading, make_table, percent, plain, plural
 

@@ -6,6 +6,7 @@ import ast
 from collections.abc import Sequence
 
 from mutabot.suggestion.project import Insertion, Project, imports_of
+from mutabot.suggestion.readings import asked_for, at_start, fixture, helper, watcher
 from mutabot.suggestion.style import (
     Addition,
     Function,
@@ -17,7 +18,6 @@ from mutabot.suggestion.style import (
     functions_of,
     put_at_end,
 )
-from mutabot.suggestion.watches import asked_for, at_start, fixture, helper, watcher
 
 
 class _Functions(PlainAsserts):

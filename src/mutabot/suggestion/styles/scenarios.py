@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mutabot.suggestion.project import Insertion, Project, imports_of, top_names
+from mutabot.suggestion.readings import fixture
 from mutabot.suggestion.style import Addition, Function, Place, PlainAsserts, arguments_of
-from mutabot.suggestion.watches import fixture
 
 _SCENARIO = re.compile(r"\s*(?:Scenario Outline|Scenario Template|Scenario|Example)\s*:\s*(.*?)\s*$")
 _BACKGROUND = re.compile(r"\s*Background\s*:")

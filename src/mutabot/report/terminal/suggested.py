@@ -1,4 +1,4 @@
-"""The checks that ``mutabot suggest`` found: on the terminal, as JSON, and on the pages of mutants."""
+"""What is suggested, on the terminal."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from rich.text import Text
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
 from mutabot.report.as_json import facts
-from mutabot.report.terminal.console import heading, plain, plural
+
+from .console import heading, plain, plural
 
 
 def suggested_data(found: Suggestions) -> dict[str, Any]:

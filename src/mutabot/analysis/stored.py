@@ -1,0 +1,452 @@
+"""Stored campaigns: what a journal holds as one object, with recordings, as a table, beside an older one.
+
+Two campaigns side by side: mutants are the same if their ids are. A mutant is a survivor if any round lets it
+through. Only what was judged can be fixed: a survivor that is refused, unstable or not run in the other
+campaign is told apart.
+
+The table has one row per mutant and round that has been run; docs/reports.md has its columns. Names, types
+and units are stable: columns may be added, at the end.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from mutabot.analysis.thresholds.thresholds import Thresholds, thresholds_of
+from mutabot.border.codec import from_data
+from mutabot.errors import UsageError
+from mutabot.evidence.recording import Recording, from_bytes
+from mutabot.frozen import frozen
+from mutabot.journal.files import find_journal
+from mutabot.journal.reader import JournalReader
+from mutabot.journal.recordings import ORIGINAL, Recordings
+from mutabot.journal.records import DRAWS, OPERATORS, REACHING, Reaching
+from mutabot.model import Mutant, Outcome
+
+from .results import MutantResult, Results, find_mutant, read_results
+from .score import Group
+
+if TYPE_CHECKING:
+    import pandas
+
+
+@dataclass(frozen=True, slots=True)
+class Ends:
+    """A mutant in both campaigns.
+
+    Attributes:
+        old, new: what became of it; None in a campaign that has no such mutant.
+    """
+
+    old: MutantResult | None
+    new: MutantResult | None
+
+    @property
+    def either(self) -> MutantResult:
+        """Its newest result."""
+        found = self.new or self.old
+        assert found is not None
+        return found
+
+
+@frozen
+class Changes:
+    """What differs between an old campaign and a new one.
+
+    Attributes:
+        appeared: survivors of the new one that the old one did not let through, or did not have.
+        fixed: survivors of the old one that the new one kills in every round in which they are valid.
+        changed: survivors of both that are let through in another share of rounds, or of which only one of
+            the campaigns shows anything that differs from the original.
+        same: number of survivors of both that are not in ``changed``.
+        unknown: survivors of the old one of which the new one says nothing: not run, or outside the score.
+        gone: mutants that only the old one has, of families that were asked for in the new one.
+        added: mutants that only the new one has, of families that were asked for in the old one.
+        scores: the old and the new scores per family and role; None where a campaign has none of them.
+        old_state, new_state: how the campaigns ended.
+        notes: what else is to be known of the campaigns before they are compared, a sentence each.
+    """
+
+    appeared: tuple[Ends, ...]
+    fixed: tuple[Ends, ...]
+    changed: tuple[Ends, ...]
+    same: int
+    unknown: tuple[Ends, ...]
+    gone: tuple[MutantResult, ...]
+    added: tuple[MutantResult, ...]
+    scores: Mapping[tuple[str, str], tuple[Group | None, Group | None]]
+    old_state: str
+    new_state: str
+    notes: tuple[str, ...] = ()
+
+
+def changes(old: Results, new: Results) -> Changes:
+    """Compare two campaigns."""
+    before = {one.mutant.id: one for one in old.mutants}
+    after = {one.mutant.id: one for one in new.mutants}
+    pairs = [Ends(before.get(one.mutant.id), one) for one in _worst_first(new)]
+    both = [pair for pair in pairs if _is_survivor(pair.old) and _is_survivor(pair.new)]
+    changed = [pair for pair in both if _told(pair.old) != _told(pair.new)]
+    lost = [Ends(one, after.get(one.mutant.id)) for one in _worst_first(old) if one.is_survivor]
+    lost = [pair for pair in lost if pair.new is not None and not pair.new.is_survivor]
+    return Changes(
+        appeared=tuple(pair for pair in pairs if _is_survivor(pair.new) and not _is_survivor(pair.old)),
+        fixed=tuple(pair for pair in lost if _is_judged(pair.new)),
+        changed=tuple(changed),
+        same=len(both) - len(changed),
+        unknown=tuple(pair for pair in lost if not _is_judged(pair.new)),
+        gone=tuple(one for one in _asked_for(new, old.mutants) if one.mutant.id not in after),
+        added=tuple(one for one in _asked_for(old, new.mutants) if one.mutant.id not in before),
+        scores=_scores(old.groups, new.groups),
+        old_state=old.state,
+        new_state=new.state,
+        notes=(*_notes("new", new, old), *_notes("old", old, new)),
+    )
+
+
+def _asked_for(results: Results, mutants: Iterable[MutantResult]) -> list[MutantResult]:
+    """The mutants of families that a campaign had; all of them if it does not say which."""
+    families = results.meta.get("families")
+    return [one for one in mutants if families is None or one.mutant.family in families]
+
+
+def _notes(name: str, results: Results, other: Results) -> Iterator[str]:
+    """What a campaign did not look at, so that nobody takes it for gone or new."""
+    asked = {one.mutant.id for one in _asked_for(results, other.mutants)}
+    missing = [one.mutant.family for one in other.mutants if one.mutant.id not in asked]
+    for family, count in Counter(missing).items():
+        yield f"the {name} campaign was not to run family {family}; mutants that are not compared: {count}"
+    if results.drawing is not None:
+        yield f"the {name} campaign is of a sample: mutants that it does not have may not have been drawn"
+
+
+def _worst_first(results: Results) -> list[MutantResult]:
+    survivors = results.survivors
+    ids = {one.mutant.id for one in survivors}
+    return [*survivors, *(one for one in results.mutants if one.mutant.id not in ids)]
+
+
+def _is_survivor(result: MutantResult | None) -> bool:
+    return result is not None and result.is_survivor
+
+
+def _is_judged(result: MutantResult | None) -> bool:
+    """Whether all its rounds were run, and it stood in the score of at least one."""
+    return result is not None and result.kill_rate.valid > 0 and None not in result.rounds
+
+
+def _told(result: MutantResult | None) -> tuple[float | None, bool] | None:
+    """What of a survivor is compared: numbers of its probes differ a little from machine to machine."""
+    return (result.kill_rate.rate, result.indistinguishable) if result is not None else None
+
+
+def _scores(
+    old: Iterable[Group], new: Iterable[Group]
+) -> dict[tuple[str, str], tuple[Group | None, Group | None]]:
+    before = {(group.family, group.role): group for group in old}
+    after = {(group.family, group.role): group for group in new}
+    return {key: (before.get(key), after.get(key)) for key in {**before, **after}}
+
+
+#: recordings that are held
+_HELD = 32
+
+
+@frozen
+class Pair:
+    """One test, as the original and as a mutant.
+
+    Attributes:
+        test: node id.
+        original: its recording; None if there is none.
+        mutant: the mutant's; None if nothing in it differs, or if there was no room for it.
+    """
+
+    test: str
+    original: Recording | None
+    mutant: Recording | None
+
+
+class StoredEvidence:
+    """All recordings of a campaign; use as a context manager. Raises JournalError if they cannot be read.
+
+    Args:
+        journal: the path of its journal.
+    """
+
+    def __init__(self, journal: Path) -> None:
+        self._recordings = Recordings.to_read(journal)
+        self.recording = lru_cache(_HELD)(self._read)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._recordings is not None:
+            self._recordings.close()
+
+    def tests(self, mutant: str, round: int) -> tuple[str, ...]:
+        """The tests in which a mutant, by its id, differed in a round (from 0), if they were recorded."""
+        return self._recordings.tests(mutant, round) if self._recordings is not None else ()
+
+    def pair(self, mutant: str, round: int, test: str) -> Pair:
+        """One test, as the original and as a mutant."""
+        return Pair(test, self.recording(ORIGINAL, round, test), self.recording(mutant, round, test))
+
+    def _read(self, mutant: str, round: int, test: str) -> Recording | None:
+        data = self._recordings.data(mutant, round, test) if self._recordings is not None else None
+        return from_bytes(data) if data is not None else None
+
+
+#: what a cell may hold; None is a value that is not known or does not apply
+Cell = str | int | float | bool | None
+
+
+@frozen
+class Column:
+    """A column of the table.
+
+    Attributes:
+        name: its stable name; one with a unit ends in it.
+        kind: type of its cells.
+        meaning: what it says, in a line.
+        of: the cell for a mutant's outcome.
+    """
+
+    name: str
+    kind: type
+    meaning: str
+    of: Callable[[MutantResult, Outcome], Any]
+
+
+def rows(results: Results) -> Iterator[tuple[Cell, ...]]:
+    """The cells of all outcomes, in the order of ``COLUMNS``: by mutant, then by round."""
+    for result in results.everything:
+        for outcome in result.outcomes:
+            yield tuple(_cell(column, result, outcome) for column in COLUMNS)
+
+
+def frame_of(results: Results) -> pandas.DataFrame:
+    """The table for pandas. Raises UsageError if it is not installed."""
+    try:
+        import pandas  # noqa: PLC0415  # an extra, and slow
+    except ImportError as error:
+        raise missing("pandas", "a data frame") from error
+    cells = list(zip(*rows(results), strict=True)) or [() for _ in COLUMNS]
+    return pandas.DataFrame(
+        {
+            column.name: pandas.array(list(those), dtype=_DTYPES[column.kind])
+            for column, those in zip(COLUMNS, cells, strict=True)
+        }
+    )
+
+
+def missing(library: str, wanted: str) -> UsageError:
+    """What to say where a library of an extra is not installed."""
+    install = "pip install 'path/to/mutabot[notebook]'"
+    return UsageError(f"{wanted} needs {library}, which is not installed: {install}")
+
+
+def _cell(column: Column, result: MutantResult, outcome: Outcome) -> Cell:
+    found = column.of(result, outcome)
+    if found is None or (isinstance(found, float) and not math.isfinite(found)):
+        return None
+    made: Cell = column.kind(found)
+    return made
+
+
+#: names of pandas's types that can be missing
+_DTYPES = {str: "string", int: "Int64", float: "Float64", bool: "boolean"}
+
+
+def _unit(result: MutantResult) -> str | None:
+    return result.quantity.unit if result.quantity is not None else None
+
+
+def _example(index: int) -> Callable[[MutantResult, Outcome], Any]:
+    def cell(_: MutantResult, outcome: Outcome) -> Any:
+        pair = outcome.example
+        return pair[index] if pair is not None and len(pair) == 2 else None
+
+    return cell
+
+
+#: in this order they stand in files
+COLUMNS: tuple[Column, ...] = (
+    Column("mutant", str, "stable id of the mutant", lambda m, o: m.mutant.id),
+    Column("number", int, "its number in this campaign", lambda m, o: m.mutant.number),
+    Column("round", int, "the round, from 1", lambda m, o: o.round + 1),
+    Column("family", str, "family of its operator", lambda m, o: m.mutant.family),
+    Column("role", str, "`program` or `oracle`", lambda m, o: m.mutant.site.role.value),
+    Column("operator", str, "its operator", lambda m, o: m.mutant.operator),
+    Column("variant", str, "which of several mutants of the operator here", lambda m, o: m.mutant.variant),
+    Column("file", str, "file, relative to the project", lambda m, o: m.mutant.site.span.file),
+    Column("line", int, "line of the call, from 1", lambda m, o: m.mutant.site.span.line),
+    Column("column", int, "column, from 1, in UTF-8 bytes", lambda m, o: m.mutant.site.span.column + 1),
+    Column("function", str, "enclosing function", lambda m, o: m.mutant.site.span.function),
+    Column("call", str, "the callee or text as written", lambda m, o: m.mutant.site.text),
+    Column("operation", str, "the operation of the vocabulary", lambda m, o: m.mutant.operation or None),
+    Column("quantity", str, "the quantity that is changed", lambda m, o: m.mutant.quantity),
+    Column("unit", str, "unit of `before` and `after`", lambda m, o: _unit(m)),
+    Column("description", str, "what the mutant does", lambda m, o: m.mutant.description),
+    Column("verdict", str, "see [verdicts](verdicts.md)", lambda m, o: o.verdict.value),
+    Column("by", str, "`check` or `exception`, for a kill", lambda m, o: o.by.value if o.by else None),
+    Column(
+        "valid", bool, "whether it stands in the denominator of the score", lambda m, o: o.verdict.is_valid
+    ),
+    Column("killed", bool, "whether it stands in the numerator", lambda m, o: o.verdict.is_killed),
+    Column("test", str, "the test that ended otherwise", lambda m, o: o.test),
+    Column("exception", str, "type of its exception, as `module:Name`", lambda m, o: o.exception),
+    Column(
+        "message", str, "first lines of its text, or why the verdict is what it is", lambda m, o: o.message
+    ),
+    Column("place", str, "`file:line` where it was noticed", lambda m, o: o.place),
+    Column("hits", int, "calls at the mutant's site", lambda m, o: o.hits),
+    Column("acted", int, "hits at which it changed something", lambda m, o: o.acted),
+    Column("before", str, "value at the first of these, as text", _example(0)),
+    Column("after", str, "the value in its place, as text", _example(1)),
+    Column("tests", int, "number of tests run", lambda m, o: o.tests),
+    Column("wall_s", float, "seconds from the start of the process to its end", lambda m, o: o.wall),
+    Column("cpu_s", float, "processor seconds of the tests", lambda m, o: o.cpu),
+    Column("simulated_s", float, "simulated seconds of the tests", lambda m, o: o.simulated),
+    Column(
+        "distance", float, "greatest difference of a probe at the end, in tolerances", lambda m, o: o.distance
+    ),
+    Column("way", float, "greatest difference of a probe along the way, in tolerances", lambda m, o: o.way),
+    Column("indistinguishable", bool, "whether nothing differed", lambda m, o: o.indistinguishable),
+    Column("divergence", str, "what ended otherwise, the worst", lambda m, o: next(iter(o.divergence), None)),
+    Column("commands", int, "commands before the deciding test ended", lambda m, o: o.commands),
+    Column("engine", str, "engine that ran it", lambda m, o: o.engine),
+    Column("repeats", int, "how often it was run once more, and ended the same", lambda m, o: o.repeats),
+    Column("magnitude", float, "of a graded mutant: how big its fault is", lambda m, o: m.mutant.magnitude),
+    Column("magnitude_unit", str, "unit of `magnitude`", lambda m, o: m.mutant.unit),
+    Column(
+        "direction", str, "of a graded mutant: `+`, `-` or nothing", lambda m, o: m.mutant.direction or None
+    ),
+)
+
+
+@frozen
+class StoredCampaign:
+    """The last campaign of a journal, as it was when it was read. Nothing of it changes later.
+
+    Attributes:
+        results: all that reports tell.
+        sources: text of the mutated files at the time of the campaign, by path relative to the project.
+        operators: what each operator does, in a sentence, by its name; those of journals that do not say it
+            are missing.
+        reaching: which tests reach which sites.
+        draws: names of operators that draw a number for each round.
+    """
+
+    results: Results
+    sources: Mapping[str, str] = field(default_factory=dict)
+    operators: Mapping[str, str] = field(default_factory=dict)
+    reaching: Reaching = field(default_factory=Reaching)
+    draws: frozenset[str] = frozenset()
+
+    @property
+    def meta(self) -> Mapping[str, Any]:
+        """What the campaign said about itself: ``seed``, ``rounds``, ``engine``, ``versions`` …"""
+        return self.results.meta
+
+    @property
+    def state(self) -> str:
+        """``complete``, ``interrupted``, ``running``, ``killed`` or why it stopped."""
+        return self.results.state
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the campaign ran to its end."""
+        return self.state == "complete"
+
+    @property
+    def rounds(self) -> int:
+        """Number of rounds."""
+        return self.results.rounds
+
+    @property
+    def mutants(self) -> tuple[MutantResult, ...]:
+        """Every planned mutant with what became of it, by number; graded ones have ``thresholds``."""
+        return self.results.mutants
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """Every outcome there is: by mutant, then by round."""
+        return tuple(outcome for result in self.results.everything for outcome in result.outcomes)
+
+    @property
+    def survivors(self) -> tuple[MutantResult, ...]:
+        """Mutants that some round lets through, the farthest from the original first."""
+        return tuple(self.results.survivors)
+
+    @property
+    def scores(self) -> tuple[Group, ...]:
+        """Scores per family and role. They are never added up."""
+        return self.results.groups
+
+    @property
+    def thresholds(self) -> Thresholds:
+        """The ladders of graded mutants, the loosest first."""
+        return thresholds_of(self.results)
+
+    def mutant(self, name: str) -> MutantResult:
+        """The mutant with this number or id, or the only one that a part of an id fits.
+
+        Raises SelectionError if there is none or more than one.
+        """
+        return find_mutant(self.results, name)
+
+    def source(self, file: str) -> str | None:
+        """The text of a mutated file at the time of the campaign; None if it was not written down."""
+        return self.sources.get(file)
+
+    def reached_by(self, mutant: Mutant) -> tuple[str, ...]:
+        """Node ids of the tests that reach a mutant in any round, as far as the journal says."""
+        return self.reaching.at(mutant.site.id)
+
+    def frame(self) -> pandas.DataFrame:
+        """One row per outcome; docs/reports.md has the columns. Needs pandas: ``mutabot[notebook]``.
+
+        Raises UsageError if pandas is not installed.
+        """
+        return frame_of(self.results)
+
+
+def journal_at(path: Path) -> Path:
+    """The journal that a user means by a path: a journal, or a project's folder or a folder inside it."""
+    return find_journal(path) if path.is_dir() else path
+
+
+def open(path: str | Path = ".") -> StoredCampaign:
+    """Read the last campaign of a journal, also one that was interrupted or still runs.
+
+    ``path`` is a project's folder, a folder inside it, or the file of a journal.
+
+    Raises JournalError if there is no journal, or none that this version reads.
+    """
+    with JournalReader.open(journal_at(Path(path))) as journal:
+        results = read_results(journal)
+        files = {one.mutant.site.span.file for one in results.everything}
+        found = {file: journal.source(file) for file in sorted(files)}
+    meta = results.meta
+    return StoredCampaign(
+        results,
+        sources={file: text for file, text in found.items() if text is not None},
+        operators=meta.get(OPERATORS, {}),
+        reaching=from_data(Reaching, meta[REACHING]) if REACHING in meta else Reaching(),
+        draws=frozenset(meta.get(DRAWS, ())),
+    )

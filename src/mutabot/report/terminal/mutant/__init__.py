@@ -1,1 +1,0 @@
-"""Everything about one mutant on the terminal, section by section."""

@@ -1,1 +1,0 @@
-"""Operations that have a name on a middleware, as vocabularies write them."""
