@@ -62,12 +62,15 @@ class Apart:
         """Why this process cannot be forked now as far as its files are concerned; None if it can."""
         if self.files is None:
             return self.why_not or "its files are not private"
-        return next((f"{path} is open for writing" for path in _written() if not self._is_own(path)), None)
-
-    def _is_own(self, path: str) -> bool:
-        assert self.files is not None
-        folders = (*private_folders(self.files.root), self.files.home)
-        return any(is_below(path, one) for one in folders)
+        folders = private_folders(self.files.root)
+        for path, mode in _written():
+            if is_below(path, self.files.home):
+                continue
+            if mode == os.O_RDWR:  # a database knows which file it has opened, and a fork has another one
+                return f"{path} is open for reading and writing"
+            if not any(is_below(path, one) for one in folders):
+                return f"{path} is open for writing"
+        return None
 
     def go(self, name: str) -> Apart:
         """In a process that was just forked, while its parent waits: share nothing with it any more.
@@ -83,12 +86,13 @@ class Apart:
         return Apart(self.log, self.home, files, folder=folder)
 
 
-def _written() -> Iterator[str]:
-    """Paths of the files that are open for writing and have a name."""
+def _written() -> Iterator[tuple[str, int]]:
+    """Paths of the files that are open for writing and have a name, and how they are open."""
     for descriptor, status in _descriptors():
         is_named = stat.S_ISREG(status.st_mode) and status.st_nlink > 0
-        if is_named and fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE != os.O_RDONLY:
-            yield os.readlink(f"/proc/self/fd/{descriptor}")
+        mode = fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE
+        if is_named and mode != os.O_RDONLY:
+            yield os.readlink(f"/proc/self/fd/{descriptor}"), mode
 
 
 def _descriptors() -> Iterator[tuple[int, os.stat_result]]:
