@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.inside.targets.parameters import look_at
+from mutabot.inside.targets.callables import look_at
 from mutabot.vocabulary import load
 
 
