@@ -194,10 +194,6 @@ SUITES = {
 }
 
 
-#: suites whose tests share what a branch must not touch
-SHARING = ("fixtures of every scope", "unittest")
-
-
 WHOLE = pytest.mark.whole
 
 
@@ -207,8 +203,7 @@ WHOLE = pytest.mark.whole
 def test_both_engines_agree(tmp_path: Path, suite: str) -> None:
     write_project(tmp_path, MISSION, SUITES[suite])
     found = both_engines(tmp_path)
-    expected = "replay" if suite in SHARING else "branch"
-    assert {outcome.engine for outcome in found.values()} == {expected}
+    assert {outcome.engine for outcome in found.values()} == {"branch"}
     assert {outcome.verdict for outcome in found.values()} & {Verdict.KILLED, Verdict.SURVIVED}
 
 
@@ -244,9 +239,12 @@ UNSAFE = {
         "thread = threading.Thread(target=time.sleep, args=(0.4,)); thread.start()",
         "thread.join()",
     ),
-    "starts a process": ("child = subprocess.Popen(['sleep', '0.5'])", "child.wait()"),
+    "subprocess in flight": ("child = subprocess.Popen(['sleep', '0.5'])", "child.wait()"),
     "open socket": ("ends = socket.socketpair()", "[end.close() for end in ends]"),
-    "event loop": ("async def work():\n    mission.unsafe_3(Arm())\nasyncio.run(work())", "pass"),
+    "open for reading and writing": (
+        "store = sqlite3.connect('parts.db'); store.execute('create table parts (x real)')",
+        "store.close()",
+    ),
 }
 
 
@@ -256,7 +254,7 @@ def test_where_forking_is_unsafe_the_test_falls_back_to_replay(
     tmp_path: Path, reasons: tuple[str, ...]
 ) -> None:
     mission = ["def safe(arm):\n    arm.move_by(-0.125)\n"]
-    tests = ["import asyncio, socket, subprocess, threading, time, mission\nfrom robot import Arm\n"]
+    tests = ["import socket, sqlite3, subprocess, threading, time, mission\nfrom robot import Arm\n"]
     tests.append("def test_safe():\n    mission.safe(Arm())\n")
     for number, (before, after) in enumerate(UNSAFE[reason] for reason in reasons):
         mission.append(f"def unsafe_{number}(arm):\n    arm.move_by(0.25)\n")
