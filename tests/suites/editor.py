@@ -178,9 +178,9 @@ class CallEditor:
 
     def __init__(self, facts: Facts, source: Source, mutant: Mapping[str, Any]) -> None:
         self.facts, self.source, self.mutant = facts, source, mutant
-        self._name = mutant["operation"].rpartition(":")[2].rpartition(".")[2]
+        self._called = mutant["operation"].rpartition(":")[2].rpartition(".")[2]
         span = mutant["span"]
-        self.call = source.call_ending(span["end_line"], span["end_column"] - 1, self._name)
+        self.call = source.call_ending(span["end_line"], span["end_column"] - 1, self._called)
         self.operation = facts.operation(mutant["operation"])
         handed = self._handed()
         self.callee = handed or self.call.func
@@ -344,12 +344,12 @@ class CallEditor:
 
     def _handed(self) -> ast.expr | None:
         """The operation itself, where the call does not make it but is given it: ``submit(arm.move, 1)``."""
-        if _last_name(self.call.func) == self._name:
+        if _last_name(self.call.func) == self._called:
             return None
         given = [*self.call.args, *(one.value for one in self.call.keywords)]
         also = self.facts.hints.get("handed", {}).get(self.mutant["operation"])
         found = [node for part in given for node in ast.walk(part)
-                 if _last_name(node) == self._name or ast.unparse(node) == also]  # fmt: skip
+                 if _last_name(node) == self._called or ast.unparse(node) == also]  # fmt: skip
         called = {node.func for part in given for node in ast.walk(part) if isinstance(node, ast.Call)}
         return next((node for node in found if node not in called), None)  # type: ignore[return-value]
 
