@@ -8,12 +8,15 @@ from . import _domain, _master
 from ._speech import speaks_of
 
 
-def prepare(root: str, home: str, vocabulary: Vocabulary | None) -> None:
+def prepare(root: str, home: str, vocabulary: Vocabulary | None) -> bool:
     """Set up what nodes will find in the environment; see ``mutabot.inside.targets.middleware``.
 
     Raises ``_master.MasterError`` if there is to be a master and none comes up.
     """
-    if speaks_of(root, "rclpy") if vocabulary is None else _domain.is_wanted(vocabulary):
+    has_domain = speaks_of(root, "rclpy") if vocabulary is None else _domain.is_wanted(vocabulary)
+    if has_domain:
         _domain.take(home)
-    if _master.is_wanted(root, vocabulary):
+    has_master = _master.is_wanted(root, vocabulary)
+    if has_master:
         _master.start(home)
+    return has_domain or has_master

@@ -94,6 +94,7 @@ SITE = {
 
         def prepare(root, home, vocabulary):
             os.environ["TOYBUS"] = os.path.join(home, "toybus.txt")
+            return True
         """,
 }
 PROJECT = {

@@ -44,6 +44,7 @@ _LEAST = 0.2
 
 #: where a mutant is branched: a site with its operation and pattern, or a place of the program text
 Key = tuple[Span, str, str | None] | int
+_NODES = "its nodes would meet those of other mutants"
 
 
 @dataclass(slots=True)
@@ -112,6 +113,7 @@ class Trunk:
         apart: how a branch is kept apart from this process.
         branch: what every branch does.
         where_is: tells where a process is, in words, or None.
+        has_nodes: whether nodes below a fork would meet those below others.
         is_moment: whether a mutant acts at a call, given the call's number among those of its site in the
             running test.
     """
@@ -122,6 +124,7 @@ class Trunk:
     apart: Apart
     branch: Branch
     where_is: Callable[[int], str | None] = lambda _: None
+    has_nodes: bool = False
     is_moment: Callable[[Mutant, int], bool] = lambda mutant, number: True
     _tokens: Tokens = field(init=False)
     _board: Board = field(init=False)
@@ -156,7 +159,10 @@ class Trunk:
         self._test, self._number = test, self.tests.index(test)
         self._copied = False
         due = set(self.branching.at_start.get(test, ())) - self._gone
-        if due and os.getpid() == self._pid:
+        if due and self.has_nodes:
+            self._gone |= due
+            self.pipe.send(Unbranched(test, tuple(sorted(due)), _NODES))
+        elif due and os.getpid() == self._pid:
             with alarm_held():
                 self._fork_due([[one] for one in self.branching.mutants if one.id in due])
 

@@ -117,14 +117,14 @@ class Conductor:
             die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
-        prepare(self.job.root, home, self.job.vocabulary)
+        has_nodes = prepare(self.job.root, home, self.job.vocabulary)
         self.running.members = Members(home, self.session)
         watch_forks(self.running.members.folder, self.session)
         if self.job.branching is not None:
             preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
-            self.grow(self.job.branching, home)
+            self.grow(self.job.branching, home, has_nodes)
 
-    def grow(self, branching: Branching, home: str) -> None:
+    def grow(self, branching: Branching, home: str, has_nodes: bool) -> None:
         """Be a trunk: fork a branch for every mutant."""
         log, pipe = os.stat(os.path.join(home, LOG)), self.session.pipe
         assert isinstance(pipe, EventFile)
@@ -140,7 +140,8 @@ class Conductor:
         def where_is(pid: int) -> str | None:
             return stack.ask(pid, file, self.job.root)
 
-        self.session.grow(Trunk(branching, self.job.tests or (), pipe, apart, branch, where_is))
+        trunk = Trunk(branching, self.job.tests or (), pipe, apart, branch, where_is, has_nodes)
+        self.session.grow(trunk)
 
     def look_at_checks(self) -> None:
         """Note what tests check."""

@@ -74,7 +74,7 @@ class TypedMiddleware(Middleware, Protocol):
 class Environment(Protocol):
     """A module that sets up what nodes find when they start, so that those of several workers do not meet."""
 
-    def prepare(self, root: str, home: str, vocabulary: Vocabulary | None) -> None:
+    def prepare(self, root: str, home: str, vocabulary: Vocabulary | None) -> bool:
         """Set it up if the program needs it; nothing of the program's has been imported yet.
 
         Args:
@@ -82,12 +82,14 @@ class Environment(Protocol):
             home: the worker's folder.
             vocabulary: the robot API; None where it is not known yet: the program's files tell then.
 
+        Returns whether it did: a fork of this process, whose nodes would meet ours, needs its own then.
+
         Raises MutabotError if what the program needs cannot be there.
         """
 
 
-def prepare(root: str, home: str, vocabulary: Vocabulary | None) -> None:
-    """Let all packages set up what nodes will find; see ``Environment``."""
-    for part in brought("environments").values():
-        environment: Environment = part.load()
-        environment.prepare(root, home, vocabulary)
+def prepare(root: str, home: str, vocabulary: Vocabulary | None) -> bool:
+    """Let all packages set up what nodes will find; returns whether any did. See ``Environment``."""
+    environments: list[Environment] = [part.load() for part in brought("environments").values()]
+    found = [one.prepare(root, home, vocabulary) for one in environments]  # all of them, not up to the first
+    return any(found)
