@@ -143,7 +143,6 @@ Video = Annotated[
     Path | None,
     typer.Option("--video", metavar="FILE", help="Film original and mutant beside each other: FILE.mp4."),
 ]
-View = Annotated[bool, typer.Option("--view", help="Show what was recorded in MuJoCo's viewer.")]
 Rerun = Annotated[bool, typer.Option("--rerun", help="Show what was recorded in the viewer of Rerun.")]
 Rrd = Annotated[
     Path | None, typer.Option("--rrd", metavar="FILE", help="Write what was recorded for Rerun: FILE.rrd.")
@@ -161,7 +160,6 @@ def motion(
     round: options.Round = None,
     test: Test = None,
     video: Video = None,
-    view: View = False,
     rerun: Rerun = False,
     rrd: Rrd = None,
     mcap: Mcap = None,
@@ -173,12 +171,12 @@ def motion(
     films them. The others run nothing: they show the test as the campaign recorded it.
     """
     path = find_journal(context.obj)
-    sights = list(sights_of(path.parent, view=view, rerun=rerun, rrd=rrd, mcap=mcap))
+    sights = list(sights_of(path.parent, rerun=rerun, rrd=rrd, mcap=mcap))
     if video is not None:
         module("pictures.video")
         check(video, ".mp4")
     elif not sights:
-        raise UsageError("say how to show it: --video, --view, --rerun, --rrd or --mcap")
+        raise UsageError("say how to show it: --video, --rerun, --rrd or --mcap")
     with JournalReader.open(path) as journal, StoredEvidence(path) as evidence:
         results = read_results(journal, earlier=True)
         result = find_mutant(results, mutant)

@@ -22,7 +22,6 @@ from .shown import Shown
 _NEEDS = {
     "rrd": ("rerun-sdk", "--rrd needs (and --rerun)", "rerun"),
     "mcap": ("foxglove-sdk", "--mcap needs", "mcap"),
-    "view": ("MuJoCo", "--view needs", "cells"),
     "pictures.video": ("PyAV and Pillow", "--video needs", "video"),
 }
 
@@ -38,7 +37,7 @@ _FILES = {
 Sight = Callable[[Shown], str]
 
 
-def sights_of(home: Path, *, view: bool, rerun: bool, rrd: Path | None, mcap: Path | None) -> Iterator[Sight]:
+def sights_of(home: Path, *, rerun: bool, rrd: Path | None, mcap: Path | None) -> Iterator[Sight]:
     """Those that are asked for, before anything is read. Raises UsageError for one that cannot be done here.
 
     ``home``: the project's folder of mutabot, for a file that the user does not name.
@@ -53,10 +52,6 @@ def sights_of(home: Path, *, view: bool, rerun: bool, rrd: Path | None, mcap: Pa
         of_mcap = module("mcap")
         check(mcap, ".mcap")
         yield partial(written, of_mcap, mcap)
-    if view:
-        viewer = module("view")
-        viewer.need_screen()
-        yield viewer.show
 
 
 def written(target: Any, file: Path, shown: Shown, opened: Callable[[Path], str] | None = None) -> str:

@@ -47,10 +47,11 @@ _OPTIONS = {
     "--repeats": "kills that may be a coincidence are re-run anyway",
     "--no-repeats": "use -o repeats=false",
     "--write": "apply the diff that it prints",
+    "--view": "`mutabot motion MUTANT --rerun` shows what was recorded",
     "--mixed": "workers run with the same versions as this machine",
     **{
         option: f"use `mutabot motion MUTANT {option}`"
-        for option in ("--test", "--video", "--view", "--rerun", "--rrd", "--mcap")
+        for option in ("--test", "--video", "--rerun", "--rrd", "--mcap")
     },
 }
 

@@ -83,7 +83,7 @@ def test_without_a_screen_the_viewer_is_not_opened_and_that_is_said(
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("sys.platform", "linux")
-    (sight,) = sights_of(tmp_path, view=False, rerun=True, rrd=None, mcap=None)
+    (sight,) = sights_of(tmp_path, rerun=True, rrd=None, mcap=None)
     said = sight(shown())
     assert (tmp_path / "mutant-7-round-2.rrd").read_bytes().startswith(b"RRF2")
     assert "there is no screen to open its viewer on" in said
