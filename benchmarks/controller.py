@@ -53,7 +53,7 @@ from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.workers.task import Executor, Result, Task
 from mutabot.cli.request import request_of
 from mutabot.journal.journal import Journal
-from mutabot.model import Mutant
+from mutabot.model import Mutant, Outcome
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 WORKERS = 100
@@ -260,8 +260,8 @@ def _play(
     player = Player(told)
     playing = Campaign(request, campaign.baseline, player, Silent(look), evidence, campaign.proven)
 
-    def key_of(mutant: str, round: int) -> str:
-        key = dependencies.keys(by_id[mutant], round)[0]
+    def key_of(outcome: Outcome) -> str:
+        key = dependencies.key_of(outcome, by_id[outcome.mutant])
         journal.add_parts(dependencies.new_parts())
         return key
 

@@ -216,7 +216,7 @@ def test_a_process_that_fails_before_the_mutant_acts_is_an_error(tmp_path: Path)
         patch.setenv("RUNS", f"/dev/shm/{tmp_path.name}-{id(tmp_path)}")
         patch.setenv("LIMIT", "5")
         try:
-            found = run(project, fresh=True, jobs=1)
+            found = run(project, engine="replay", fresh=True, jobs=1)
         finally:
             Path(f"/dev/shm/{tmp_path.name}-{id(tmp_path)}").unlink(missing_ok=True)
     failed = [one for one in found.values() if one.message and "licence server" in one.message]

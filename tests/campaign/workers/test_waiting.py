@@ -130,7 +130,7 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 def test_mutants_that_only_wait_leave_their_places_to_others(tmp_path: Path, begun: list[int]) -> None:
     limits = "timeout_seconds = 20\ntimeout_factor = 1000.0\n"
     project = write_project(tmp_path, MISSION, TESTS, configuration=CONFIGURATION + limits)
-    request = request_for(project, jobs=2, rounds=1, only=("reverse", "skip"))
+    request = request_for(project, engine="replay", jobs=2, rounds=1, only=("reverse", "skip"))
     found = outcomes(run_campaign(request, Quiet()))
     assert [one.verdict for one in found] == [Verdict.TIMEOUT] * 6
     assert max(begun) > request.jobs

@@ -273,8 +273,12 @@ def _compared(campaign: Campaign, outcome: Outcome, run: Run) -> Outcome:
     baseline, vocabulary = campaign.baseline, campaign.request.vocabulary
     comparisons = []
     figures: list[Figure] = []
+    first = next((number for number, end in enumerate(run.ends) if end.hits), 0)
+    since_hit = {end.test for end in run.ends[first:]}  # before it is hit, a mutant is the original
     for test, found in run.observations.items():
         key = (run.round, test)
+        if test not in since_hit:
+            continue
         if key in baseline.restless:
             return replace(outcome, gaps=(f"equal runs of the original differ in {test}",))
         if key in baseline.observations:
