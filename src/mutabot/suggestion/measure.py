@@ -108,7 +108,8 @@ def _run_survivors(
         mutant, round = result.task.key
         progress.advance(f"#{mutant.number} round {round + 1}")
         found: dict[Place, dict[tuple[int, str], Read]] = {}
-        _take(found, places, round, result.ends)
+        reaching = baseline.tests_reaching(round, mutant)  # a check stands where the mutant is reached
+        _take(found, places, round, [end for end in result.ends if end.test in reaching])
         for place, read in found.items():
             measured.mutants.setdefault(place, {}).setdefault(mutant.id, {}).update(read)
 
