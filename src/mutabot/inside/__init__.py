@@ -3,8 +3,8 @@
 It imports the standard library, wrapt, pytest, and of mutabot only ``model``, ``languages``, ``border`` and
 ``operators``.
 Its rooms: ``suite`` makes pytest run a job, ``targets`` finds what the vocabulary names, ``calls`` and
-``text`` are the two ways of a mutant into it, ``readings`` looks at the world, ``footprint`` at what tests
-share, ``fork`` makes branches and copies, and ``watching`` is for ``mutabot init``. To follow one call, begin
+``text`` are the two ways of a mutant into it, ``readings`` looks at the world,
+``fork`` makes branches and copies, and ``watching`` is for ``mutabot init``. To follow one call, begin
 at ``calls/passing.py``.
 """
 

@@ -233,7 +233,7 @@ def named_class(name: str) -> Any:
     try:
         owner, attribute, _ = resolve(sys.modules[module], qualname)
         return getattr(owner, attribute)
-    except Exception:
+    except Exception:  # a module of the tests may answer in any way
         return None
 
 
