@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Generator
 from typing import TYPE_CHECKING, Any
 
@@ -63,6 +64,21 @@ def pytest_load_initial_conftests() -> Generator[None, Any, Any]:
         if _conductor is not None:
             _conductor.import_failed(getattr(error, "cause", error), "")
         raise
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> Generator[None, Any, Any]:
+    """The session is over: leave as the interpreter does, but without taking everything apart.
+
+    In a fork that would copy all memory that it shares, which took longer than most tests.
+    """
+    status = yield
+    is_last = config.hook.pytest_cmdline_main.get_hookimpls()[-1].plugin is sys.modules[__name__]
+    if _conductor is not None and is_last and isinstance(status, int):
+        from mutabot.inside.fork.lifeline import leave  # noqa: PLC0415  # a sleeping plugin costs nothing
+
+        leave(int(status))
+    return status
 
 
 def pytest_configure(config: pytest.Config) -> None:

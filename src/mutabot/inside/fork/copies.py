@@ -1,13 +1,12 @@
 """The server of copies: a session that has collected its tests, and forks a copy of itself for each job.
 
 All that lies before the first test, such as imports and collection, is done once. A copy is cut off from
-what it would share, and runs its job like a session of its own. What was to be done at exit before the fork
-is the server's.
+what it would share, and runs its job like a session of its own. It also does what was to be done at exit
+before the fork, which is why its files must be private.
 """
 
 from __future__ import annotations
 
-import atexit
 import contextlib
 import gc
 import os
@@ -15,9 +14,7 @@ import select
 import signal
 import socket
 import sys
-import weakref
 from dataclasses import dataclass, field
-from typing import Any
 
 from mutabot.border.events import ForkEnded, Serving
 from mutabot.inside.event_file import EventFile
@@ -25,6 +22,7 @@ from mutabot.inside.event_file import EventFile
 from .forkable import open_now, why_not
 from .isolate import isolate_files
 from .lifeline import die_with_parent
+from .private_files import may_be_private
 
 _MESSAGE_BYTES = 1 << 12
 
@@ -50,11 +48,13 @@ class CopyServer:
         descriptor: a socket on which each message is the folder of a job, with the writing end of a pipe.
         pipe: where the server itself reports.
         log_file: what the server prints; every copy gets a file of its own.
+        is_private: whether the files of copies are to be private.
     """
 
     descriptor: int
     pipe: EventFile
     log_file: str
+    is_private: bool
     _known: frozenset[tuple[int, str]] = field(default_factory=open_now)
     _copies: dict[int, int] = field(default_factory=dict)
 
@@ -63,7 +63,9 @@ class CopyServer:
 
         Returns what to do in a copy; None in the server when it is done.
         """
-        reason = why_not((), self._known)
+        reason = (
+            why_not((), self._known) if self.is_private and may_be_private() else "its files are not private"
+        )
         if reason is not None:
             self.pipe.send(Serving(reason))
             return None
@@ -121,7 +123,6 @@ class CopyServer:
         for pidfd in self._copies:
             os.close(pidfd)
         self.pipe.close()
-        forget_exit_handlers()
         return True
 
     def _commission(self, home: str, descriptor: int) -> Commission:
@@ -130,15 +131,3 @@ class CopyServer:
         isolate_files((old.st_dev, old.st_ino), log)
         os.close(log)
         return Commission(home, descriptor)
-
-
-def forget_exit_handlers() -> None:
-    """In a copy: what was to be taken down at exit is the server's; what is registered from now on is not."""
-    finalize: Any = weakref.finalize
-    for finalizer in list(finalize._registry):
-        finalizer.atexit = False
-    finalize._registered_with_atexit = False
-    atexit._clear()
-    multiprocessing = sys.modules.get("multiprocessing.util")
-    if multiprocessing is not None:  # it knows by itself what another process has made
-        atexit.register(multiprocessing._exit_function)

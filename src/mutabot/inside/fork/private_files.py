@@ -122,6 +122,18 @@ class PrivateFiles:
             libc.umount2(os.fsencode(self._covered.pop()), _MNT_DETACH)
 
 
+def may_be_private() -> bool:
+    """Whether this system lets a process have files of its own; a child tries it."""
+    pid = os.fork()
+    if pid == 0:
+        try:
+            _enter_namespace()
+            os._exit(0)
+        finally:
+            os._exit(1)
+    return os.waitpid(pid, 0)[1] == 0
+
+
 def copy_tree(source: str, target: str) -> None:
     """Copy the upper layer of an overlay: with what it deletes and hides, owners, times and rights."""
     os.mkdir(target)

@@ -8,6 +8,7 @@ from collections.abc import Generator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import _pytest.pathlib
 import pytest
 
 from mutabot import extensions
@@ -95,7 +96,9 @@ class Conductor:
             from mutabot.inside.fork.copies import CopyServer  # noqa: PLC0415  # of no use to other jobs
 
             preload()
-            conductor = cls(job, pipe, CopyServer(job.serving, pipe, os.path.join(home, LOG)))
+            conductor = cls(
+                job, pipe, CopyServer(job.serving, pipe, os.path.join(home, LOG), job.private_files)
+            )
         else:
             conductor = cls(job, pipe)
             if job.pictures is not None:  # before its folder is hidden from this process
@@ -114,6 +117,10 @@ class Conductor:
             files = PrivateFiles(root, os.path.realpath(home), os.path.join(root, ".mutabot"))
             self._not_private = files.make()
             self._files = files if self._not_private is None else None
+            if (
+                self._files is not None
+            ):  # what it removes there comes back: each process would remove it again
+                _pytest.pathlib.cleanup_numbered_dir = lambda *_, **__: None
             die_with_parent()  # a process that changes its rights loses that wish
 
     def _begin(self, home: str) -> None:
