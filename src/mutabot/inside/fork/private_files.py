@@ -62,6 +62,7 @@ class PrivateFiles:
         """
         try:
             _enter_namespace()
+            _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
             self._lay()
         except OSError as error:
             self._uncover()
@@ -80,9 +81,10 @@ class PrivateFiles:
         """
         place, layers = os.getcwd(), os.path.join(self._own, _LAYERS)
         for number in os.listdir(layers):
-            copied = os.path.join(folder, _LAYERS, number)
+            copied, upper = os.path.join(folder, _LAYERS, number), os.path.join(layers, number, _UPPER)
             os.makedirs(copied)
-            copy_tree(os.path.join(layers, number, _UPPER), os.path.join(copied, _UPPER))
+            if os.listdir(upper):
+                copy_tree(upper, os.path.join(copied, _UPPER))
         if ctypes.CDLL(None, use_errno=True).unshare(_CLONE_NEWNS) != 0:
             raise _last_error("this system allows no private mounts")
         self._own = folder
@@ -95,7 +97,6 @@ class PrivateFiles:
         """Lay an overlay over each private folder."""
         folders = [folder for folder in private_folders(self.root) if not is_below(folder, self.shared)]
         beside = os.path.dirname(self.home)
-        _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
         with _opened([*folders, self.shared, beside, self.home, self._own]) as opened:
             *lowers, common, others, home, own = opened
             below = _mounts_below(folders, self.shared)
