@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
 _MS_BIND, _MS_REC, _MS_PRIVATE, _MNT_DETACH = 4096, 16384, 1 << 18, 2
+_SHARED_MEMORY = "/dev/shm"
 #: the layers of a process lie in its own folder
 _LAYERS, _UPPER = "files", "upper"
 #: attributes that an overlay gives to a file of its upper layer, and that hold for no copy of it
@@ -26,11 +27,10 @@ _OF_THE_LAYER = (".overlay.origin", ".overlay.uuid", ".overlay.impure", ".overla
 
 
 def private_folders(root: str) -> tuple[str, ...]:
-    """The folders that become private: the project, and that of temporary files."""
-    folders = [os.path.realpath(root)]
-    temporary = os.path.realpath(tempfile.gettempdir())
-    if not is_below(folders[0], temporary) or temporary != folders[0]:
-        folders.append(temporary)
+    """The folders that become private: the project, and those of temporary files and of shared memory."""
+    folders = [os.path.realpath(root), os.path.realpath(tempfile.gettempdir())]
+    if os.path.isdir(_SHARED_MEMORY):
+        folders.append(os.path.realpath(_SHARED_MEMORY))
     outer = [one for one in folders if any(is_below(other, one) for other in folders if other != one)]
     return tuple(dict.fromkeys([*outer, *folders]))
 
