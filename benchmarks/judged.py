@@ -4,9 +4,9 @@ The judge (``tests/suites/judge.py``) edits the source text of a copy and runs p
 all robot mutants of all projects of the corpus (``tests/suites/projects``) with some mutants of their text,
 and mutants of the examples, drawn by a fixed seed, by both engines.
 
-Use: ``python benchmarks/judged.py [NAME …] [--engines branch replay] [--cache FOLDER]``. Without a name all
-projects and all examples run. The exit code is 1 if one verdict disagrees, or if there is nothing to compare.
-The examples of ROS are judged by the Pythons that see it.
+Use: ``python benchmarks/judged.py [NAME …] [--engines branch replay] [--cache FOLDER] [--table]``. Without a
+name all projects and all examples run. The exit code is 1 if one verdict disagrees, or if there is nothing to
+compare. The examples of ROS are judged by the Pythons that see it.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import argparse
 import sys
 import time
 from collections import Counter
+from fnmatch import fnmatch
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -35,6 +36,23 @@ EXAMPLES = {
     "ros1": {"robot": 25, "middleware": 35, "classical": 10},
     "ros2": {"robot": 25, "middleware": 35, "classical": 10},
 }
+#: the styles of the table: a name, and patterns of the projects that have it; the first one counts
+STYLES = {
+    "mocks, fakes and calls handed on": (
+        "*mock*", "fake*", "patched_class", "remote_proxies", "compiled_robot_type", "handed_over_calls",
+        "sites_known_later", "looks_at_its_caller",
+    ),
+    "state that tests share": (
+        "state_*", "*_state", "*_session", "*_simulator", "*_tmp*", "sqlite_*", "exit_status_*",
+        "plugin_that_*", "singleton_and_cache", "order_dependent_files", "working_directory_files",
+        "growing_log_file", "file_in_shared_memory", "*_fixture", "autouse_*", "*_module_setup", "setupclass_cell",
+    ),
+    "processes and threads": (
+        "*process*", "*thread*", "spawned_worker", "socket_controller", "async*", "task*",
+    ),
+    "examples": tuple(EXAMPLES),
+    "other styles of suites": ("*",),
+}  # fmt: skip
 #: examples that need a package which their own environment has: see the Makefile
 NEEDED = {"ros1": "rospy", "ros2": "rclpy"}
 
@@ -54,6 +72,7 @@ def main() -> int:
         "--sample", type=int, help="mutants of each family of an example, instead of its own numbers"
     )
     parser.add_argument("--families", nargs="+", help="of an example, only mutants of these families")
+    parser.add_argument("--table", action="store_true", help="end with a table of the styles, in Markdown")
     parser.add_argument("--unwritable", action="store_true", help="list what the judge cannot write")
     given = parser.parse_args()
     projects = {folder.name: folder for folder in corpus()}
@@ -92,6 +111,8 @@ def main() -> int:
     if not every:
         return 0
     print(total(every))
+    if given.table:
+        print(table(every))
     return 0 if any(one.compared for one in every) and not any(one.disagreements for one in every) else 1
 
 
@@ -110,6 +131,23 @@ def line(found: Found, seconds: float) -> str:
     agreed = sum(one.agrees for one in found.compared)
     counts = ", ".join(f"{count} {verdict}" for verdict, count in ends.most_common())
     return f"{found.project}: {agreed} of {len(found.compared)} agree, {seconds:.0f} s ({counts})"
+
+
+def table(every: list[Found]) -> str:
+    """What came of each style of suites."""
+    lines = ["| suites | how many | mutants | verdicts | as plain pytest |", "|---|---:|---:|---:|---:|"]
+    for style in STYLES:
+        found = [one for one in every if style_of(one.project) == style]
+        compared = [one for project in found for one in project.compared]
+        mutants = len({(one.project, one.mutant) for one in compared})
+        agreed = sum(one.agrees for one in compared)
+        lines.append(f"| {style} | {len(found)} | {mutants} | {len(compared)} | {agreed} |")
+    return "\n".join(lines)
+
+
+def style_of(project: str) -> str:
+    """The style that a project stands for in the table."""
+    return next(style for style, names in STYLES.items() if any(fnmatch(project, name) for name in names))
 
 
 def total(every: list[Found]) -> str:
