@@ -45,7 +45,8 @@ STYLES = {
     "state that tests share": (
         "state_*", "*_state", "*_session", "*_simulator", "*_tmp*", "sqlite_*", "exit_status_*",
         "plugin_that_*", "singleton_and_cache", "order_dependent_files", "working_directory_files",
-        "growing_log_file", "file_in_shared_memory", "*_fixture", "autouse_*", "*_module_setup", "setupclass_cell",
+        "growing_log_file", "file_in_shared_memory", "*_fixture",
+        "autouse_*", "*_module_setup", "setupclass_cell",
     ),
     "processes and threads": (
         "*process*", "*thread*", "spawned_worker", "socket_controller", "async*", "task*",
