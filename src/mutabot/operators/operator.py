@@ -65,7 +65,7 @@ class Rule(ABC):
     Class attributes:
         name: how ids, reports and selections call it.
         family: the family of its mutants (``mutabot.families``), or one of its own for a plug-in.
-        summary: one sentence for the documentation.
+        summary: one sentence for the documentation: what the docstring says first, unless it is given.
         examples: worked examples; they are tests and documentation at once.
         rank: its place in the documentation and in the numbering of mutants: smaller first, then by name.
             Without one it comes after those that have one.
@@ -78,13 +78,18 @@ class Rule(ABC):
 
     name: ClassVar[str]
     family: ClassVar[str]
-    summary: ClassVar[str]
+    summary: ClassVar[str] = ""
     examples: ClassVar[tuple[Any, ...]] = ()
     rank: ClassVar[int] = 1000
     published: ClassVar[tuple[Published, ...]] = ()
     stands_for: ClassVar[str] = ""
     where: ClassVar[str] = ""
     has_sizes: ClassVar[bool] = False
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if cls.__doc__ and "summary" not in vars(cls):
+            cls.summary = " ".join(cls.__doc__.partition("\n\n")[0].split())
 
 
 R = TypeVar("R", bound=Rule)

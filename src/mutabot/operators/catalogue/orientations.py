@@ -41,13 +41,11 @@ class _OtherNumbers(ValueOperator):
 
 
 class EulerOrder(_OtherNumbers):
-    """Takes angles about axes that stay for angles about axes that turn along, and the other way round."""
+    """Euler angles are carried out in the reverse order: axes that stay are taken for axes that turn
+    along.
+    """
 
     name = "euler-order"
-    summary = (
-        "Euler angles are carried out in the reverse order: axes that stay are taken for axes that turn"
-        " along."
-    )
     rank = 320
     stands_for = f"Two conventions of Euler angles: {FRAMES}."
     where = "written and read quantities of kind euler"
@@ -64,10 +62,9 @@ class EulerOrder(_OtherNumbers):
 
 
 class QuaternionOrder(_OtherNumbers):
-    """Takes xyzw for wxyz, and the other way round."""
+    """A quaternion is taken to have its scalar part at the other end: xyzw for wxyz, and back."""
 
     name = "quaternion-order"
-    summary = "A quaternion is taken to have its scalar part at the other end: xyzw for wxyz, and back."
     rank = 321
     stands_for = f"Libraries that order quaternions in two ways: {FRAMES}."
     where = "written and read quantities of kind quaternion"
@@ -84,12 +81,9 @@ class QuaternionOrder(_OtherNumbers):
 
 
 class QuaternionSign(_OtherNumbers):
-    """Negates one part of a quaternion's vector; negating the scalar part is the inverse rotation."""
+    """One part of a quaternion's vector has the wrong sign; the inverse rotation is another operator's."""
 
     name = "quaternion-sign"
-    summary = (
-        "One part of a quaternion's vector has the wrong sign; the inverse rotation is another operator's."
-    )
     rank = 322
     stands_for = f"A wrong sign: {SIGNS}."
     where = "written and read quantities of kind quaternion"

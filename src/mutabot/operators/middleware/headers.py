@@ -37,13 +37,11 @@ class FreeValueOperator(ValueOperator):
 
 
 class WrongFrame(FreeValueOperator):
-    """Puts another name in the place of the frame."""
+    """The header names another frame: the next of those that the vocabulary gives, one that nobody knows if
+    it gives none, or none at all.
+    """
 
     name = "wrong-frame"
-    summary = (
-        "The header names another frame: the next of those that the vocabulary gives, one that nobody "
-        "knows if it gives none, or none at all."
-    )
     rank = 210
     kinds = frozenset({Kind.FRAME_ID})
     examples: ClassVar[tuple[Example, ...]] = (
@@ -67,10 +65,9 @@ class WrongFrame(FreeValueOperator):
 
 
 class ShiftStamp(FreeValueOperator):
-    """Moves the stamp of a message."""
+    """The header's stamp lies 5 s in the past or in the future."""
 
     name = "shift-stamp"
-    summary = "The header's stamp lies 5 s in the past or in the future."
     rank = 220
     kinds = frozenset({Kind.STAMP})
     #: seconds: more than programs that check the age of a message put up with. Less than 2 s is no difference
@@ -97,10 +94,9 @@ class ShiftStamp(FreeValueOperator):
 
 
 class EmptyStamp(FreeValueOperator):
-    """Puts zero in the place of the stamp."""
+    """The header has no stamp: it says zero, as if nobody had filled it in."""
 
     name = "empty-stamp"
-    summary = "The header has no stamp: it says zero, as if nobody had filled it in."
     rank = 230
     kinds = frozenset({Kind.STAMP})
     examples: ClassVar[tuple[Example, ...]] = (

@@ -55,10 +55,9 @@ _NEAR = replace(_TO, arguments=(replace(_X, range=(0.0, 0.6)),))
 
 
 class Reverse(ValueOperator):
-    """Negates one component of a motion, or mirrors a target at where the robot is."""
+    """A translation, rotation or speed goes the other way: one component is negated."""
 
     name = "reverse"
-    summary = "A translation, rotation or speed goes the other way: one component is negated."
     rank = 10
     where = "written translations, rotations, orientations as a whole, and speeds and ratios with a direction"
     published = (
@@ -139,11 +138,10 @@ class Reverse(ValueOperator):
 
 
 class ByTo(Operator):
-    """Confuses relative and absolute."""
+    """A relative amount is taken for an absolute target, and the other way round."""
 
     name = "by-to"
     needs = frozenset({Need.PLACE})
-    summary = "A relative amount is taken for an absolute target, and the other way round."
     rank = 20
     where = "written translations and rotations whose operation has a current that tells them"
     published = (

@@ -35,10 +35,9 @@ _FEEL = reading("gripper:holding", Kind.FLAG, values=(False, True))
 
 
 class Negate(ValueOperator):
-    """Negates one component of a reading."""
+    """A position, distance or angle is read with the wrong sign."""
 
     name = "negate"
-    summary = "A position, distance or angle is read with the wrong sign."
     rank = 60
     where = "read positions, distances, angles and orientations"
     kinds = MEASURED - PLAIN
@@ -64,10 +63,9 @@ class Negate(ValueOperator):
 
 
 class Noise(ValueOperator):
-    """Adds normally distributed noise of mean zero to one component of a reading."""
+    """A position, distance or angle is read with Gaussian noise added."""
 
     name = "noise"
-    summary = "A position, distance or angle is read with Gaussian noise added."
     rank = 70
     where = "read positions, distances, angles and orientations"
     kinds = frozenset(DEFAULT_DEVIATION)
@@ -109,10 +107,9 @@ class Noise(ValueOperator):
 
 
 class Misread(ValueOperator):
-    """Returns another label of the quantity's values."""
+    """A label, such as a colour, or a flag is read as another one."""
 
     name = "misread"
-    summary = "A label, such as a colour, or a flag is read as another one."
     rank = 80
     where = "read labels and flags"
     published = (Published(12, "a colour is classified", "an incorrect colour is returned"),)
