@@ -9,8 +9,10 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Kind, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.operators.examples import changed, unchanged, writing
-from mutabot.operators.operator import COMMANDS, PARAMETERS, Context, Example, Subject, map_numbers
-from mutabot.operators.value import ValueOperator, like, middle_of, within
+from mutabot.operators.numbers import like, map_numbers, middle_of, within
+from mutabot.operators.operator import Context, Example, Subject
+from mutabot.operators.studies import COMMANDS, PARAMETERS
+from mutabot.operators.value import ValueOperator
 
 _SPEED = writing("robot:Arm.set_speed", "speed", Kind.SPEED, unit="m/s", range=(0.0, 1.0))
 _PRESS = writing("robot:Arm.press", "force", Kind.FORCE, unit="N")

@@ -15,18 +15,9 @@ from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import Quaternion, from_euler, inverse, product
 from mutabot.model.values.units import convert
 from mutabot.operators.examples import MOVE_TO, changed, unchanged
-from mutabot.operators.operator import (
-    FRAMES,
-    Context,
-    Example,
-    Need,
-    Operator,
-    Subject,
-    Unchanged,
-    is_number,
-    map_numbers,
-    quantity_of,
-)
+from mutabot.operators.numbers import is_number, like, map_numbers
+from mutabot.operators.operator import Context, Example, Need, Operator, Subject, Unchanged, quantity_of
+from mutabot.operators.studies import FRAMES
 from mutabot.operators.value import (
     NOT_GIVEN,
     Exchange,
@@ -36,7 +27,6 @@ from mutabot.operators.value import (
     given,
     is_alike,
     label,
-    like,
     on_call,
 )
 

@@ -12,18 +12,11 @@ from mutabot.model.values.quantity import WHOLE, Value
 from mutabot.model.values.sameness import are_same
 from mutabot.operators.command import CommandOperator, idle_of
 from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, writing
-from mutabot.operators.operator import (
-    COMMANDS,
-    TIMING,
-    Context,
-    Example,
-    Need,
-    Subject,
-    Unchanged,
-    map_numbers,
-)
+from mutabot.operators.numbers import like, map_numbers
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.robot.commands import other_end
-from mutabot.operators.value import ValueOperator, given, like
+from mutabot.operators.studies import COMMANDS, TIMING
+from mutabot.operators.value import ValueOperator, given
 
 #: seconds: as long as a pneumatic gripper takes to open or close
 _LATE = 0.5

@@ -12,7 +12,9 @@ from mutabot.model.values.rotation import from_euler
 from mutabot.model.values.sameness import is_same
 from mutabot.model.values.units import convert
 from mutabot.operators.examples import changed, reading, unchanged, writing
-from mutabot.operators.operator import FRAMES, SIGNS, Context, Example, Unchanged, map_numbers
+from mutabot.operators.numbers import map_numbers
+from mutabot.operators.operator import Context, Example, Unchanged
+from mutabot.operators.studies import FRAMES, SIGNS
 from mutabot.operators.value import ValueOperator
 
 _RPY = writing("robot:Arm.orient", "rpy", Kind.EULER, unit="deg", order="xyz")

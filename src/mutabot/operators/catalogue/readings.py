@@ -14,29 +14,10 @@ from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantit
 from mutabot.model.values.quantity import MEASURED, WHOLE, Value
 from mutabot.operators.command import CommandOperator, comes_by_itself
 from mutabot.operators.examples import changed, reading, unchanged
-from mutabot.operators.operator import (
-    SENSORS,
-    TIMING,
-    Context,
-    Example,
-    Need,
-    Subject,
-    Unchanged,
-    is_number,
-    map_numbers,
-    quantity_of,
-)
-from mutabot.operators.value import (
-    NOT_GIVEN,
-    Exchange,
-    ValueOperator,
-    is_alike,
-    label,
-    like,
-    middle_of,
-    next_of,
-    within,
-)
+from mutabot.operators.numbers import is_number, like, map_numbers, middle_of, next_of, within
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of
+from mutabot.operators.studies import SENSORS, TIMING
+from mutabot.operators.value import NOT_GIVEN, Exchange, ValueOperator, is_alike, label
 
 _STANDS_FOR = f"A sensor that drops out or is misread: {SENSORS}."
 _NONE, _NAN = "none", "nan"

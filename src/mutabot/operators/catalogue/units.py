@@ -10,8 +10,10 @@ from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.units import convert
 from mutabot.operators.examples import changed, reading, unchanged, writing
-from mutabot.operators.operator import UNITS, Context, Example, Subject, map_numbers, quantity_of
-from mutabot.operators.value import ValueOperator, like
+from mutabot.operators.numbers import like, map_numbers
+from mutabot.operators.operator import Context, Example, Subject, quantity_of
+from mutabot.operators.studies import UNITS
+from mutabot.operators.value import ValueOperator
 
 #: the robot, or the program, takes the number as if it were in the other unit
 _TAKEN = "taken"

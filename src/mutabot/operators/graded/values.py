@@ -20,18 +20,9 @@ from mutabot.model.values.units import Dimension, convert, convert_difference
 from mutabot.operators.command import CommandOperator
 from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, writing
 from mutabot.operators.magnitudes import Ladder, ladder_in, own_ladder, per_second
-from mutabot.operators.operator import (
-    PARAMETERS,
-    SENSORS,
-    TIMING,
-    Context,
-    Draws,
-    Example,
-    Need,
-    Subject,
-    is_number,
-    quantity_of,
-)
+from mutabot.operators.numbers import is_number
+from mutabot.operators.operator import Context, Draws, Example, Need, Subject, quantity_of
+from mutabot.operators.studies import PARAMETERS, SENSORS, TIMING
 from mutabot.operators.value import ValueOperator, label
 
 #: components of a slice without an end that are tried: those of an arm with seven joints

@@ -11,8 +11,9 @@ from mutabot.model.named import Form
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.sameness import is_same
 from mutabot.operators.examples import changed, unchanged
+from mutabot.operators.numbers import next_of
 from mutabot.operators.operator import Context, Example, Subject, Unchanged, quantity_of
-from mutabot.operators.value import SAME, ValueOperator, next_of
+from mutabot.operators.value import SAME, ValueOperator
 
 from ._examples import FRAME, HEAR_STAMP, HEARD_FRAME, OPEN_FRAME, SEND_STAMP, operation
 

@@ -11,7 +11,8 @@ from mutabot.model.values.quantity import Value
 from mutabot.model.values.sameness import is_same
 from mutabot.operators.command import form_of
 from mutabot.operators.examples import changed, unchanged
-from mutabot.operators.operator import Context, Example, Subject, Unchanged, is_number, quantity_of
+from mutabot.operators.numbers import is_number
+from mutabot.operators.operator import Context, Example, Subject, Unchanged, quantity_of
 
 from ._examples import ADVERTISE, CLIENT, RATE, SPEED, SUBSCRIBE, TIMER
 from .headers import FreeValueOperator

@@ -12,6 +12,7 @@ from mutabot.model import Call, Kind, Middleware, Mode, NotToldError, Operation,
 from mutabot.model.values.direction import EITHER, has_direction
 from mutabot.model.values.quantity import READING_OF, Value
 from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
+from mutabot.operators.numbers import is_number, map_numbers
 from mutabot.operators.operator import (
     Context,
     Example,
@@ -20,8 +21,6 @@ from mutabot.operators.operator import (
     Published,
     Subject,
     Unchanged,
-    is_number,
-    map_numbers,
     quantity_of,
 )
 from mutabot.operators.value import NOT_GIVEN, NOT_TOLD, ValueOperator, checked, label, on_call, the_other_way

@@ -10,8 +10,9 @@ from typing import ClassVar
 from mutabot.model import Kind, Quantity
 from mutabot.model.values.quantity import MEASURED, PLAIN, Value
 from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged
-from mutabot.operators.operator import Context, Example, Published, Subject, map_numbers, quantity_of
-from mutabot.operators.value import ValueOperator, disturbed, label, next_of, the_other_way, within
+from mutabot.operators.numbers import map_numbers, next_of, within
+from mutabot.operators.operator import Context, Example, Published, Subject, quantity_of
+from mutabot.operators.value import ValueOperator, disturbed, label, the_other_way
 
 #: standard deviation where the vocabulary gives none: a clearly bad sensor, not a broken one (m, rad)
 DEFAULT_DEVIATION = {
