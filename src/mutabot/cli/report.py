@@ -104,14 +104,14 @@ def report(
 
 
 def _names() -> list[str]:
-    from mutabot.report.choice import names
+    from mutabot.report.format import names
 
     return names()
 
 
 def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Format, Path]]:
     """Each format with its file. Raises UsageError if they do not go together."""
-    from mutabot.report.choice import format_of
+    from mutabot.report.format import format_of
 
     if len(files) > len(names) or (len(names) > 1 and len(files) < len(names)):
         raise UsageError(

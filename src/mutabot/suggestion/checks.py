@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from statistics import NormalDist, fmean
 from typing import Any, TypeGuard
 
+from mutabot.analysis.thresholds.ladders import lower_limit
 from mutabot.frozen import frozen
 from mutabot.suggestion.measure import Read
 from mutabot.suggestion.readings import WAY, Reading
@@ -112,14 +113,7 @@ def may_be_normal(values: Sequence[float]) -> bool:
 
 def outside_range(count: int) -> float:
     """The share of all runs that may lie outside the range of ``count``, at most, with ``CONFIDENCE``."""
-    if count < 2:
-        return 1.0
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        share = (low + high) / 2
-        holds = 1 - count * share ** (count - 1) + (count - 1) * share**count
-        low, high = (share, high) if holds > CONFIDENCE else (low, share)
-    return 1 - low
+    return 1 - lower_limit(count - 1, count, CONFIDENCE)
 
 
 def unseen(count: int) -> float:
