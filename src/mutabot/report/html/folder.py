@@ -16,7 +16,7 @@ from mutabot.analysis.chance import false_kills, false_survivors
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group, Score
 from mutabot.analysis.statistics import Interval
-from mutabot.analysis.stored import StoredCampaign, StoredEvidence
+from mutabot.analysis.stored import StoredCampaign, StoredEvidence, killers
 from mutabot.analysis.suggested import Suggestions
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.analysis.unlooked import unlooked
@@ -25,7 +25,7 @@ from mutabot.errors import UsageError
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
 from mutabot.journal.records import Verification
-from mutabot.model import By, Outcome
+from mutabot.model import By
 from mutabot.report.as_json import facts
 from mutabot.report.format import place_of, utf16
 from mutabot.report.terminal.console import mark_of
@@ -149,9 +149,7 @@ class Rows:
     def __init__(self, campaign: StoredCampaign) -> None:
         self._campaign = campaign
         self.files: list[str] = []
-        named = (test for one in campaign.outcomes for test, _ in _killers(one))
-        baseline = (one.test.test for one in campaign.results.tests)
-        self.tests = list(dict.fromkeys([*baseline, *campaign.reaching.tests, *named]))
+        self.tests = campaign.tests
         self._tests = {name: number for number, name in enumerate(self.tests)}
         self._files: dict[str, int] = {}
         self._sites: dict[str, int] = {}
@@ -207,19 +205,11 @@ class Rows:
         """The tests that are known to notice it: number, in how many rounds, in how many by a check."""
         found: dict[int, list[int]] = {}
         for outcome in result.outcomes:
-            for test, by in dict(_killers(outcome)).items():
+            for test, by in dict(killers(outcome)).items():
                 counts = found.setdefault(self._tests[test], [0, 0])
                 counts[0] += 1
                 counts[1] += by is By.CHECK
         return [[test, *counts] for test, counts in found.items()]
-
-
-def _killers(outcome: Outcome) -> list[tuple[str, By | None]]:
-    """The tests that noticed a mutant, as far as they are known."""
-    if not outcome.verdict.is_killed:
-        return []
-    first = [(outcome.test, outcome.by)] if outcome.test is not None else []
-    return [*((one.test, one.by) for one in outcome.kills), *first]
 
 
 def _drawn(result: MutantResult) -> Sequence[Sequence[Any]]:
