@@ -16,8 +16,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 from mutabot.analysis.thresholds.thresholds import Thresholds, thresholds_of
 from mutabot.border.codec import from_data
@@ -175,7 +174,7 @@ class Pair:
 
 
 class StoredEvidence:
-    """All recordings of a campaign; use as a context manager. Raises JournalError if they cannot be read.
+    """All recordings of a campaign, to be closed. Raises JournalError if they cannot be read.
 
     Args:
         journal: the path of its journal.
@@ -184,14 +183,6 @@ class StoredEvidence:
     def __init__(self, journal: Path) -> None:
         self._recordings = Recordings.to_read(journal)
         self.recording = lru_cache(_HELD)(self._read)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Close the file."""

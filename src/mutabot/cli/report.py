@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import closing
 from itertools import zip_longest
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Annotated
@@ -149,7 +150,7 @@ def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: st
     from mutabot.report.texts import Cleaner
 
     name = Path(root).name if root else ""
-    with StoredEvidence(journal) as evidence:
+    with closing(StoredEvidence(journal)) as evidence:
         suggestions = kept_suggestions(journal, campaign.results.meta)
         written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root), suggestions))
     lines = [f"mutabot: {written.page}, {written.size / 1e6:.1f} MB in its folder: open it in a browser"]

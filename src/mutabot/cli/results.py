@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -63,7 +64,7 @@ def show(
 
         print_json(result_data(result))
     else:
-        with StoredEvidence(path) as evidence:
+        with closing(StoredEvidence(path)) as evidence:
             suggestions = kept_suggestions(path, found.meta)
             print_mutant(make_console(), result, source, evidence, suggestions)
 

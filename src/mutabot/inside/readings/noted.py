@@ -60,9 +60,9 @@ def at_end(test: Callable[..., Any], end: Callable[[Callable[[str], Any]], None]
     For tests that another tool makes, which have no text to add to.
     """
     own = inspect.signature(test)
-    asks = (
-        [] if "request" in own.parameters else [inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY)]
-    )
+    asks = [inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY)]
+    if "request" in own.parameters:
+        asks = []
 
     @functools.wraps(test)
     def with_end(**given: Any) -> None:

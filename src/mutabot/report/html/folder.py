@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 import shutil
 from collections import Counter
@@ -26,7 +25,7 @@ from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
 from mutabot.journal.records import Verification
 from mutabot.model import By
-from mutabot.report.as_json import facts
+from mutabot.report.as_json import facts, finite
 from mutabot.report.format import place_of, utf16
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.terminal.suggested import check_on_page
@@ -407,21 +406,9 @@ def script_of(name: str, data: Any) -> str:
 
     The data are a text that is parsed as JSON: no key of theirs means anything to the language.
     """
-    text = json.dumps(plain(data), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    data = finite(data, _short)
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"), default=str)
     return f"mutabot.take('{name.translate(_ESCAPES)}','{text.translate(_ESCAPES)}');\n"
-
-
-def plain(value: Any) -> Any:
-    """Data that JSON can hold: numbers that are none become null, and what it does not know a text."""
-    if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if isinstance(value, float):
-        return _short(value) if math.isfinite(value) else None
-    if value is None or isinstance(value, bool | int):
-        return value
-    return str(value)
 
 
 def _short(number: float) -> float | int:

@@ -11,6 +11,7 @@ from rich.text import Text
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
+from mutabot.border.codec import to_data
 from mutabot.report.as_json import facts
 
 from .console import heading, plain, plural
@@ -33,11 +34,7 @@ def suggested_data(found: Suggestions) -> dict[str, Any]:
 
 def _suggestion_data(one: Suggestion, found: Suggestions) -> dict[str, Any]:
     return {
-        **facts(
-            one,
-            "test style moment looks_at statement tolerance band factor spread runs alarm fresh unseen"
-            " by_hand",
-        ),
+        **to_data(one),
         "kills": [
             {"mutant": _mutant_data(mutant, found), "rounds": [round + 1 for round in rounds]}
             for mutant, rounds in one.kills.items()
