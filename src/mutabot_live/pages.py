@@ -9,6 +9,7 @@ import re
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -140,7 +141,7 @@ class Pages:
         if result is None:
             return None
         page = _bytes(f"mutant {number}", {**mutant_page(result), "suggestion": None, "media": []})
-        with StoredEvidence(self._journal) as evidence:
+        with closing(StoredEvidence(self._journal)) as evidence:
             recorded = self._recorded = Recorded(evidence, snapshot.clean, **self._originals())
             data = _recordings(recorded, result)
             return page + (_bytes(f"recordings {number}", data) if any(data.values()) else b"")

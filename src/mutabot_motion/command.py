@@ -6,6 +6,7 @@ It is the round and the test that tell most, if nobody says otherwise.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
@@ -177,7 +178,7 @@ def motion(
         check(video, ".mp4")
     elif not sights:
         raise UsageError("say how to show it: --video, --rerun, --rrd or --mcap")
-    with JournalReader.open(path) as journal, StoredEvidence(path) as evidence:
+    with JournalReader.open(path) as journal, closing(StoredEvidence(path)) as evidence:
         results = read_results(journal, earlier=True)
         result = find_mutant(results, mutant)
         wanted = None if round is None else number_of(round, results.rounds)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -99,8 +100,8 @@ def ran(folder: Path, engine: str = "auto", **details: object) -> dict[str, Outc
         return {outcome.mutant.partition("run:")[2]: outcome for outcome in journal.outcomes()}
 
 
-def evidence(folder: Path) -> StoredEvidence:
-    return StoredEvidence(folder / ".mutabot" / "journal.sqlite")
+def evidence(folder: Path) -> closing[StoredEvidence]:
+    return closing(StoredEvidence(folder / ".mutabot" / "journal.sqlite"))
 
 
 @pytest.fixture(scope="module", params=["branch", REPLAY])

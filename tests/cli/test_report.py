@@ -13,7 +13,7 @@ import pytest
 from analysis import samples
 from mutabot.cli.app import main
 from mutabot.cli.report import FORMATS
-from mutabot.report.choice import names
+from mutabot.report.format import names
 
 JOURNAL = Path(".mutabot", "journal.sqlite")
 

@@ -14,8 +14,8 @@ from mutabot.analysis.gate import decide
 from mutabot.cli.app import main
 from mutabot.exit_codes import ExitCode
 from mutabot.model.outcome import Figure
+from mutabot.report.terminal.campaign import print_summary
 from mutabot.report.terminal.console import make_console
-from mutabot.report.terminal.summary import print_summary
 
 LADDERS = (Rungs(["SSSSCCC"] * 5), Rungs(["SSSCCCC"] * 5, direction="-"))
 

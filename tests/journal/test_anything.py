@@ -31,8 +31,7 @@ from mutabot.journal.journal import Journal
 from mutabot.journal.marks import mark_of
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import REACHING
-from mutabot.report.choice import format_of
-from mutabot.report.format import Material
+from mutabot.report.format import Material, format_of
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.mutant import print_mutant

@@ -13,8 +13,7 @@ from mutabot.analysis.results import MutantResult
 from mutabot.border.codec import to_data
 from mutabot.journal.records import Reaching
 from mutabot.model import LeftOut
-from mutabot.report.choice import format_of
-from mutabot.report.format import Material
+from mutabot.report.format import Material, format_of
 from mutabot.report.texts import portable
 
 #: where the campaign of the samples says that it ran

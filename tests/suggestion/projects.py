@@ -144,7 +144,7 @@ TESTS = {
     "test_steps.py": STEPS,
     "rail.feature": SCENARIO,
 }
-STYLES = {"test_functions.py": "pytest", "test_cases.py": "unittest", "test_steps.py": "pytest-bdd"}
+STYLES = {"test_functions.py": "pytest", "test_cases.py": "unittest", "test_steps.py": "other"}
 #: what campaigns load, which is less than all that is installed
 _PYTEST = "[pytest]\npythonpath = .\nmarkers = slow\naddopts = -p pytest_bdd.plugin\n"
 _SETTINGS = 'program = ["mission.py"]\nvocabulary = ["robot.toml"]\nprivate_files = false\n'

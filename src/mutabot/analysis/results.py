@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
+from pathlib import Path
 from typing import Any
 
 from mutabot.border.codec import from_data
@@ -235,6 +236,12 @@ def _several(name: str, found: Sequence[MutantResult]) -> str:
     lines = [f"{one.mutant.number:>6}  {one.mutant.id}" for one in found[:_SHOWN]]
     more = [f"        and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else []
     return "\n".join([f"{name!r} fits {len(found)} mutants; give a number or a whole id:", *lines, *more])
+
+
+def results_at(path: Path, *, earlier: bool = False) -> Results:
+    """What the journal at a path holds. Raises JournalError."""
+    with JournalReader.open(path) as journal:
+        return read_results(journal, earlier=earlier)
 
 
 def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:

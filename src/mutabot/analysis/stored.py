@@ -16,8 +16,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
-from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 from mutabot.analysis.thresholds.thresholds import Thresholds, thresholds_of
 from mutabot.border.codec import from_data
@@ -28,7 +27,7 @@ from mutabot.journal.files import find_journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.recordings import ORIGINAL, Recordings
 from mutabot.journal.records import DRAWS, OPERATORS, REACHING, Reaching
-from mutabot.model import Mutant, Outcome
+from mutabot.model import By, Mutant, Outcome
 
 from .results import MutantResult, Results, find_mutant, read_results
 from .score import Group
@@ -175,7 +174,7 @@ class Pair:
 
 
 class StoredEvidence:
-    """All recordings of a campaign; use as a context manager. Raises JournalError if they cannot be read.
+    """All recordings of a campaign, to be closed. Raises JournalError if they cannot be read.
 
     Args:
         journal: the path of its journal.
@@ -184,14 +183,6 @@ class StoredEvidence:
     def __init__(self, journal: Path) -> None:
         self._recordings = Recordings.to_read(journal)
         self.recording = lru_cache(_HELD)(self._read)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
     def close(self) -> None:
         """Close the file."""
@@ -389,6 +380,13 @@ class StoredCampaign:
         return tuple(outcome for result in self.results.everything for outcome in result.outcomes)
 
     @property
+    def tests(self) -> list[str]:
+        """Node ids of all tests that are known: what mutants name is among them."""
+        named = (test for one in self.outcomes for test, _ in killers(one))
+        baseline = (one.test.test for one in self.results.tests)
+        return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
+
+    @property
     def survivors(self) -> tuple[MutantResult, ...]:
         """Mutants that some round lets through, the farthest from the original first."""
         return tuple(self.results.survivors)
@@ -424,6 +422,14 @@ class StoredCampaign:
         Raises UsageError if pandas is not installed.
         """
         return frame_of(self.results)
+
+
+def killers(outcome: Outcome) -> list[tuple[str, By | None]]:
+    """The tests that noticed a mutant, as far as they are known, and by what."""
+    if not outcome.verdict.is_killed:
+        return []
+    first = [(outcome.test, outcome.by)] if outcome.test is not None else []
+    return [*first, *((one.test, one.by) for one in outcome.kills)]
 
 
 def journal_at(path: Path) -> Path:

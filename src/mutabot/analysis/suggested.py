@@ -19,7 +19,7 @@ class Suggestion:
 
     Attributes:
         test: node id of the test that it is added to, without parameters.
-        style: ``pytest``, ``unittest`` or ``pytest-bdd``.
+        style: ``pytest``, ``unittest``, or ``other`` for a test that another tool makes.
         moment: ``end of the test`` or ``at any moment``.
         looks_at: the expression that it reads.
         statement: the assertion.
@@ -33,6 +33,7 @@ class Suggestion:
         fresh: fresh seeds in which it was run on the original after the band was fixed; it passed in all.
         unseen: share of runs in which it may fail although it did not in these, with 95 % confidence.
         kills: id of each mutant that it kills by itself, to the 0-based rounds in which it does.
+        by_hand: all that is to be added where no diff can: to a test that another tool makes; else empty.
     """
 
     test: str
@@ -49,6 +50,7 @@ class Suggestion:
     fresh: int
     unseen: float
     kills: Mapping[str, tuple[int, ...]]
+    by_hand: str = ""
 
 
 @frozen

@@ -20,7 +20,7 @@ from typing import Annotated
 
 import typer
 
-from mutabot.cli import campaign, init, report, results, suggest, thresholds
+from mutabot.cli import campaign, report, results, thresholds
 from mutabot.errors import MutabotError, UsageError
 from mutabot.exit_codes import ExitCode
 from mutabot.extensions import not_installed
@@ -134,14 +134,14 @@ def options(
 
 
 # in this order they stand in --help
-app.command(rich_help_panel=_SETUP)(init.init)
+app.command(rich_help_panel=_SETUP)(campaign.init)
 app.command(rich_help_panel=_SETUP)(with_options(campaign.check))
 app.command("list", rich_help_panel=_SETUP)(with_options(campaign.list_))
-app.command(rich_help_panel=_SETUP)(init.operators)
+app.command(rich_help_panel=_SETUP)(campaign.operators)
 app.command(rich_help_panel=_RUN)(with_options(campaign.run))
 app.command(rich_help_panel=_RUN)(campaign.merge)
 app.command(rich_help_panel=_RUN)(results.replay)
-app.command(rich_help_panel=_RUN)(suggest.suggest)
+app.command(rich_help_panel=_RUN)(results.suggest)
 app.command(rich_help_panel=_LOOK)(results.results)
 app.command(rich_help_panel=_LOOK)(results.show)
 app.command(rich_help_panel=_LOOK)(thresholds.thresholds)

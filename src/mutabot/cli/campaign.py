@@ -1,4 +1,4 @@
-"""``mutabot check``, ``list``, ``run`` and ``merge``: a campaign, what comes before it, and its shards."""
+"""``mutabot init``, ``operators``, ``check``, ``list``, ``run`` and ``merge``: campaigns and their set-up."""
 
 # Commands import what they need when they run, so that `--help` is fast; typer makes options of parameters.
 # ruff: noqa: PLC0415
@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Unpack
@@ -14,7 +15,7 @@ import typer
 
 from mutabot.cli import options
 from mutabot.cli.output import decided, echo, exit_as, print_json, progress_shown, show_results
-from mutabot.cli.request import request_of
+from mutabot.cli.request import families_of, request_of
 from mutabot.exit_codes import ExitCode
 from mutabot.journal.files import HOME, JOURNAL
 
@@ -23,6 +24,30 @@ if TYPE_CHECKING:
     from mutabot.analysis.results import Results
     from mutabot.campaign.request import Progress, Request
     from mutabot.settings.configuration import Configuration
+
+
+def init(
+    context: typer.Context,
+    program: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[PROGRAM]...", help="Files or folders of the robot program."),
+    ] = None,
+) -> None:
+    """Run the tests once, look at what the program calls, and propose a configuration and a vocabulary."""
+    from mutabot.proposal import propose
+
+    for line in propose(context.obj, program or [], tell=lambda text: typer.echo(text, err=True)):
+        echo(line)
+
+
+def operators(family: options.Families = None, json: options.Json = False) -> None:
+    """List the operators: what each plants, where it applies, and which bugs it stands for."""
+    from mutabot.campaign.plan.plan import listed_rules
+    from mutabot.report.terminal.console import make_console
+    from mutabot.report.terminal.listing import print_rules
+
+    rules = [asdict(rule) for rule in listed_rules(families_of(family))]
+    print_json({"operators": rules}) if json else print_rules(make_console(), rules)
 
 
 def check(context: typer.Context, json: options.Json = False, **given: Unpack[options.Setting]) -> None:

@@ -57,14 +57,11 @@ def show_results(
     ``everything``: also what the plan left out. ``earlier``: also what earlier campaigns found. ``summary``:
     without the table of mutants.
     """
-    from mutabot.analysis.results import read_results
-    from mutabot.journal.reader import JournalReader
-    from mutabot.report.terminal.campaign import print_results
+    from mutabot.analysis.results import results_at
+    from mutabot.report.terminal.campaign import print_results, print_summary
     from mutabot.report.terminal.console import make_console
-    from mutabot.report.terminal.summary import print_summary
 
-    with JournalReader.open(path) as journal:
-        found = read_results(journal, earlier=earlier)
+    found = results_at(path, earlier=earlier)
     if json:
         from mutabot.report.as_json import results_data
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import closing
 from itertools import zip_longest
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Annotated
@@ -104,14 +105,14 @@ def report(
 
 
 def _names() -> list[str]:
-    from mutabot.report.choice import names
+    from mutabot.report.format import names
 
     return names()
 
 
 def _wanted(names: Sequence[str], files: Sequence[Path]) -> Iterator[tuple[Format, Path]]:
     """Each format with its file. Raises UsageError if they do not go together."""
-    from mutabot.report.choice import format_of
+    from mutabot.report.format import format_of
 
     if len(files) > len(names) or (len(names) > 1 and len(files) < len(names)):
         raise UsageError(
@@ -149,7 +150,7 @@ def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: st
     from mutabot.report.texts import Cleaner
 
     name = Path(root).name if root else ""
-    with StoredEvidence(journal) as evidence:
+    with closing(StoredEvidence(journal)) as evidence:
         suggestions = kept_suggestions(journal, campaign.results.meta)
         written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root), suggestions))
     lines = [f"mutabot: {written.page}, {written.size / 1e6:.1f} MB in its folder: open it in a browser"]

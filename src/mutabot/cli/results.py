@@ -1,18 +1,38 @@
-"""``mutabot results``, ``show`` and ``replay``: what the journal holds. The first two load little."""
+"""``mutabot results`` and ``show``, which load little; ``replay`` and ``suggest``: what the journal holds."""
 
 # Commands import what they need when they run, so that `--help` is fast; typer makes options of parameters.
 # ruff: noqa: PLC0415
 
 from __future__ import annotations
 
+from contextlib import closing
+from typing import TYPE_CHECKING, Annotated
+
 import typer
 
+from mutabot import limits
 from mutabot.cli import options
 from mutabot.cli.output import print_json, progress_shown, show_results
 from mutabot.cli.request import request_again
-from mutabot.errors import UsageError
+from mutabot.errors import NothingToDoError, UsageError
 from mutabot.exit_codes import ExitCode
 from mutabot.journal.files import find_journal
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from mutabot.analysis.results import MutantResult, Results
+
+Seeds = Annotated[
+    int,
+    typer.Option(
+        "--seeds",
+        metavar="N",
+        min=5,
+        max=limits.SEEDS,
+        help="Fresh seeds for the tolerances, and as many for the proof.",
+    ),
+]
 
 
 def results(context: typer.Context, all: options.All = False, json: options.Json = False) -> None:
@@ -44,7 +64,7 @@ def show(
 
         print_json(result_data(result))
     else:
-        with StoredEvidence(path) as evidence:
+        with closing(StoredEvidence(path)) as evidence:
             suggestions = kept_suggestions(path, found.meta)
             print_mutant(make_console(), result, source, evidence, suggestions)
 
@@ -85,3 +105,48 @@ def number_of(round: int, rounds: int) -> int:
     if round > rounds:
         raise UsageError(f"there is no round {round}; the campaign has {rounds}")
     return round - 1
+
+
+def suggest(
+    context: typer.Context,
+    only: options.Only = None,
+    skip: options.Skip = None,
+    seeds: Seeds = 20,
+    jobs: options.Jobs = None,
+    json: options.Json = False,
+) -> None:
+    """Suggest checks that kill survivors of the last campaign, each proven by running it."""
+    from mutabot.analysis.results import results_at
+    from mutabot.analysis.suggested import keep_suggestions
+    from mutabot.report.terminal.console import make_console
+    from mutabot.report.terminal.suggested import print_suggestions, suggested_data
+    from mutabot.suggestion import suggest as find_checks
+
+    path = find_journal(context.obj)
+    results = results_at(path)
+    chosen = _chosen(results, only, skip)
+    request = request_again(path.parent.parent, results, jobs)
+    with progress_shown() as progress:
+        found = find_checks(request, results, chosen, progress, seeds=seeds)
+    keep_suggestions(path, results.meta, found)
+    print_json(suggested_data(found)) if json else print_suggestions(make_console(), found)
+
+
+def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) -> list[MutantResult]:
+    """The survivors that were asked for. Raises NothingToDoError if there is none, saying why."""
+    from mutabot.campaign.plan.selection import select
+
+    if results.graded and not results.mutants:
+        raise NothingToDoError("graded mutants have no survivors but thresholds: `mutabot thresholds`")
+    if not results.mutants:
+        raise NothingToDoError(f"the journal holds no mutants ({results.state}): run `mutabot run` first")
+    if not results.done:
+        raise NothingToDoError("no mutant has been run yet: `mutabot run` goes on")
+    mutants = select([one.mutant for one in results.mutants], tuple(only or ()), tuple(skip or ()), None)
+    by_id: Mapping[str, MutantResult] = {one.mutant.id: one for one in results.survivors}
+    if not by_id:
+        raise NothingToDoError("no mutant survived: there is no check to suggest")
+    chosen = [by_id[mutant.id] for mutant in mutants if mutant.id in by_id]
+    if not chosen:
+        raise NothingToDoError("none of the mutants that were asked for survived")
+    return chosen

@@ -76,11 +76,9 @@ def thresholds(
 
 def _read(journal: Path) -> Results:
     """What a journal holds. Raises JournalError if that are no graded mutants."""
-    from mutabot.analysis.results import read_results
-    from mutabot.journal.reader import JournalReader
+    from mutabot.analysis.results import results_at
 
-    with JournalReader.open(journal) as reader:
-        found = read_results(reader)
+    found = results_at(journal)
     if not found.ladders:
         raise JournalError(
             f"{journal}: the campaign has no graded mutants; `mutabot run --family graded` plants them",

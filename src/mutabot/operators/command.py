@@ -110,11 +110,10 @@ class FatalFault(BaseException):
 
 
 class Identity(CommandOperator):
-    """Goes through all the machinery and changes nothing."""
+    """Control: proceeds unchanged, so it must survive."""
 
     name = "identity"
     family = CONTROL
-    summary = "Control: proceeds unchanged, so it must survive."
     fault = "unchanged"
     examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), away="that is its purpose"),)
 
@@ -126,11 +125,10 @@ class Identity(CommandOperator):
 
 
 class Fatal(Identity):
-    """Raises instead of proceeding."""
+    """Control: the operation raises, so it must die."""
 
     name = "fatal"
     does_nothing = True
-    summary = "Control: the operation raises, so it must die."
     fault = "fails"
     examples: ClassVar[tuple[Example, ...]] = (Example(Subject(_HOME), raises=FatalFault),)
 

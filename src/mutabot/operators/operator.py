@@ -24,7 +24,6 @@ shortest ones.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from array import array
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
@@ -34,16 +33,6 @@ from typing import Any, ClassVar, NamedTuple, TypeVar
 from mutabot.families import ROBOT
 from mutabot.model import Call, Middleware, Operation, Pattern, Quantity
 from mutabot.model.values.quantity import Value
-
-#: how often each class of bugs was counted in public studies, by which operators say what they stand for
-_STUDIES = "of the bugs on commands and readings in studies of ROS and PX4/ArduPilot software"
-TIMING = f"timing and order are 28 {_STUDIES}"
-SENSORS = f"sensor dropouts and misreadings are 20 {_STUDIES}"
-PARAMETERS = f"parameters are 14 {_STUDIES}"
-COMMANDS = f"missing and duplicated commands are 13 {_STUDIES}"
-FRAMES = f"frames are 9 {_STUDIES}"
-SIGNS = f"signs are 4 {_STUDIES}"
-UNITS = f"units are 2 {_STUDIES}"
 
 
 class Published(NamedTuple):
@@ -65,7 +54,7 @@ class Rule(ABC):
     Class attributes:
         name: how ids, reports and selections call it.
         family: the family of its mutants (``mutabot.families``), or one of its own for a plug-in.
-        summary: one sentence for the documentation.
+        summary: one sentence for the documentation: what the docstring says first, unless it is given.
         examples: worked examples; they are tests and documentation at once.
         rank: its place in the documentation and in the numbering of mutants: smaller first, then by name.
             Without one it comes after those that have one.
@@ -78,13 +67,18 @@ class Rule(ABC):
 
     name: ClassVar[str]
     family: ClassVar[str]
-    summary: ClassVar[str]
+    summary: ClassVar[str] = ""
     examples: ClassVar[tuple[Any, ...]] = ()
     rank: ClassVar[int] = 1000
     published: ClassVar[tuple[Published, ...]] = ()
     stands_for: ClassVar[str] = ""
     where: ClassVar[str] = ""
     has_sizes: ClassVar[bool] = False
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        if cls.__doc__ and "summary" not in vars(cls):
+            cls.summary = " ".join(cls.__doc__.partition("\n\n")[0].split())
 
 
 R = TypeVar("R", bound=Rule)
@@ -311,34 +305,6 @@ def subject_of(
     whole = Subject(operation, pattern, None, variant)
     quantities = (*whole.written, *whole.read)
     return replace(whole, quantity=next((one for one in quantities if one.name == quantity), None))
-
-
-def is_number(value: Value) -> bool:
-    """Whether a value is a plain number (numpy scalars included, truth values not)."""
-    if isinstance(value, bool) or type(value).__name__ in ("bool_", "bool"):
-        return False
-    return isinstance(value, int | float) or (hasattr(value, "__float__") and not hasattr(value, "__len__"))
-
-
-def map_numbers(value: Value, change: Any) -> Value | None:
-    """``change`` applied to a number, or to each number of a vector; None where there is none.
-
-    The container's type is kept: lists stay lists, tuples tuples, arrays arrays. An array of whole numbers
-    becomes one of floating-point numbers.
-    """
-    if is_number(value):
-        is_unsigned = getattr(getattr(value, "dtype", None), "kind", "") == "u"  # which has no other sign
-        return change(int(value) if is_unsigned else value)
-    if isinstance(value, list | tuple) and value and all(is_number(item) for item in value):
-        return type(value)(change(item) for item in value)
-    if isinstance(value, array) and len(value):
-        return array(value.typecode if value.typecode in "fd" else "d", [change(item) for item in value])
-    if hasattr(value, "dtype") and getattr(value, "ndim", 0) == 1:
-        changed = value.copy() if value.dtype.kind == "f" else value.astype(float)
-        for index in range(len(changed)):
-            changed[index] = change(changed[index])
-        return changed
-    return None
 
 
 _BITS = 64

@@ -17,7 +17,8 @@ from mutabot.model.values.sameness import SAME_ORIENTATION, TURNED_ROUND, is_sam
 from mutabot.model.values.units import convert
 
 from .magnitudes import Ladder, sized
-from .operator import Context, Operator, Subject, Unchanged, map_numbers, quantity_of
+from .numbers import map_numbers
+from .operator import Context, Operator, Subject, Unchanged, quantity_of
 
 CallOrReply = TypeVar("CallOrReply", Call, Reply)
 _NAMES = re.compile(r"[._]")
@@ -155,35 +156,6 @@ def given(values: Mapping[str, Value], name: str) -> Value:
     if name not in values:
         raise Unchanged(NOT_GIVEN)
     return values[name]
-
-
-def next_of(value: Value, quantity: Quantity, by: int = 1) -> Value:
-    """The value that comes so many places after another one. Raises Unchanged if it is none of the values."""
-    values = quantity.values or ()
-    if value not in values:
-        raise Unchanged("it is none of those that are known")
-    return values[(values.index(value) + by) % len(values)]
-
-
-def like(before: float, after: float) -> float:
-    """A number in the type of the one in whose place it comes, where that loses nothing."""
-    is_whole = isinstance(before, int) and not isinstance(before, bool) and float(after).is_integer()
-    return int(after) if is_whole else after
-
-
-def within(value: float, limits: tuple[float, float] | None) -> float:
-    """A number, or the end of the limits that is nearest to it."""
-    return value if limits is None else min(max(value, limits[0]), limits[1])
-
-
-def middle_of(quantity: Quantity, share: float) -> tuple[float, float]:
-    """The ends of the middle share of what a quantity may be. Raises Unchanged if nobody knows its range."""
-    limits = quantity.range or quantity.clip
-    if limits is None:
-        raise Unchanged("the vocabulary gives no range")
-    low, high = limits
-    cut = (high - low) * (1.0 - share) / 2.0
-    return low + cut, high - cut
 
 
 def checked(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from mutabot.analysis.chance import Estimate, false_kills, false_survivors
@@ -42,7 +42,7 @@ _ELSEWHERE = {
 
 def dumps(data: Any) -> str:
     """Valid JSON for any data of ours: numbers that JSON cannot hold become null."""
-    return json.dumps(_finite(data), indent=2, ensure_ascii=False, default=str)
+    return json.dumps(finite(data), indent=2, ensure_ascii=False, default=str)
 
 
 def facts(one: object, names: str) -> dict[str, Any]:
@@ -221,11 +221,12 @@ def interval_data(interval: Interval | None) -> dict[str, Any] | None:
     return facts(interval, "low high level") if interval is not None else None
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any, number: Callable[[float], float] = float) -> Any:
+    """Data that JSON can hold: numbers that are none become null, others what ``number`` makes of them."""
     if isinstance(value, dict):
-        return {str(key): _finite(item) for key, item in value.items()}
+        return {str(key): finite(item, number) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
+        return [finite(item, number) for item in value]
+    if isinstance(value, float):
+        return number(value) if math.isfinite(value) else None
     return value

@@ -21,6 +21,7 @@ from mutabot.report.terminal.console import (
     heading,
     make_mutant_table,
     make_table,
+    percent,
     plain,
     short_place,
 )
@@ -83,7 +84,7 @@ def score_rows(changes: Changes) -> Iterator[tuple[str, str, str, str]]:
     for (family, role), (old, new) in changes.scores.items():
         before, after = _mean(old), _mean(new)
         by = f"{100 * (after - before):+.1f}" if before is not None and after is not None else "–"
-        yield f"{family} · {role}", _percent(before), _percent(after), by
+        yield f"{family} · {role}", percent(before), percent(after), by
 
 
 def _told(pair: Ends) -> str:
@@ -93,10 +94,6 @@ def _told(pair: Ends) -> str:
 
 def _mean(group: Group | None) -> float | None:
     return group.scores.mean if group is not None else None
-
-
-def _percent(share: float | None) -> str:
-    return "–" if share is None else f"{100 * share:.1f} %"
 
 
 def changes_data(changes: Changes) -> dict[str, Any]:
@@ -176,10 +173,6 @@ def change_lines(changes: Changes, path: Callable[[str], str]) -> Iterator[str]:
             yield ""
 
 
-#: mutants of a section that are shown
-_SHOWN = 50
-
-
 def print_changes(console: Console, changes: Changes) -> None:
     """Print what differs."""
     for part in _parts(changes, console.width):
@@ -194,8 +187,8 @@ def _parts(changes: Changes, width: int) -> Iterator[RenderableType]:
     for section in sections(changes):
         yield heading(f"{section.heading}: {len(section.rows)}")
         yield _mutants(section, width)
-        if len(section.rows) > _SHOWN:
-            yield Text(f"and {len(section.rows) - _SHOWN} more", style="dim")
+        if len(section.rows) > _ROWS:
+            yield Text(f"and {len(section.rows) - _ROWS} more", style="dim")
 
 
 def _scores(changes: Changes) -> Table:
@@ -211,7 +204,7 @@ def _scores(changes: Changes) -> Table:
 def _mutants(section: Section, width: int) -> Table:
     narrow = width < WIDE
     table = make_mutant_table(("place", "operator"), "what it does, and how it ended", narrow=narrow)
-    for result, told in section.rows[:_SHOWN]:
+    for result, told in section.rows[:_ROWS]:
         mutant = result.mutant
         facts = (short_place(mutant.site.span.file, mutant.site.span.line), mutant.operator)
         add_row(table, mutant.number, facts, f"{mutant.description}\n{told}", narrow=narrow)

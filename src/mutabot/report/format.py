@@ -8,10 +8,15 @@ special in the format it escapes itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import importlib
+import pkgutil
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 from mutabot.analysis.stored import Changes, StoredCampaign
+from mutabot.errors import ExtensionError, UsageError, unknown_name_text
+from mutabot.extensions import Part, brought
 from mutabot.frozen import frozen
 from mutabot.model import Span
 
@@ -108,3 +113,32 @@ def place_of(span: Span, source: str | None, length: Callable[[str], int] = len)
 def _prefix(line: str, column: int) -> str:
     """What stands before a column in UTF-8 bytes, from 0."""
     return line.encode(errors="replace")[:column].decode(errors="ignore")
+
+
+def names() -> list[str]:
+    """The names of all formats."""
+    return sorted([*_own(), *_of_packages()])
+
+
+def format_of(name: str) -> Format:
+    """The format of this name. Raises UsageError, with the nearest name, if there is none."""
+    if name in _own():
+        module = importlib.import_module(f"{__package__}.formats.{name.replace('-', '_')}")
+        found: Format = module.FORMAT
+        return found
+    part = _of_packages().get(name)
+    if part is None:
+        raise UsageError(unknown_name_text("format", name, names()))
+    loaded = part.load()
+    if not isinstance(loaded, Format):
+        raise ExtensionError(f"{part.words} is no {Format.__module__}.Format")
+    return loaded
+
+
+def _own() -> list[str]:
+    found = (module.name for module in pkgutil.iter_modules([str(Path(__file__).with_name("formats"))]))
+    return [name.replace("_", "-") for name in found if not name.startswith("_")]
+
+
+def _of_packages() -> Mapping[str, Part]:
+    return brought("formats", _own())

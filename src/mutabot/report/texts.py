@@ -172,8 +172,8 @@ def _mutant(result: MutantResult, clean: Cleaner) -> MutantResult:
     )
 
 
-#: of the rounds that stand outside the score, the one that most needs a look names the state
-_OUTSIDE = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
+#: verdicts outside the score, those first that most need a look; of several rounds the first names the state
+OUTSIDE = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
 
 
 def status_of(result: MutantResult) -> Verdict | None:
@@ -192,7 +192,7 @@ def status_of(result: MutantResult) -> Verdict | None:
         return Verdict.SURVIVED
     if valid:
         return Verdict.TIMEOUT if valid == {Verdict.TIMEOUT} else Verdict.KILLED
-    return next((verdict for verdict in _OUTSIDE if verdict in found), None)
+    return next((verdict for verdict in OUTSIDE if verdict in found), None)
 
 
 def is_divergent(result: MutantResult) -> bool:

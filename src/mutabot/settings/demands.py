@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from mutabot.errors import unknown_name_text
 from mutabot.model import Kind
@@ -15,6 +15,7 @@ from mutabot.model.values.quantity import DIMENSIONS, MEASURED, WHOLE
 from mutabot.model.values.units import UNITS, Dimension, dimension_of
 
 from .mistakes import ALSO_KNOWN_AS, Check
+from .table import Table
 from .toml_lines import KeyPath
 
 #: what every quantity can be off by beside its own measure: it comes late, or is scaled
@@ -22,10 +23,8 @@ _ANY = (Dimension.TIME, Dimension.RATIO)
 _NUMBERS = re.compile(r"\d+(-\d+)?(,\d+(-\d+)?)*")
 
 
-class DemandTable(BaseModel):
+class DemandTable(Table):
     """One ``[[tool.mutabot.demand]]``."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
     notice: str | float
     site: Annotated[str | None, Field(min_length=1)] = None

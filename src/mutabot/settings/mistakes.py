@@ -82,6 +82,11 @@ class Check:
     document: Document
     errors: list[ConfigurationError] = field(default_factory=list)
 
+    def source(self, place: KeyPath, name: str) -> str:
+        """Where something is described: ``robot.toml:12 · robot:Arm.move_by``."""
+        line = self.document.line(place)
+        return f"{self.document.file}{f':{line}' if line is not None else ''} · {name}"
+
     def error(self, place: KeyPath, problem: str) -> None:
         """Note a mistake."""
         self.errors.append(self.document.error(place, problem))

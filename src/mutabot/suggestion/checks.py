@@ -23,11 +23,11 @@ from dataclasses import dataclass, field
 from statistics import NormalDist, fmean
 from typing import Any, TypeGuard
 
+from mutabot.analysis.thresholds.ladders import lower_limit
 from mutabot.frozen import frozen
 from mutabot.suggestion.measure import Read
 from mutabot.suggestion.readings import WAY, Reading
-from mutabot.suggestion.style import Addition, Place
-from mutabot.suggestion.styles.choice import style_of
+from mutabot.suggestion.style import Addition, Place, equal, within
 
 #: of all runs of the original, how many the band holds, and how sure that is
 CONTENT, CONFIDENCE = 0.99999, 0.95
@@ -113,14 +113,7 @@ def may_be_normal(values: Sequence[float]) -> bool:
 
 def outside_range(count: int) -> float:
     """The share of all runs that may lie outside the range of ``count``, at most, with ``CONFIDENCE``."""
-    if count < 2:
-        return 1.0
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        share = (low + high) / 2
-        holds = 1 - count * share ** (count - 1) + (count - 1) * share**count
-        low, high = (share, high) if holds > CONFIDENCE else (low, share)
-    return 1 - low
+    return 1 - lower_limit(count - 1, count, CONFIDENCE)
 
 
 def unseen(count: int) -> float:
@@ -219,8 +212,7 @@ class Check:
     @property
     def lines(self) -> tuple[str, ...]:
         """It in the style of its test: the assertion is the last of them."""
-        style = style_of(self.place)
-        band, label = self.expected.band, self.expected.label
+        style, band, label = self.place.style, self.expected.band, self.expected.label
         texts = {key: self._text(value) for key, value in self.expected.values.items()}
         head: tuple[str, ...] = ()
         value = "expected"
@@ -229,8 +221,8 @@ class Check:
         else:
             head = _looked_up([f"{literal(key)}: {text}" for key, text in texts.items()], label)
         if band is None:
-            return *head, style.equal(self.looked_at, value)
-        return *head, style.within(self.looked_at, value, decimal(band.tolerance))
+            return *head, equal(style, self.looked_at, value)
+        return *head, within(style, self.looked_at, value, decimal(band.tolerance))
 
     @property
     def statement(self) -> str:
@@ -242,28 +234,15 @@ class Check:
             return str(value)  # a list, as it was noted
         return decimal(value) if self.expected.band is not None else literal(value)
 
-    @property
-    def words(self) -> str:
-        """What it looks at, in words that can be a step of a scenario."""
-        expected = self.expected
-        of = f"what {said(expected.label)} asks for" if expected.label is not None else None
-        what = said(self.looked_at)
-        if self.reading.watch is not None:
-            what = said(f"{self.reading.text} on the way".replace("args[0].", "").removeprefix("all "))
-        if expected.band is None:
-            return f"{what} is {of or said(self._text(expected.values[None]))}"
-        near = of or self._text(expected.values[None])
-        return f"{what} is within {decimal(expected.band.tolerance)} of {near}"
-
     def addition(self) -> Addition:
         """It as something that is added to a test."""
         names = set(_NAME.findall(" ".join(self.lines)))
+        approx = ["import pytest"] if "pytest.approx" in self.statement else []
         return Addition(
             self.place,
             self.lines,
-            self.words,
             tuple(name for name in self.place.names if name in names),
-            (*self.reading.needs, *self.needs, *style_of(self.place).needs(self.statement)),
+            (*self.reading.needs, *self.needs, *approx),
             self.reading.watch,
         )
 
@@ -274,11 +253,6 @@ def _looked_up(pairs: list[str], label: str) -> tuple[str, ...]:
     if len(line) <= _WIDTH:
         return (line,)
     return "expected = {", *(f"    {pair}," for pair in pairs), f"}}[{label}]"
-
-
-def said(text: str) -> str:
-    """An expression in words: ``world()["tool.theta_z"]`` is world tool.theta_z."""
-    return re.sub(r"\s+", " ", re.sub(r"[()\[\]\"'{}]+", " ", text).replace(" .", " ")).strip()
 
 
 def literal(value: Any) -> str:

@@ -16,10 +16,10 @@ from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.fresh import task
 from mutabot.campaign.request import Progress, Request
 from mutabot.model import Mutant, Probe
-from mutabot.suggestion.project import Insertion, Project, changed_texts
+from mutabot.suggestion.edits import edited
+from mutabot.suggestion.project import Project
 from mutabot.suggestion.readings import ORACLE, PROBE, Reading, of_objects, readings_at
 from mutabot.suggestion.style import Addition, Place
-from mutabot.suggestion.styles.choice import insertions_of
 
 from .project import copy_of
 from .readings import Command, commands_of
@@ -72,9 +72,8 @@ def measure(
     for place in dict.fromkeys(places.values()):
         measured.readings[place] = readings_at(project, place)
         additions.append(_noting(place, measured.readings[place], measured.objects))
-    insertions = insertions_of(project, additions)
-    insertions += [_watching(project, measured, file) for file in {one.file for one in places.values()}]
-    texts = changed_texts(project.root, insertions)
+    watching = {file: _watching(measured, file) for file in {one.file for one in places.values()}}
+    texts = edited(project, additions, watching)
     with copy_of(request, texts) as copied:
         probes = (*copied.vocabulary.probes, Probe(_PROBE, 1e9))
         noting = replace(copied, vocabulary=replace(copied.vocabulary, probes=probes))
@@ -130,7 +129,7 @@ def _take(
             found.setdefault(place, {})[round, end.test] = read
 
 
-def _watching(project: Project, measured: Measured, file: str) -> Insertion:
+def _watching(measured: Measured, file: str) -> tuple[str, ...]:
     """The lines that look after every command of the tests of a file."""
     known = next(found for place, found in measured.readings.items() if place.file == file)
     looks = ", ".join(
@@ -138,8 +137,7 @@ def _watching(project: Project, measured: Measured, file: str) -> Insertion:
     )
     classes = [target for target, _ in measured.objects]
     line = f"_mutabot_watch({measured.commands!r}, [{looks}], {classes!r})"
-    lines = (f"from {_NOTED} import watch as _mutabot_watch", line)
-    return Insertion(file, len(project.lines(file)), lines)
+    return f"from {_NOTED} import watch as _mutabot_watch", line
 
 
 def _noting(place: Place, readings: Sequence[Reading], objects: Sequence[tuple[str, float]]) -> Addition:
@@ -154,7 +152,6 @@ def _noting(place: Place, readings: Sequence[Reading], objects: Sequence[tuple[s
             f"from {_NOTED} import note as _mutabot_note",
             f"_mutabot_note(locals(), [{pairs}], {classes!r})",
         ),
-        "mutabot notes what can be read",
         tuple(place.names),
         tuple(dict.fromkeys(line for one in readings for line in one.needs)),
     )

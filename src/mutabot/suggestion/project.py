@@ -14,7 +14,6 @@ import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from pathlib import Path
 
 from mutabot.campaign.request import Request
@@ -42,10 +41,6 @@ class Project:
     def text(self, file: str) -> str:
         """The text of a file."""
         return read_text(self.root, file)
-
-    def lines(self, file: str) -> list[str]:
-        """The lines of a file without their ends."""
-        return self.text(file).splitlines()
 
     def module(self, file: str) -> ast.Module | None:
         """The parsed file; None if it cannot be read."""
@@ -87,51 +82,12 @@ class Project:
         return found
 
 
-#: an import that is longer is not made longer still
-_JOINED = 70
 _NO_END = "\\ No newline at end of file\n"
-
-
-@frozen
-class Insertion:
-    """Lines that are put into a file.
-
-    Attributes:
-        file: relative to the project.
-        after: the 1-based line after which they come; 0 for the beginning.
-        lines: without their ends.
-        instead: how many lines after that line they stand for.
-    """
-
-    file: str
-    after: int
-    lines: tuple[str, ...]
-    instead: int = 0
-
-
-def changed_texts(root: Path, insertions: Iterable[Insertion]) -> dict[str, str]:
-    """The new texts of the files that change, by file. Equal lines at one place are put there once."""
-    by_file: dict[str, dict[Insertion, None]] = {}
-    for one in insertions:
-        by_file.setdefault(one.file, {})[one] = None
-    return {file: _changed(read_text(root, file), list(found)) for file, found in by_file.items()}
 
 
 def read_text(root: Path, file: str) -> str:
     """The text of a project's file, with its own ends of lines."""
     return (root / file).read_bytes().decode("utf-8")
-
-
-def _changed(text: str, insertions: list[Insertion]) -> str:
-    lines = text.splitlines(keepends=True)
-    end = "\r\n" if lines and lines[0].endswith("\r\n") else "\n"
-    if lines and not lines[-1].endswith("\n"):
-        lines[-1] += end
-    for after in sorted({one.after for one in insertions}, reverse=True):
-        here = [one for one in insertions if one.after == after]
-        added = [line + end for one in here for line in one.lines]
-        lines[after : after + max(one.instead for one in here)] = added
-    return "".join(lines)
 
 
 def diff_of(root: Path, texts: Mapping[str, str]) -> str:
@@ -185,88 +141,6 @@ def top_names(module: ast.Module) -> set[str]:
         else:
             found |= {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
     return found
-
-
-def imports_of(file: str, module: ast.Module, imports: Iterable[str]) -> list[Insertion]:
-    """What puts imports into a file that lacks them: in their order, or into a line of the same module.
-
-    All imports of a file must come at once.
-    """
-    has = {ast.unparse(node) for node in module.body}
-    own = [node for node in module.body if isinstance(node, ast.Import | ast.ImportFrom)]
-    own = [node for node in own if getattr(node, "module", None) != "__future__"]
-    joined: dict[int, tuple[ast.ImportFrom, set[str]]] = {}
-    found = []
-    for line in sorted(set(imports), key=import_order):
-        new = ast.parse(line).body[0]
-        if ast.unparse(new) in has:
-            continue
-        host = _host(own, new)
-        if host is not None and isinstance(new, ast.ImportFrom):
-            joined.setdefault(host.lineno, (host, set()))[1].update(alias.name for alias in new.names)
-        else:
-            found.append(Insertion(file, _line_for(module, own, line), (line,)))
-    for host, names in joined.values():
-        texts = [f"{one.name} as {one.asname}" if one.asname else one.name for one in host.names]
-        line = f"from {host.module} import {', '.join(sorted({*texts, *names}, key=_by_case))}"
-        found.append(Insertion(file, host.lineno - 1, (line,), instead=1))
-    return found
-
-
-def import_order(line: str) -> tuple[bool, str]:
-    """Plain imports first, then by module."""
-    return line.startswith("from"), line.split()[1]
-
-
-def _host(own: list[ast.Import | ast.ImportFrom], new: ast.stmt) -> ast.ImportFrom | None:
-    """An import in one line from the same module, which the new one can join."""
-    if not isinstance(new, ast.ImportFrom):
-        return None
-    froms = [node for node in own if isinstance(node, ast.ImportFrom) and not node.level]
-    lines = [node for node in froms if node.module == new.module and node.lineno == node.end_lineno]
-    return next((node for node in lines if len(ast.unparse(node)) < _JOINED), None)
-
-
-def _by_case(name: str) -> tuple[int, str]:
-    """Constants, classes, all others: as formatters of imports have it."""
-    return (0 if name.isupper() else 1 if name[:1].isupper() else 2), name
-
-
-def _line_for(module: ast.Module, own: list[ast.Import | ast.ImportFrom], line: str) -> int:
-    if own:
-        block = _block(own, line.split()[1].partition(".")[0])
-        before = [node for node in block if import_order(ast.unparse(node)) < import_order(line)]
-        return (before[-1].end_lineno or 0) if before else block[0].lineno - 1
-    head = [
-        node
-        for node in module.body[:2]
-        if isinstance(node, ast.ImportFrom) or (isinstance(node, ast.Expr) and _is_text(node.value))
-    ]
-    return (head[-1].end_lineno or 0) if head else 0
-
-
-def _block(own: list[ast.Import | ast.ImportFrom], package: str) -> list[ast.Import | ast.ImportFrom]:
-    """The imports that no empty line divides, among which one of this package belongs."""
-    blocks: list[list[ast.Import | ast.ImportFrom]] = [[own[0]]]
-    for before, node in pairwise(own):
-        if node.lineno - (before.end_lineno or 0) > 1:
-            blocks.append([])
-        blocks[-1].append(node)
-    if package in sys.stdlib_module_names:
-        return blocks[0]
-    same = [block for block in blocks if any(_package(node) == package for node in block)]
-    foreign = [node for node in own if _package(node) not in sys.stdlib_module_names]
-    others = [block for block in blocks if any(node in foreign for node in block)]
-    return (same or others or blocks)[0]
-
-
-def _package(node: ast.Import | ast.ImportFrom) -> str:
-    name = node.module or "" if isinstance(node, ast.ImportFrom) else node.names[0].name
-    return name.partition(".")[0]
-
-
-def _is_text(node: ast.expr) -> bool:
-    return isinstance(node, ast.Constant) and isinstance(node.value, str)
 
 
 #: folders that no test needs and that may be large

@@ -15,9 +15,9 @@ from mutabot.errors import MutabotError
 from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Verdict
 from mutabot.suggestion.checks import Check
-from mutabot.suggestion.project import Project, changed_texts
+from mutabot.suggestion.edits import edited
+from mutabot.suggestion.project import Project
 from mutabot.suggestion.style import Place
-from mutabot.suggestion.styles.choice import insertions_of
 
 from .project import copy_of
 
@@ -118,7 +118,7 @@ def _own_name(node: str) -> str:
 
 def texts_with(project: Project, checks: Sequence[Check]) -> dict[str, str]:
     """The texts of the files that change when checks stand at the ends of their tests, by path."""
-    return changed_texts(project.root, insertions_of(project, [one.addition() for one in checks]))
+    return edited(project, (one.addition() for one in checks))
 
 
 def _only(request: Request, checks: Sequence[Check]) -> Request:

@@ -13,8 +13,8 @@ from collections.abc import Iterator, Sequence
 from mutabot.frozen import frozen
 from mutabot.model import Operation
 
-from .project import Insertion, Name, Project, name_in
-from .style import Function, Place, Watch, arguments_of
+from .project import Name, Project, name_in
+from .style import Place, Watch
 
 #: from the one a reader of the tests knows best
 ORACLE, PROBE, HAND, WAY = 0, 1, 2, 3
@@ -246,30 +246,3 @@ def _seeing(watch: Watch) -> list[str]:
 def _pairs(watch: Watch) -> str:
     pairs = ", ".join(f'({owner}, "{name}")' for owner, name in watch.commands)
     return f"({pairs},)" if len(watch.commands) == 1 else f"({pairs})"
-
-
-def asked_for(file: str, function: Function, lines: Sequence[str], names: Sequence[str]) -> list[Insertion]:
-    """What lets a test function ask for fixtures that it did not ask for."""
-    new = [name for name in names if name not in arguments_of(function)]
-    given = function.args
-    if not new or given.vararg or given.kwarg or given.kwonlyargs or given.defaults:
-        return []
-    known = [*given.posonlyargs, *given.args]
-    added = ", ".join(new)
-    if known:
-        last = known[-1]
-        number = last.end_lineno or last.lineno
-        at = len(lines[number - 1].encode()[: last.end_col_offset or 0].decode())
-        added = f", {added}"
-    else:
-        number = function.lineno
-        at = lines[number - 1].index("(", lines[number - 1].index(function.name)) + 1
-    line = lines[number - 1]
-    return [Insertion(file, number - 1, (line[:at] + added + line[at:],), instead=1)]
-
-
-def at_start(file: str, function: Function, lines: Sequence[str], added: Sequence[str]) -> list[Insertion]:
-    """What puts statements at the beginning of a method, before all that it does."""
-    first = function.body[0]
-    indent = lines[first.lineno - 1][: first.col_offset]
-    return [Insertion(file, first.lineno - 1, tuple(indent + line for line in added))] if added else []

@@ -1,15 +1,20 @@
-"""The contract of a style of tests, and what all styles share."""
+"""Where a check can stand, and how the tests there say it.
+
+Three styles: test functions of pytest, methods of ``TestCase``, and tests that another tool makes of
+something else, as pytest-bdd does of scenarios. No diff changes the last ones, but checks are tried in them.
+"""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
-from typing import Protocol
 
 from mutabot.frozen import frozen
-from mutabot.suggestion.project import Insertion, Project
+from mutabot.suggestion.project import Project
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+PYTEST, UNITTEST, OTHER = "pytest", "unittest", "other"
 
 
 @frozen
@@ -21,16 +26,17 @@ class Place:
         file: its module, relative to the project.
         node: its node id without parameters.
         names: what it is given: fixtures and parameters.
-        title: of a scenario; empty otherwise.
-        feature: file of the scenario, relative to the project; empty otherwise.
     """
 
     style: str
     file: str
     node: str
     names: tuple[str, ...] = ()
-    title: str = ""
-    feature: str = ""
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        """Its name in its module, below that of its class."""
+        return tuple(self.node.split("::")[1:])
 
 
 @frozen
@@ -55,7 +61,6 @@ class Addition:
     Attributes:
         place: the test.
         lines: statements.
-        says: what they look at, in words that can be a step of a scenario.
         uses: names of the place that the statements use.
         imports: what they need.
         watch: what they need to be there on the way of the test, or None.
@@ -63,35 +68,67 @@ class Addition:
 
     place: Place
     lines: tuple[str, ...]
-    says: str
     uses: tuple[str, ...] = ()
     imports: tuple[str, ...] = ()
     watch: Watch | None = None
 
 
-class Style(Protocol):
-    """Knows one way in which tests are written.
+def place_of(project: Project, test: str) -> Place | None:
+    """The place of a test by its node id; None if nothing can be added to it."""
+    node = test.partition("[")[0]
+    file, *path = node.split("::")
+    module = project.module(file)
+    if module is None or len(path) not in (1, 2):
+        return None
+    function = functions_of(module, path)
+    if len(path) == 1 and (function is None or _is_scenario(function)):
+        return Place(OTHER, file, node, _given_around(project, file))
+    if function is None or not _has_end(function):
+        return None
+    is_case = len(path) == 2 and _is_test_case(module, path[0])
+    return Place(UNITTEST if is_case else PYTEST, file, node, _names(function))
 
-    Attributes:
-        name: as people call it.
-    """
 
-    name: str
+def _is_scenario(function: Function) -> bool:
+    """Whether it only stands for a scenario of pytest-bdd."""
+    called = (ast.unparse(one).partition("(")[0] for one in function.decorator_list)
+    return any(one.rpartition(".")[2] == "scenario" for one in called)
 
-    def place(self, project: Project, node: str) -> Place | None:
-        """The place of a test by its node id without parameters; None if it is not of this style."""
 
-    def at_end(self, project: Project, additions: Sequence[Addition]) -> list[Insertion]:
-        """What puts these additions, all of one file, into the tests where they are."""
+def _given_around(project: Project, file: str) -> tuple[str, ...]:
+    """What fixtures and steps of a test file are given: fixtures, as far as a test has asked for them."""
+    modules = (project.module(where) for where in (file, *project.beside(file)))
+    functions = [
+        node
+        for module in modules
+        for node in (module.body if module is not None else ())
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and node.decorator_list
+    ]
+    return tuple(dict.fromkeys(name for one in functions for name in arguments_of(one)))
 
-    def within(self, text: str, value: str, tolerance: str) -> str:
-        """The statement that ``text`` reads ``value`` within ``tolerance``."""
 
-    def equal(self, text: str, value: str) -> str:
-        """The statement that ``text`` reads ``value`` exactly."""
+def _has_end(function: Function) -> bool:
+    """Whether statements can follow: not in a body on the line of its ``def``, nor if it ends by raising."""
+    return function.body[0].lineno != function.lineno and not isinstance(function.body[-1], ast.Raise)
 
-    def needs(self, line: str) -> tuple[str, ...]:
-        """The imports that such a statement needs."""
+
+def _names(function: Function) -> tuple[str, ...]:
+    """Arguments, and what is assigned on the way."""
+    assigned = [
+        one.id
+        for statement in function.body
+        for one in ast.walk(statement)
+        if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    ]
+    return tuple(dict.fromkeys((*arguments_of(function), *assigned)))
+
+
+def _is_test_case(module: ast.Module, name: str, depth: int = 5) -> bool:
+    owner = next((one for one in module.body if isinstance(one, ast.ClassDef) and one.name == name), None)
+    bases = [ast.unparse(one) for one in owner.bases] if owner is not None else []
+    return any(
+        base.endswith("TestCase") or (depth > 0 and _is_test_case(module, base, depth - 1)) for base in bases
+    )
 
 
 def functions_of(module: ast.Module, path: Sequence[str]) -> Function | None:
@@ -106,54 +143,27 @@ def functions_of(module: ast.Module, path: Sequence[str]) -> Function | None:
     return next((one for one in reversed(functions) if one.name == path[-1]), None)
 
 
-def class_of(module: ast.Module, name: str) -> ast.ClassDef | None:
-    """The class with this name at the top of a file."""
-    return next((one for one in module.body if isinstance(one, ast.ClassDef) and one.name == name), None)
-
-
 def arguments_of(function: Function) -> tuple[str, ...]:
     """The names of its arguments."""
     given = function.args
     return tuple(one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs))
 
 
-class PlainAsserts:
-    """The statements of a style that asserts with the assert statement."""
-
-    def within(self, text: str, value: str, tolerance: str) -> str:
-        """With ``pytest.approx``."""
-        return f"assert {text} == pytest.approx({value}, abs={tolerance})"
-
-    def equal(self, text: str, value: str) -> str:
-        """With the statement alone."""
-        plain = {"True": f"assert {text}", "False": f"assert not {text}", "None": f"assert {text} is None"}
-        return plain.get(value, f"assert {text} == {value}")
-
-    def needs(self, line: str) -> tuple[str, ...]:
-        """What a statement with a tolerance names."""
-        return ("import pytest",) if "pytest.approx" in line else ()
+def within(style: str, text: str, value: str, tolerance: str) -> str:
+    """The statement that ``text`` reads ``value`` within ``tolerance``."""
+    if style == UNITTEST:
+        return f"self.assertAlmostEqual({text}, {value}, delta={tolerance})"
+    return f"assert {text} == pytest.approx({value}, abs={tolerance})"
 
 
-def end_of(function: Function, lines: Sequence[str]) -> tuple[int, str] | None:
-    """After which line something comes at the end of a function, and how it is indented.
-
-    None where the end cannot be had: a body on the line of its ``def``, or one that does not get there.
-    """
-    first, last = function.body[0], function.body[-1]
-    if first.lineno == function.lineno or isinstance(last, ast.Raise):
-        return None
-    indent = lines[first.lineno - 1][: first.col_offset]
-    if isinstance(last, ast.Return):
-        return last.lineno - 1, indent
-    return last.end_lineno or last.lineno, indent
-
-
-def put_at_end(
-    file: str, function: Function, lines: Sequence[str], addition: Sequence[str]
-) -> list[Insertion]:
-    """What puts statements at the end of a function."""
-    found = end_of(function, lines)
-    if found is None:
-        return []
-    after, indent = found
-    return [Insertion(file, after, tuple(indent + line for line in addition))]
+def equal(style: str, text: str, value: str) -> str:
+    """The statement that ``text`` reads ``value`` exactly."""
+    if style == UNITTEST:
+        plain = {
+            "True": "self.assertTrue({})",
+            "False": "self.assertFalse({})",
+            "None": "self.assertIsNone({})",
+        }
+        return plain.get(value, f"self.assertEqual({{}}, {value})").format(text)
+    plain = {"True": f"assert {text}", "False": f"assert not {text}", "None": f"assert {text} is None"}
+    return plain.get(value, f"assert {text} == {value}")

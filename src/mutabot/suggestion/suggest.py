@@ -18,15 +18,14 @@ from mutabot.campaign.request import Progress, Request
 from mutabot.errors import NothingToDoError
 from mutabot.frozen import frozen
 from mutabot.model import Mutant, Verdict
-from mutabot.suggestion.styles.choice import place_of
 
 from .candidates import candidates, part_of_way, tolerance_of
 from .checks import Check, decimal, is_number, unseen
 from .measure import Measured, measure
 from .project import Project, diff_of
 from .prove import Proof, texts_with
-from .readings import WAY
-from .style import Place
+from .readings import WAY, fixture
+from .style import OTHER, Place, place_of
 
 
 @frozen
@@ -179,7 +178,7 @@ def suggest(
         shown = next(iter(without), "no test")
         raise NothingToDoError(
             f"no check can be added to the tests of these survivors, such as {shown}: they are "
-            "neither functions of pytest, nor methods of unittest, nor scenarios of pytest-bdd"
+            "neither functions of pytest, nor methods of unittest, nor made of scenarios"
         )
     calibrated = request.rounds + seeds
     measured = measure(
@@ -190,7 +189,7 @@ def suggest(
     proof = Proof(request, project, quiet)
     fresh = range(calibrated, calibrated + seeds)
     chosen_checks = _proven(proof, found, measured, [*range(request.rounds), *fresh])
-    texts = texts_with(project, chosen_checks)
+    texts = texts_with(project, [one for one in chosen_checks if one.place.style != OTHER])
     suggestions = tuple(_suggestion(one, proof.kills[one], seeds) for one in chosen_checks)
     killed = {mutant for one in suggestions for mutant in one.kills}
     left = [one.mutant for one, _ in survivors.to_kill if one.mutant.id not in killed]
@@ -262,6 +261,7 @@ def _suggestion(check: Check, kills: Mapping[str, tuple[int, ...]], seeds: int) 
         moment="at any moment" if check.reading.way == WAY else "end of the test",
         looks_at=check.looked_at,
         statement=check.statement,
+        by_hand=_by_hand(check),
         tolerance=band.tolerance if band is not None else None,
         band=band.kind if band is not None else "always the same",
         factor=band.factor if band is not None else None,
@@ -272,6 +272,15 @@ def _suggestion(check: Check, kills: Mapping[str, tuple[int, ...]], seeds: int) 
         unseen=unseen(seeds),
         kills=kills,
     )
+
+
+def _by_hand(check: Check) -> str:
+    """All that is to be added to a test that another tool makes; empty for one in which the diff has it."""
+    added = check.addition()
+    if added.place.style != OTHER:
+        return ""
+    watch = fixture(added.watch, for_all=True) if added.watch is not None else []
+    return "\n".join([*dict.fromkeys(added.imports), *watch, *added.lines])
 
 
 C = TypeVar("C")

@@ -91,9 +91,11 @@ class _Merged:
             check_targets(check, getattr(table, name), (name,))
             getattr(self, name).extend(getattr(table, name))
         if table.clock is not None and self._counts("clock", is_shipped):
-            self._add_clock(check, read_clock(check, table.clock, ("clock",)))
+            clock = read_clock(check, table.clock, ("clock",))
+            self._add_one(check, "clock", clock, "there is another clock")
         if table.wait is not None and self._counts("wait", is_shipped):
-            self._add_wait(check, read_wait(check, table.wait, ("wait",)))
+            wait = read_wait(check, table.wait, ("wait",))
+            self._add_one(check, "wait", wait, "another wait is named")
         for index, raw in enumerate(table.probe):
             probe = read_probe(check, raw, ("probe", index))
             if probe is not None and self._counts(f"probe {probe.target}", is_shipped):
@@ -128,19 +130,12 @@ class _Merged:
         except ValueError as error:
             check.error(place, f"{error}: also in {_file_of(known[0].source)}")
 
-    def _add_clock(self, check: Check, clock: Clock | None) -> None:
-        if clock is None:
-            return
-        if self.clock is not None and replace(self.clock, source="") != replace(clock, source=""):
-            check.error(("clock",), f"there is another clock in {_file_of(self.clock.source)}")
-        self.clock = self.clock or clock
-
-    def _add_wait(self, check: Check, wait: Wait | None) -> None:
-        if wait is None:
-            return
-        if self.wait is not None and replace(self.wait, source="") != replace(wait, source=""):
-            check.error(("wait",), f"another wait is named in {_file_of(self.wait.source)}")
-        self.wait = self.wait or wait
+    def _add_one(self, check: Check, name: str, found: Clock | Wait | None, also: str) -> None:
+        """Add the clock or the wait, of which there is one; a mistake in it has been noted."""
+        known = getattr(self, name)
+        if found is not None and known is not None and replace(known, source="") != replace(found, source=""):
+            check.error((name,), f"{also} in {_file_of(known.source)}")
+        setattr(self, name, known or found)
 
     def _add_probe(self, check: Check, probe: Probe, index: int) -> None:
         known = self.probes.setdefault(probe.target, probe)

@@ -344,7 +344,7 @@ def _operation(check: Check, table: NamedTable, named: Named, is_main: bool, pla
     if raw:
         arguments = read_fields(check, raw, (*place, written or ""), root, _SIDES[named.form])
     result = _read(check, table, named.form, read, place) if read else ()
-    source = _source(check, place, named)
+    source = check.source(place, named.target)
     operation = Operation(
         target=named.target,
         arguments=arguments,
@@ -446,9 +446,3 @@ def _what(key: str, direction: str | None) -> str:
     if key == "topic":
         return f"a topic with direction = {direction!r}".replace("'", '"')
     return {"action": "an action", "tf": "a transform"}.get(key, f"a {key}")
-
-
-def _source(check: Check, place: KeyPath, named: Named) -> str:
-    """``robot.toml:12 · publish /arm/goal``"""
-    line = check.document.line(place)
-    return f"{check.document.file}{f':{line}' if line is not None else ''} · {named.target}"

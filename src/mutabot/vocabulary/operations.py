@@ -36,7 +36,7 @@ def read_operation(check: Check, raw: Any, place: KeyPath) -> Operation | None:
     if table.method is None:
         check_target(check, table.call, (*place, "call"))
     check_targets(check, table.refusals, (*place, "refusals"))
-    source = source_of(check, place, table.call)
+    source = check.source(place, table.call)
     arguments = read_arguments(check, table.arguments, (*place, "arguments"))
     result = read_result(check, table.result, (*place, "result"))
     patterns = read_patterns(check, table.patterns, (*place, "patterns"), source, arguments)
@@ -129,7 +129,7 @@ def read_clock(check: Check, raw: dict[str, Any], place: KeyPath) -> Clock | Non
         check.error((*place, "time"), str(error))
     if table.step is not None and "time" in raw:
         check.error((*place, "step"), "the time is either read (time) or counted (step), not both")
-    return Clock(table.tick, table.time, rooted, table.unit, source_of(check, place, "clock"), table.step)
+    return Clock(table.tick, table.time, rooted, table.unit, check.source(place, "clock"), table.step)
 
 
 def read_wait(check: Check, raw: dict[str, Any], place: KeyPath) -> Wait | None:
@@ -139,7 +139,7 @@ def read_wait(check: Check, raw: dict[str, Any], place: KeyPath) -> Wait | None:
         return None
     check_target(check, table.call, (*place, "call"))
     _check_time(check, table.unit, (*place, "unit"))
-    return Wait(table.call, table.unit, source_of(check, place, "wait"))
+    return Wait(table.call, table.unit, check.source(place, "wait"))
 
 
 def _check_time(check: Check, unit: str, place: KeyPath) -> None:
@@ -155,7 +155,7 @@ def read_probe(check: Check, raw: Any, place: KeyPath) -> Probe | None:
         return None
     check_target(check, table.call, (*place, "call"))
     result = read_result(check, table.result, (*place, "result"))
-    return Probe(table.call, table.tolerance, source_of(check, place, table.call), result, table.better)
+    return Probe(table.call, table.tolerance, check.source(place, table.call), result, table.better)
 
 
 def check_targets(check: Check, targets: list[str], place: KeyPath) -> None:
@@ -169,12 +169,6 @@ def check_target(check: Check, target: str, place: KeyPath) -> None:
     fault = target_fault(target)
     if fault is not None:
         check.error(place, fault)
-
-
-def source_of(check: Check, place: KeyPath, name: str) -> str:
-    """``robot.toml:12 · robot:Arm.move_by``"""
-    line = check.document.line(place)
-    return f"{check.document.file}{f':{line}' if line is not None else ''} · {name}"
 
 
 def _read_message(

@@ -63,11 +63,14 @@ def _in_cases(check: Check, pattern: Pattern, place: KeyPath) -> Iterator[Patter
 
 
 def _read_pattern(check: Check, raw: Any, place: KeyPath, source: str) -> Pattern | None:
-    table = check.table(PatternTable, raw, place)
+    inline, own = {}, raw
+    if isinstance(raw, dict):
+        inline = {key: value for key, value in raw.items() if key in QuantityTable.model_fields}
+        own = {key: value for key, value in raw.items() if key not in inline}
+    table = check.table(PatternTable, own, place, also=QuantityTable.model_fields)
     notation = _notation(check, table.text, (*place, "text")) if table is not None else None
     if table is None or notation is None:
         return None
-    inline = {key: raw[key] for key in QuantityTable.model_fields if key in raw}
     if inline:
         arguments = _read_only_field(check, inline, place, notation, table)
     else:

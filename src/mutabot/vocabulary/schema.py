@@ -14,17 +14,12 @@ import keyword
 from enum import StrEnum
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from mutabot.model import Kind, Mode
 from mutabot.settings.mistakes import Check, shown
+from mutabot.settings.table import Table
 from mutabot.settings.toml_lines import KeyPath
-
-
-class Table(BaseModel):
-    """A table of a TOML file: nothing unknown, nothing converted, only finite numbers."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
 
 class Better(StrEnum):
@@ -55,27 +50,13 @@ class QuantityTable(Table):
 
 
 class PatternTable(Table):
-    """One entry of ``patterns``; the keys of a quantity describe its only field."""
+    """One entry of ``patterns``, without the keys of a quantity that may describe its only field."""
 
     text: str
     opposite: str | None = None
     idle: Any = None
     arguments: dict[str, Any] = Field(default_factory=dict)
     result: dict[str, Any] | None = None
-    kind: Any = None
-    axis: Any = None
-    unit: Any = None
-    frame: Any = None
-    mode: Any = None
-    values: Any = None
-    range: Any = None
-    clip: Any = None
-    noise: Any = None
-    relative: Any = None
-    ladder: Any = None
-    repeatability: Any = None
-    missing: Any = None
-    tcp: Any = None
 
 
 class DescribedTable(Table):

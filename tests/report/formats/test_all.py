@@ -14,8 +14,7 @@ import pytest
 import schemas
 from analysis import samples
 from mutabot.errors import UsageError
-from mutabot.report.choice import format_of, names
-from mutabot.report.format import Material
+from mutabot.report.format import Material, format_of, names
 from mutabot.report.texts import portable
 from report.material import HOSTILE, ROOT, made, stored, with_text
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -85,7 +86,7 @@ def write(
 ) -> Written:
     """Its report."""
     root = stored.meta.get("root")
-    with StoredEvidence(journal) as evidence:
+    with closing(StoredEvidence(journal)) as evidence:
         contents = Contents(portable(stored), "cell", evidence, Cleaner(root))
         return write_folder(folder, change(contents), **options)
 

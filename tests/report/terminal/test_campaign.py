@@ -17,11 +17,10 @@ from mutabot.analysis.results import Results, find_mutant, read_results
 from mutabot.errors import SelectionError
 from mutabot.journal.journal import Journal
 from mutabot.model import By, Outcome, Verdict
-from mutabot.report.terminal.campaign import print_results
+from mutabot.report.terminal.campaign import print_results, print_summary
 from mutabot.report.terminal.console import make_console, mark_of, plain, short_place
 from mutabot.report.terminal.listing import print_plan
 from mutabot.report.terminal.mutant import print_mutant
-from mutabot.report.terminal.summary import print_summary
 
 WIDTHS = pytest.mark.parametrize("width", [60, 80, 120, 200])
 

@@ -5,6 +5,7 @@ A probe on ``values`` carries it out of the process. Nothing here ever lets a te
 
 from __future__ import annotations
 
+import functools
 import inspect
 import os
 import sys
@@ -51,6 +52,27 @@ def note(
     found.update(_along_the_way())
     _noted.clear()
     _noted[_test()] = found
+
+
+def at_end(test: Callable[..., Any], end: Callable[[Callable[[str], Any]], None]) -> Callable[..., Any]:
+    """A test function with ``end`` behind it, which is given what knows the fixtures that the test had.
+
+    For tests that another tool makes, which have no text to add to.
+    """
+    own = inspect.signature(test)
+    asks = [inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY)]
+    if "request" in own.parameters:
+        asks = []
+
+    @functools.wraps(test)
+    def with_end(**given: Any) -> None:
+        request = given.pop("request") if asks else given["request"]
+        test(**given)
+        had = request._fixture_defs  # no other fixture is to be made now
+        end(lambda name: request.getfixturevalue(name) if name in had else None)
+
+    with_end.__signature__ = own.replace(parameters=[*own.parameters.values(), *asks])  # type: ignore[attr-defined]
+    return test if inspect.iscoroutinefunction(test) else with_end
 
 
 def watch(

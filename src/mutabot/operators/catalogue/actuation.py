@@ -9,8 +9,10 @@ from mutabot.families import CATALOGUE
 from mutabot.model import Kind, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.operators.examples import changed, unchanged, writing
-from mutabot.operators.operator import COMMANDS, PARAMETERS, Context, Example, Subject, map_numbers
-from mutabot.operators.value import ValueOperator, like, middle_of, within
+from mutabot.operators.numbers import like, map_numbers, middle_of, within
+from mutabot.operators.operator import Context, Example, Subject
+from mutabot.operators.studies import COMMANDS, PARAMETERS
+from mutabot.operators.value import ValueOperator
 
 _SPEED = writing("robot:Arm.set_speed", "speed", Kind.SPEED, unit="m/s", range=(0.0, 1.0))
 _PRESS = writing("robot:Arm.press", "force", Kind.FORCE, unit="N")
@@ -39,10 +41,9 @@ class _Factor(ValueOperator):
 
 
 class SpeedOverride(_Factor):
-    """Halves or doubles a speed or acceleration."""
+    """A speed or acceleration is 50 % or 200 % of what is commanded, within its range."""
 
     name = "speed-override"
-    summary = "A speed or acceleration is 50 % or 200 % of what is commanded, within its range."
     rank = 350
     where = "written quantities of kind speed, acceleration or jerk"
     kinds = frozenset({Kind.SPEED, Kind.ACCELERATION, Kind.JERK})
@@ -54,10 +55,9 @@ class SpeedOverride(_Factor):
 
 
 class ForceOverride(_Factor):
-    """Halves or doubles a force or torque."""
+    """A force or torque is 50 % or 200 % of what is commanded, within its range."""
 
     name = "force-override"
-    summary = "A force or torque is 50 % or 200 % of what is commanded, within its range."
     rank = 351
     where = "written quantities of kind force or torque"
     kinds = frozenset({Kind.FORCE, Kind.TORQUE})
@@ -69,10 +69,9 @@ class ForceOverride(_Factor):
 
 
 class WeakGrip(_Factor):
-    """Leaves a gripper 30 % of its force."""
+    """A gripper has 30 % of the force that it is told to have, or the least of its range."""
 
     name = "weak-grip"
-    summary = "A gripper has 30 % of the force that it is told to have, or the least of its range."
     rank = 352
     where = "written quantities of kind force, in calls that command no motion"
     variants: ClassVar[Mapping[str, float]] = {"x0.3": 0.3}
@@ -90,10 +89,9 @@ class WeakGrip(_Factor):
 
 
 class WrongPayload(_Factor):
-    """Sets no payload, or twice as much."""
+    """The payload that is set is none, or twice as heavy as it is."""
 
     name = "wrong-payload"
-    summary = "The payload that is set is none, or twice as heavy as it is."
     rank = 353
     where = "written quantities of kind mass"
     kinds = frozenset({Kind.MASS})
@@ -108,14 +106,12 @@ class WrongPayload(_Factor):
 
 
 class PartialOpening(ValueOperator):
-    """Leaves half of the way from the end of the range that is farther off."""
+    """A gripper stops half way, as seen from the end of its range that is farther off: half open, half
+    closed.
+    """
 
     name = "partial-opening"
     family = CATALOGUE
-    summary = (
-        "A gripper stops half way, as seen from the end of its range that is farther off: half open,"
-        " half closed."
-    )
     rank = 354
     stands_for = f"Commands that are not carried out in full, as by a gripper that jams: {COMMANDS}."
     where = "openings with a range or clip; those of two values take no other"
@@ -140,11 +136,10 @@ class PartialOpening(ValueOperator):
 
 
 class SilentLimit(ValueOperator):
-    """Limits a commanded number to the middle of its range."""
+    """A commanded value is limited to the middle 80 % of its range, without notice."""
 
     name = "silent-limit"
     family = CATALOGUE
-    summary = "A commanded value is limited to the middle 80 % of its range, without notice."
     rank = 355
     stands_for = f"A wrong parameter: {PARAMETERS}."
     where = "written numbers with a range or clip"

@@ -15,18 +15,9 @@ from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import Quaternion, from_euler, inverse, product
 from mutabot.model.values.units import convert
 from mutabot.operators.examples import MOVE_TO, changed, unchanged
-from mutabot.operators.operator import (
-    FRAMES,
-    Context,
-    Example,
-    Need,
-    Operator,
-    Subject,
-    Unchanged,
-    is_number,
-    map_numbers,
-    quantity_of,
-)
+from mutabot.operators.numbers import is_number, like, map_numbers
+from mutabot.operators.operator import Context, Example, Need, Operator, Subject, Unchanged, quantity_of
+from mutabot.operators.studies import FRAMES
 from mutabot.operators.value import (
     NOT_GIVEN,
     Exchange,
@@ -36,7 +27,6 @@ from mutabot.operators.value import (
     given,
     is_alike,
     label,
-    like,
     on_call,
 )
 
@@ -66,10 +56,9 @@ _MOVE_TIP = Operation("robot:Arm.move_to", (_TIP,))
 
 
 class AxisSwap(Exchange):
-    """Exchanges two components of a translation or rotation."""
+    """Two components of a motion are exchanged: what is meant along x goes along y."""
 
     name = "axis-swap"
-    summary = "Two components of a motion are exchanged: what is meant along x goes along y."
     rank = 310
     stands_for = f"A wrong axis: {FRAMES}."
     where = "commands that write two of the axes x, y, z of one translation or rotation"
@@ -87,10 +76,9 @@ class AxisSwap(Exchange):
 
 
 class JointOrder(Exchange):
-    """Exchanges the angles of the first and of the third joint."""
+    """The angles of the first and the third joint are exchanged, as where joints are sorted by name."""
 
     name = "joint-order"
-    summary = "The angles of the first and the third joint are exchanged, as where joints are sorted by name."
     rank = 311
     stands_for = f"Joints in another order, as in joint states that are sorted by name: {FRAMES}."
     where = "written and read angles of the joints j1 and j3"
@@ -122,11 +110,10 @@ class JointOrder(Exchange):
 
 
 class LeftHanded(ValuesOperator):
-    """Mirrors a pose at the x-z plane: y and the turns about x and z are negated."""
+    """A pose is taken as given in a left-handed frame: y and the turns about x and z are negated."""
 
     name = "left-handed"
     family = CATALOGUE
-    summary = "A pose is taken as given in a left-handed frame: y and the turns about x and z are negated."
     rank = 312
     stands_for = f"Frames of the other handedness, as of game engines: {FRAMES}."
     where = "written and read poses with y and an orientation beside it; for y alone it is a wrong sign"
@@ -182,15 +169,13 @@ def _mirrored(quantity: Quantity, value: Value) -> Value | None:
 
 
 class BaseForTool(Operator):
-    """Turns a relative translation by the tool's orientation, or back."""
+    """A relative move in the base's frame goes along the tool's axes, and one in the tool's along the
+    base's.
+    """
 
     name = "base-for-tool"
     family = CATALOGUE
     needs = frozenset({Need.PLACE})
-    summary = (
-        "A relative move in the base's frame goes along the tool's axes, and one in the tool's along the"
-        " base's."
-    )
     rank = 313
     stands_for = f"A wrong or missing transform: {FRAMES}."
     where = (
@@ -292,8 +277,9 @@ class _WrongTcp(ValueOperator):
 
 
 class TcpMissing(_WrongTcp):
+    """The offset of the tool centre point is missing: the flange goes where the tool's tip should."""
+
     name = "tcp-missing"
-    summary = "The offset of the tool centre point is missing: the flange goes where the tool's tip should."
     rank = 314
     sign = 1.0
     examples: ClassVar[tuple[Example, ...]] = (
@@ -303,8 +289,9 @@ class TcpMissing(_WrongTcp):
 
 
 class TcpDoubled(_WrongTcp):
+    """The offset of the tool centre point is counted twice: the tip stays back by as much."""
+
     name = "tcp-doubled"
-    summary = "The offset of the tool centre point is counted twice: the tip stays back by as much."
     rank = 315
     sign = -1.0
     examples: ClassVar[tuple[Example, ...]] = (
@@ -314,11 +301,10 @@ class TcpDoubled(_WrongTcp):
 
 
 class JointTurn(ValueOperator):
-    """Adds a full turn to the absolute angle of a joint, or takes one away."""
+    """The target of a joint is off by a full turn: the tool ends alike, the way there does not."""
 
     name = "joint-turn"
     family = CATALOGUE
-    summary = "The target of a joint is off by a full turn: the tool ends alike, the way there does not."
     rank = 316
     stands_for = f"Angles that wrap around at ±180° or 360°: {FRAMES}."
     where = "absolute angles of joints: rotation with an axis j1 … and mode to"

@@ -12,18 +12,11 @@ from mutabot.model.values.quantity import WHOLE, Value
 from mutabot.model.values.sameness import are_same
 from mutabot.operators.command import CommandOperator, idle_of
 from mutabot.operators.examples import CLOSE, GRIP, MOVE_BY, MOVE_TO, changed, unchanged, writing
-from mutabot.operators.operator import (
-    COMMANDS,
-    TIMING,
-    Context,
-    Example,
-    Need,
-    Subject,
-    Unchanged,
-    map_numbers,
-)
+from mutabot.operators.numbers import like, map_numbers
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged
 from mutabot.operators.robot.commands import other_end
-from mutabot.operators.value import ValueOperator, given, like
+from mutabot.operators.studies import COMMANDS, TIMING
+from mutabot.operators.value import ValueOperator, given
 
 #: seconds: as long as a pneumatic gripper takes to open or close
 _LATE = 0.5
@@ -42,13 +35,11 @@ class _Timing(CommandOperator):
 
 
 class SwapNext(_Timing):
-    """Holds a command back until the next one is made."""
+    """A command changes places with the program's next one, whichever that is; if none follows, it is never
+    carried out. Meanwhile the program goes on as if it had been.
+    """
 
     name = "swap-next"
-    summary = (
-        "A command changes places with the program's next one, whichever that is; if none follows, it is"
-        " never carried out. Meanwhile the program goes on as if it had been."
-    )
     rank = 330
     needs = frozenset({Need.IDLE, Need.PROGRAM})
     where = "any command whose answer to doing nothing is known"
@@ -64,12 +55,9 @@ class SwapNext(_Timing):
 
 
 class PreviousTarget(_Timing):
-    """Writes the motion that the call of this operation before wrote, wherever that stands."""
+    """A motion goes to the target of the one before it again, or as far: a waypoint that is out of date."""
 
     name = "previous-target"
-    summary = (
-        "A motion goes to the target of the one before it again, or as far: a waypoint that is out of date."
-    )
     rank = 331
     where = "commands that write a translation or rotation, from the second call of their operation on"
     fault = "the motion of the call before it again"
@@ -99,11 +87,10 @@ class PreviousTarget(_Timing):
 
 
 class HalfWait(ValueOperator):
-    """Shortens a duration that is written."""
+    """A wait is half as long: the next command comes before what was waited for is over."""
 
     name = "half-wait"
     family = CATALOGUE
-    summary = "A wait is half as long: the next command comes before what was waited for is over."
     rank = 332
     stands_for = _Timing.stands_for
     where = "written quantities of kind duration"
@@ -119,10 +106,9 @@ class HalfWait(ValueOperator):
 
 
 class NoWait(HalfWait):
-    """Leaves out a duration that is written."""
+    """A wait is left out: the next command comes at once."""
 
     name = "no-wait"
-    summary = "A wait is left out: the next command comes at once."
     rank = 333
     examples: ClassVar[tuple[Example, ...]] = (
         changed(_WAIT, 0.8, 0.0),
@@ -134,10 +120,9 @@ class NoWait(HalfWait):
 
 
 class LateGrip(_Timing):
-    """Lets time pass before a gripper command is made."""
+    """A gripper command is carried out 0.5 s late, and the program waits for it."""
 
     name = "late-grip"
-    summary = "A gripper command is carried out 0.5 s late, and the program waits for it."
     rank = 336
     needs = frozenset({Need.WAIT, Need.PROGRAM})
     where = f"{_GRIPPING}; the vocabulary says how time passes: wait"
@@ -155,13 +140,11 @@ class LateGrip(_Timing):
 
 
 class EarlyRelease(_Timing):
-    """Takes a gripper command back after the next command of the program."""
+    """A gripper command is taken back right after the program's next command: what was gripped is let go too
+    early. If no command follows, nothing happens.
+    """
 
     name = "early-release"
-    summary = (
-        "A gripper command is taken back right after the program's next command: what was gripped is let"
-        " go too early. If no command follows, nothing happens."
-    )
     rank = 337
     where = _GRIPPING
     fault = "and back after the next command"
@@ -209,12 +192,9 @@ class _Chance(CommandOperator):
 
 
 class LostCommand(_Chance):
-    """Does not proceed, by chance."""
+    """A command is not carried out, with a probability of 30 %; the program goes on as if it had been."""
 
     name = "lost-command"
-    summary = (
-        "A command is not carried out, with a probability of 30 %; the program goes on as if it had been."
-    )
     rank = 334
     needs = frozenset({Need.IDLE, Need.MEMORY, Need.PROGRAM})
     where = "any command whose answer to doing nothing is known"
@@ -235,12 +215,9 @@ class LostCommand(_Chance):
 
 
 class DoubleCommand(_Chance):
-    """Proceeds twice, by chance."""
+    """A command is carried out twice, with a probability of 30 %; the program sees the second answer."""
 
     name = "double-command"
-    summary = (
-        "A command is carried out twice, with a probability of 30 %; the program sees the second answer."
-    )
     rank = 335
     where = "any command"
     fault = "do it twice, with a probability of {variant}"
@@ -261,14 +238,12 @@ class DoubleCommand(_Chance):
 
 
 class UnreportedRefusal(CommandOperator):
-    """Answers as if nothing were wrong where the robot raises one of its refusals."""
+    """The robot refuses a command, or stops, and the program does not hear of it: it gets the answer to doing
+    nothing.
+    """
 
     name = "unreported-refusal"
     family = CATALOGUE
-    summary = (
-        "The robot refuses a command, or stops, and the program does not hear of it: it gets the answer"
-        " to doing nothing."
-    )
     rank = 338
     needs = frozenset({Need.IDLE, Need.ERROR, Need.PROGRAM})
     stands_for = f"Errors that are swallowed on their way: {COMMANDS}."

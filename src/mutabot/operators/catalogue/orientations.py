@@ -12,7 +12,9 @@ from mutabot.model.values.rotation import from_euler
 from mutabot.model.values.sameness import is_same
 from mutabot.model.values.units import convert
 from mutabot.operators.examples import changed, reading, unchanged, writing
-from mutabot.operators.operator import FRAMES, SIGNS, Context, Example, Unchanged, map_numbers
+from mutabot.operators.numbers import map_numbers
+from mutabot.operators.operator import Context, Example, Unchanged
+from mutabot.operators.studies import FRAMES, SIGNS
 from mutabot.operators.value import ValueOperator
 
 _RPY = writing("robot:Arm.orient", "rpy", Kind.EULER, unit="deg", order="xyz")
@@ -41,13 +43,11 @@ class _OtherNumbers(ValueOperator):
 
 
 class EulerOrder(_OtherNumbers):
-    """Takes angles about axes that stay for angles about axes that turn along, and the other way round."""
+    """Euler angles are carried out in the reverse order: axes that stay are taken for axes that turn
+    along.
+    """
 
     name = "euler-order"
-    summary = (
-        "Euler angles are carried out in the reverse order: axes that stay are taken for axes that turn"
-        " along."
-    )
     rank = 320
     stands_for = f"Two conventions of Euler angles: {FRAMES}."
     where = "written and read quantities of kind euler"
@@ -64,10 +64,9 @@ class EulerOrder(_OtherNumbers):
 
 
 class QuaternionOrder(_OtherNumbers):
-    """Takes xyzw for wxyz, and the other way round."""
+    """A quaternion is taken to have its scalar part at the other end: xyzw for wxyz, and back."""
 
     name = "quaternion-order"
-    summary = "A quaternion is taken to have its scalar part at the other end: xyzw for wxyz, and back."
     rank = 321
     stands_for = f"Libraries that order quaternions in two ways: {FRAMES}."
     where = "written and read quantities of kind quaternion"
@@ -84,12 +83,9 @@ class QuaternionOrder(_OtherNumbers):
 
 
 class QuaternionSign(_OtherNumbers):
-    """Negates one part of a quaternion's vector; negating the scalar part is the inverse rotation."""
+    """One part of a quaternion's vector has the wrong sign; the inverse rotation is another operator's."""
 
     name = "quaternion-sign"
-    summary = (
-        "One part of a quaternion's vector has the wrong sign; the inverse rotation is another operator's."
-    )
     rank = 322
     stands_for = f"A wrong sign: {SIGNS}."
     where = "written and read quantities of kind quaternion"

@@ -14,29 +14,10 @@ from mutabot.model import Call, Kind, Operation, Path, Pattern, Proceed, Quantit
 from mutabot.model.values.quantity import MEASURED, WHOLE, Value
 from mutabot.operators.command import CommandOperator, comes_by_itself
 from mutabot.operators.examples import changed, reading, unchanged
-from mutabot.operators.operator import (
-    SENSORS,
-    TIMING,
-    Context,
-    Example,
-    Need,
-    Subject,
-    Unchanged,
-    is_number,
-    map_numbers,
-    quantity_of,
-)
-from mutabot.operators.value import (
-    NOT_GIVEN,
-    Exchange,
-    ValueOperator,
-    is_alike,
-    label,
-    like,
-    middle_of,
-    next_of,
-    within,
-)
+from mutabot.operators.numbers import is_number, like, map_numbers, middle_of, next_of, within
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of
+from mutabot.operators.studies import SENSORS, TIMING
+from mutabot.operators.value import NOT_GIVEN, Exchange, ValueOperator, is_alike, label
 
 _STANDS_FOR = f"A sensor that drops out or is misread: {SENSORS}."
 _NONE, _NAN = "none", "nan"
@@ -59,14 +40,12 @@ _LATE = 0.5
 
 
 class Dropout(CommandOperator):
-    """Gives what the vocabulary says that a reading gives which is not there."""
+    """A reading drops out: the program gets None, not a number or an exception, as the robot's API does
+    it.
+    """
 
     name = "dropout"
     family = CATALOGUE
-    summary = (
-        "A reading drops out: the program gets None, not a number or an exception, as the robot's API"
-        " does it."
-    )
     rank = 340
     stands_for = _STANDS_FOR
     where = "read quantities whose vocabulary says what a reading gives that is not there: missing"
@@ -122,10 +101,9 @@ class _Reading(ValueOperator):
 
 
 class OldReading(_Reading):
-    """Gives the value of an earlier call at this place."""
+    """A reading is old: the value of the call before, or of five calls before, at the same place."""
 
     name = "old-reading"
-    summary = "A reading is old: the value of the call before, or of five calls before, at the same place."
     rank = 341
     where = "read quantities, at places that a test calls more than once"
     kinds = frozenset(Kind)
@@ -151,10 +129,9 @@ class OldReading(_Reading):
 
 
 class StuckReading(_Reading):
-    """Gives the first value of the test at this place for ever."""
+    """A sensor is stuck: from the second call on a place reads what it read first in the test."""
 
     name = "stuck-reading"
-    summary = "A sensor is stuck: from the second call on a place reads what it read first in the test."
     rank = 342
     where = "read quantities, at places that a test calls more than once"
     kinds = frozenset(Kind)
@@ -182,13 +159,11 @@ def _kept(value: Value) -> Value:
 
 
 class Spike(_Reading):
-    """Gives a value far off, by chance."""
+    """One reading in ten, by chance, jumps: to the end of its range that is farther off, or to ten times its
+    value where it has none.
+    """
 
     name = "spike"
-    summary = (
-        "One reading in ten, by chance, jumps: to the end of its range that is farther off, or to ten"
-        " times its value where it has none."
-    )
     rank = 343
     where = "read numbers on a scale, but for orientations as a whole"
     kinds = MEASURED - WHOLE
@@ -216,13 +191,11 @@ class Spike(_Reading):
 
 
 class SaturatedReading(_Reading):
-    """Limits a reading to less than it can be."""
+    """A sensor saturates: its reading is limited to the middle 80 % of its range, or without a range to 80 %
+    of the size of the first one at its place in the test.
+    """
 
     name = "saturated-reading"
-    summary = (
-        "A sensor saturates: its reading is limited to the middle 80 % of its range, or without a range"
-        " to 80 % of the size of the first one at its place in the test."
-    )
     rank = 344
     where = "read numbers on a scale, but for orientations as a whole"
     kinds = MEASURED - WHOLE
@@ -247,10 +220,9 @@ class SaturatedReading(_Reading):
 
 
 class SwappedChannels(Exchange):
-    """Exchanges two neighbouring values of one kind that a call reads."""
+    """Two channels of a sensor are exchanged: neighbouring values of one kind that a call reads."""
 
     name = "swapped-channels"
-    summary = "Two channels of a sensor are exchanged: neighbouring values of one kind that a call reads."
     rank = 345
     stands_for = _STANDS_FOR
     where = "calls that read two quantities of one kind and unit"
@@ -269,11 +241,10 @@ class SwappedChannels(Exchange):
 
 
 class WrongObject(ValueOperator):
-    """Asks for the next of the objects that can be asked for."""
+    """A reading is that of another object, camera or channel than the one that is asked for."""
 
     name = "wrong-object"
     family = CATALOGUE
-    summary = "A reading is that of another object, camera or channel than the one that is asked for."
     rank = 346
     stands_for = _STANDS_FOR
     where = "outputs with values that say what a call reads: written beside a result"
@@ -291,10 +262,9 @@ class WrongObject(ValueOperator):
 
 
 class ConfusedLabel(_Reading):
-    """Gives the next of a label's values, by chance."""
+    """A label or flag is read as the next of its values, with a probability of 30 %."""
 
     name = "confused-label"
-    summary = "A label or flag is read as the next of its values, with a probability of 30 %."
     rank = 347
     where = "read quantities of kind label or flag with two values or more"
     variants: ClassVar[Mapping[str, float]] = {"30%": 0.3}
@@ -318,11 +288,10 @@ class ConfusedLabel(_Reading):
 
 
 class LateReading(CommandOperator):
-    """Lets time pass between a reading and the program."""
+    """The program gets a reading 0.5 s after it was taken; the world goes on meanwhile."""
 
     name = "late-reading"
     family = CATALOGUE
-    summary = "The program gets a reading 0.5 s after it was taken; the world goes on meanwhile."
     rank = 348
     stands_for = f"Something too early, too late or in the wrong order: {TIMING}."
     needs = frozenset({Need.WAIT})

@@ -10,8 +10,10 @@ from mutabot.model import Kind, Mode, Operation, Path, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.units import convert
 from mutabot.operators.examples import changed, reading, unchanged, writing
-from mutabot.operators.operator import UNITS, Context, Example, Subject, map_numbers, quantity_of
-from mutabot.operators.value import ValueOperator, like
+from mutabot.operators.numbers import like, map_numbers
+from mutabot.operators.operator import Context, Example, Subject, quantity_of
+from mutabot.operators.studies import UNITS
+from mutabot.operators.value import ValueOperator
 
 #: the robot, or the program, takes the number as if it were in the other unit
 _TAKEN = "taken"
@@ -71,11 +73,11 @@ def _both_ways(units: Mapping[str, str]) -> dict[str, str]:
 
 
 class CentimetreForMetre(_OtherUnit):
+    """A length or linear speed in metres is taken for centimetres, or is given in centimetres; and the other
+    way round.
+    """
+
     name = "cm-for-m"
-    summary = (
-        "A length or linear speed in metres is taken for centimetres, or is given in centimetres; and"
-        " the other way round."
-    )
     rank = 300
     where = "written and read quantities in m, cm, m/s or cm/s"
     units = _both_ways({"m": "cm", "m/s": "cm/s"})
@@ -88,11 +90,11 @@ class CentimetreForMetre(_OtherUnit):
 
 
 class MillimetreForMetre(_OtherUnit):
+    """A length or linear speed in metres is taken for millimetres, or is given in millimetres; and the other
+    way round.
+    """
+
     name = "mm-for-m"
-    summary = (
-        "A length or linear speed in metres is taken for millimetres, or is given in millimetres; and"
-        " the other way round."
-    )
     rank = 301
     where = "written and read quantities in m or mm, and their speeds and accelerations"
     units = _both_ways({"m": "mm", "m/s": "mm/s", "m/s^2": "mm/s^2"})
@@ -105,8 +107,9 @@ class MillimetreForMetre(_OtherUnit):
 
 
 class InchForMillimetre(_OtherUnit):
+    """A length in millimetres is taken for inches, or is given in inches; and the other way round."""
+
     name = "inch-for-mm"
-    summary = "A length in millimetres is taken for inches, or is given in inches; and the other way round."
     rank = 302
     where = "written and read quantities in mm or inch"
     units = _both_ways({"mm": "inch"})
@@ -119,11 +122,11 @@ class InchForMillimetre(_OtherUnit):
 
 
 class DegreeForRadian(_OtherUnit):
+    """An angle or angular speed in radians is taken for degrees, or is given in degrees; and the other way
+    round.
+    """
+
     name = "deg-for-rad"
-    summary = (
-        "An angle or angular speed in radians is taken for degrees, or is given in degrees; and the"
-        " other way round."
-    )
     rank = 303
     where = (
         "written and read quantities in rad or deg, rotation vectors and Euler angles included, and"
@@ -139,11 +142,11 @@ class DegreeForRadian(_OtherUnit):
 
 
 class MillisecondForSecond(_OtherUnit):
+    """A duration in seconds is taken for milliseconds. The other way round it is so long that any test only
+    times out.
+    """
+
     name = "ms-for-s"
-    summary = (
-        "A duration in seconds is taken for milliseconds. The other way round it is so long that any"
-        " test only times out."
-    )
     rank = 304
     where = "durations in s"
     units: ClassVar[Mapping[str, str]] = {"s": "ms"}

@@ -20,18 +20,9 @@ from mutabot.model.values.units import Dimension, convert, convert_difference
 from mutabot.operators.command import CommandOperator
 from mutabot.operators.examples import LOCATE, MOVE_TO, changed, reading, unchanged, writing
 from mutabot.operators.magnitudes import Ladder, ladder_in, own_ladder, per_second
-from mutabot.operators.operator import (
-    PARAMETERS,
-    SENSORS,
-    TIMING,
-    Context,
-    Draws,
-    Example,
-    Need,
-    Subject,
-    is_number,
-    quantity_of,
-)
+from mutabot.operators.numbers import is_number
+from mutabot.operators.operator import Context, Draws, Example, Need, Subject, quantity_of
+from mutabot.operators.studies import PARAMETERS, SENSORS, TIMING
 from mutabot.operators.value import ValueOperator, label
 
 #: components of a slice without an end that are tried: those of an arm with seven joints
@@ -150,10 +141,9 @@ _FEEL = reading("sensor:gap", Kind.DISTANCE, unit="m")
 
 
 class Offset(NumberOperator):
-    """Adds a fixed amount, or takes it away."""
+    """A commanded or read value is off by a fixed amount, at every call, in one direction."""
 
     name = "offset"
-    summary = "A commanded or read value is off by a fixed amount, at every call, in one direction."
     where = "every number that is commanded or read, bar waits"
     stands_for = f"A tool, a fixture or a camera that stands off, or a wrong constant: {PARAMETERS}."
     rank = 200
@@ -178,12 +168,9 @@ class Offset(NumberOperator):
 
 
 class Scale(NumberOperator):
-    """Multiplies by 1 + ε, or by 1 − ε."""
+    """A commanded or read value is a share too large (+) or too small (−), as after a wrong calibration."""
 
     name = "scale"
-    summary = (
-        "A commanded or read value is a share too large (+) or too small (−), as after a wrong calibration."
-    )
     where = "every number whose zero means nothing: amounts, positions, distances, no target angles"
     stands_for = f"A wrong gain or calibration factor: {PARAMETERS}."
     rank = 210
@@ -213,13 +200,11 @@ class Scale(NumberOperator):
 
 
 class SensorNoise(NumberOperator):
-    """Adds Gaussian noise to each reading: the same deviates at every magnitude, so much larger."""
+    """Each reading is off by Gaussian noise of standard deviation σ. The draws of a round are the same at
+    every σ: a larger one is the same noise, only larger.
+    """
 
     name = "sensor-noise"
-    summary = (
-        "Each reading is off by Gaussian noise of standard deviation σ. The draws of a round are the same at "
-        "every σ: a larger one is the same noise, only larger."
-    )
     where = "every number that is read"
     stands_for = f"A worse sensor than the program was written for: {SENSORS}."
     rank = 220
@@ -247,10 +232,9 @@ class SensorNoise(NumberOperator):
 
 
 class Drift(NumberOperator):
-    """Adds so much per second of simulated time since the test began."""
+    """A reading drifts: it is off by δ for every second of simulated time since the test began."""
 
     name = "drift"
-    summary = "A reading drifts: it is off by δ for every second of simulated time since the test began."
     where = "every number that is read, with a clock in the vocabulary"
     stands_for = f"A sensor that warms up, or odometry that is summed: {SENSORS}."
     rank = 230
@@ -279,13 +263,11 @@ class Drift(NumberOperator):
 
 
 class Quantise(NumberOperator):
-    """Rounds to the nearest multiple of the step."""
+    """A commanded or read value is rounded to the nearest multiple of a step, as by a coarse encoder or
+    converter.
+    """
 
     name = "quantise"
-    summary = (
-        "A commanded or read value is rounded to the nearest multiple of a step, as by a coarse encoder or"
-        " converter."
-    )
     where = "every number that is commanded or read, bar orientations as a whole"
     stands_for = f"A coarse encoder or converter: {SENSORS}."
     rank = 240
@@ -305,13 +287,11 @@ class Quantise(NumberOperator):
 
 
 class Deadband(NumberOperator):
-    """Keeps to the last value until a new one is further off than the band."""
+    """A target or reading that differs from the last one by less than δ is taken for that one; a relative
+    move shorter than δ is none. As by a worn gear, or a filter against chatter.
+    """
 
     name = "deadband"
-    summary = (
-        "A target or reading that differs from the last one by less than δ is taken for that one; a relative "
-        "move shorter than δ is none. As by a worn gear, or a filter against chatter."
-    )
     where = "every number that is commanded or read, bar waits and orientations as a whole"
     stands_for = f"Backlash of a worn gear, or a filter against chatter: {SENSORS}."
     rank = 250
@@ -339,10 +319,9 @@ _HOME = Operation("robot:Arm.home")
 
 
 class Early(NumberOperator):
-    """Ends a wait before its time."""
+    """A wait is so much shorter, so that what comes next comes too early."""
 
     name = "early"
-    summary = "A wait is so much shorter, so that what comes next comes too early."
     where = "waits: arguments of kind `duration`"
     stands_for = f"A wait that was measured on a faster machine: {TIMING}."
     rank = 270
@@ -362,15 +341,13 @@ class Early(NumberOperator):
 
 
 class Lag(CommandOperator):
-    """Lets time pass before a command, and after a reading was taken."""
+    """Each command is carried out so much later, while the rest of the world goes on; a reading was taken so
+    much before the program gets it. Needs a `wait` in the vocabulary, or a middleware.
+    """
 
     name = "lag"
     family = GRADED
     has_sizes = True
-    summary = (
-        "Each command is carried out so much later, while the rest of the world goes on; a reading was taken "
-        "so much before the program gets it. Needs a `wait` in the vocabulary, or a middleware."
-    )
     where = (
         "every command that is no wait, and every reading, with a `wait` in the vocabulary or a middleware"
     )

@@ -11,8 +11,9 @@ from mutabot.model.named import Form
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.sameness import is_same
 from mutabot.operators.examples import changed, unchanged
+from mutabot.operators.numbers import next_of
 from mutabot.operators.operator import Context, Example, Subject, Unchanged, quantity_of
-from mutabot.operators.value import SAME, ValueOperator, next_of
+from mutabot.operators.value import SAME, ValueOperator
 
 from ._examples import FRAME, HEAR_STAMP, HEARD_FRAME, OPEN_FRAME, SEND_STAMP, operation
 
@@ -37,13 +38,11 @@ class FreeValueOperator(ValueOperator):
 
 
 class WrongFrame(FreeValueOperator):
-    """Puts another name in the place of the frame."""
+    """The header names another frame: the next of those that the vocabulary gives, one that nobody knows if
+    it gives none, or none at all.
+    """
 
     name = "wrong-frame"
-    summary = (
-        "The header names another frame: the next of those that the vocabulary gives, one that nobody "
-        "knows if it gives none, or none at all."
-    )
     rank = 210
     kinds = frozenset({Kind.FRAME_ID})
     examples: ClassVar[tuple[Example, ...]] = (
@@ -67,10 +66,9 @@ class WrongFrame(FreeValueOperator):
 
 
 class ShiftStamp(FreeValueOperator):
-    """Moves the stamp of a message."""
+    """The header's stamp lies 5 s in the past or in the future."""
 
     name = "shift-stamp"
-    summary = "The header's stamp lies 5 s in the past or in the future."
     rank = 220
     kinds = frozenset({Kind.STAMP})
     #: seconds: more than programs that check the age of a message put up with. Less than 2 s is no difference
@@ -97,10 +95,9 @@ class ShiftStamp(FreeValueOperator):
 
 
 class EmptyStamp(FreeValueOperator):
-    """Puts zero in the place of the stamp."""
+    """The header has no stamp: it says zero, as if nobody had filled it in."""
 
     name = "empty-stamp"
-    summary = "The header has no stamp: it says zero, as if nobody had filled it in."
     rank = 230
     kinds = frozenset({Kind.STAMP})
     examples: ClassVar[tuple[Example, ...]] = (

@@ -40,13 +40,11 @@ class MessageOperator(CommandOperator):
 
 
 class Drop(MessageOperator):
-    """Lets the call, or what it brings, be lost."""
+    """A message, request or goal is lost on its way, a result or the tick of a timer never comes: each, every
+    third, or with a probability of 30 %.
+    """
 
     name = "drop"
-    summary = (
-        "A message, request or goal is lost on its way, a result or the tick of a timer never comes: each,"
-        " every third, or with a probability of 30 %."
-    )
     rank = 110
     needs = _EARLIER
     forms = _SENT | COMING | {Form.RESULT}
@@ -94,10 +92,9 @@ class Drop(MessageOperator):
 
 
 class Duplicate(MessageOperator):
-    """Proceeds twice, or lets the program receive twice."""
+    """A message, request or goal arrives twice, a callback is called twice."""
 
     name = "duplicate"
-    summary = "A message, request or goal arrives twice, a callback is called twice."
     rank = 120
     forms = _SENT | COMING
     fault = "each {what} arrives twice"
@@ -119,13 +116,11 @@ class Duplicate(MessageOperator):
 
 
 class Stale(MessageOperator):
-    """Sends or receives an earlier message instead."""
+    """An old message is sent, or received, in the place of the new one: always the first, or always the
+    previous.
+    """
 
     name = "stale"
-    summary = (
-        "An old message is sent, or received, in the place of the new one: always the first, or always the"
-        " previous."
-    )
     rank = 130
     needs = _EARLIER
     forms = _SENT | {Form.RECEIVE, Form.FEEDBACK, Form.TRANSFORM}
@@ -175,13 +170,11 @@ class Stale(MessageOperator):
 
 
 class Delay(MessageOperator):
-    """Lets the call, or what it brings, come later."""
+    """A message, request, goal, result or transform comes 0.1 s or 1 s late, by the clock of the node. What
+    is published goes out late by itself; who waits for an answer waits longer.
+    """
 
     name = "delay"
-    summary = (
-        "A message, request, goal, result or transform comes 0.1 s or 1 s late, by the clock of the node. "
-        "What is published goes out late by itself; who waits for an answer waits longer."
-    )
     rank = 140
     forms = frozenset({*WRITTEN, *COMING, Form.RESULT, Form.TRANSFORM, Form.SLEEP})
     fault = "each {what} comes {variant} s late"
@@ -214,12 +207,9 @@ class Delay(MessageOperator):
 
 
 class Reorder(MessageOperator):
-    """Holds every other message back until the next one is through."""
+    """Messages change places, two by two: the second comes before the first. A last one alone is lost."""
 
     name = "reorder"
-    summary = (
-        "Messages change places, two by two: the second comes before the first. A last one alone is lost."
-    )
     rank = 150
     needs = _EARLIER
     forms = frozenset({Form.PUBLISH, Form.RECEIVE, Form.FEEDBACK})

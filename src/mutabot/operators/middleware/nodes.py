@@ -39,13 +39,11 @@ class _Mishap(MessageOperator):
 
 
 class KillNode(_Mishap):
-    """Kills the process in which the program makes the call."""
+    """The node's process is killed in the place of the call, and nobody tells the others. Only where the node
+    is a process of its own: never that of the tests.
+    """
 
     name = "kill-node"
-    summary = (
-        "The node's process is killed in the place of the call, and nobody tells the others. Only where "
-        "the node is a process of its own: never that of the tests."
-    )
     rank = 410
     is_raced = True
     mishap = Mishap.KILLED
@@ -58,13 +56,11 @@ class KillNode(_Mishap):
 
 
 class RestartNode(_Mishap):
-    """Kills the process in which the program makes the call, once, and lets it begin anew."""
+    """The node's process is killed in the place of the call and begins anew with the same command line, as
+    under a supervisor, once. Only where the node is a process of its own.
+    """
 
     name = "restart-node"
-    summary = (
-        "The node's process is killed in the place of the call and begins anew with the same command line,"
-        " as under a supervisor, once. Only where the node is a process of its own."
-    )
     rank = 420
     is_raced = True
     mishap = Mishap.RESTARTED
@@ -77,10 +73,9 @@ class RestartNode(_Mishap):
 
 
 class CancelGoal(_Mishap):
-    """Sends the goal, and cancels it."""
+    """Somebody cancels the action as soon as its goal is sent."""
 
     name = "cancel-goal"
-    summary = "Somebody cancels the action as soon as its goal is sent."
     rank = 430
     mishap = Mishap.CANCELLED
     forms = frozenset({Form.GOAL})
@@ -89,12 +84,9 @@ class CancelGoal(_Mishap):
 
 
 class JumpClock(_Mishap):
-    """Sets the clock once, before the first call."""
+    """The node's clock jumps 10 s ahead, or 10 s back, before a tick of its timer or a turn of its rate."""
 
     name = "jump-clock"
-    summary = (
-        "The node's clock jumps 10 s ahead, or 10 s back, before a tick of its timer or a turn of its rate."
-    )
     rank = 450
     needs = frozenset({Need.MEMORY, Need.COPIES, Need.PROGRAM})
     mishap = Mishap.JUMPED
@@ -113,13 +105,11 @@ class JumpClock(_Mishap):
 
 
 class LoseAnswer(MessageOperator):
-    """Proceeds, and lets the program wait for ever, or be told of a failure."""
+    """A service does what it is asked for, but the program hears of a failure, or never of anything, as its
+    middleware has it when an answer is lost.
+    """
 
     name = "lose-answer"
-    summary = (
-        "A service does what it is asked for, but the program hears of a failure, or never of anything, as"
-        " its middleware has it when an answer is lost."
-    )
     rank = 440
     forms = frozenset({Form.CALL, Form.GOAL})
     fault = "the answer to each {what} is lost"

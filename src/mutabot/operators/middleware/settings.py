@@ -11,7 +11,8 @@ from mutabot.model.values.quantity import Value
 from mutabot.model.values.sameness import is_same
 from mutabot.operators.command import form_of
 from mutabot.operators.examples import changed, unchanged
-from mutabot.operators.operator import Context, Example, Subject, Unchanged, is_number, quantity_of
+from mutabot.operators.numbers import is_number
+from mutabot.operators.operator import Context, Example, Subject, Unchanged, quantity_of
 
 from ._examples import ADVERTISE, CLIENT, RATE, SPEED, SUBSCRIBE, TIMER
 from .headers import FreeValueOperator
@@ -41,13 +42,11 @@ class _Setting(FreeValueOperator):
 
 
 class WrongName(_Setting):
-    """Gives another name."""
+    """A publisher, subscription or client is set up under another name: one that nobody else has, or without
+    the namespace of its node, as a wrong remapping does.
+    """
 
     name = "wrong-name"
-    summary = (
-        "A publisher, subscription or client is set up under another name: one that nobody else has, or "
-        "without the namespace of its node, as a wrong remapping does."
-    )
     rank = 310
     setting = "name"
     variants: ClassVar[Mapping[str, None]] = {_MISSPELT: None, _GLOBAL: None}
@@ -78,12 +77,9 @@ class WrongName(_Setting):
 
 
 class ShortQueue(_Setting):
-    """Sets up a queue of depth 1."""
+    """The queue of a publisher or subscription holds one message, so that the next one pushes it out."""
 
     name = "short-queue"
-    summary = (
-        "The queue of a publisher or subscription holds one message, so that the next one pushes it out."
-    )
     rank = 320
     setting = "depth"
     examples: ClassVar[tuple[Example, ...]] = (
@@ -98,13 +94,11 @@ class ShortQueue(_Setting):
 
 
 class FlipLatch(_Setting):
-    """Latches what is not latched, and the other way round."""
+    """A publisher that keeps its last message for subscribers who come later does not, or one that does not
+    does.
+    """
 
     name = "flip-latch"
-    summary = (
-        "A publisher that keeps its last message for subscribers who come later does not, or one that does"
-        " not does."
-    )
     rank = 330
     setting = "latch"
     examples: ClassVar[tuple[Example, ...]] = (
@@ -130,13 +124,11 @@ class _OtherOfTwo(_Setting):
 
 
 class WrongReliability(_OtherOfTwo):
-    """Swaps reliable and best effort."""
+    """A publisher or subscription is best effort instead of reliable, or the other way round. A subscription
+    that asks for more than is offered hears nothing.
+    """
 
     name = "wrong-reliability"
-    summary = (
-        "A publisher or subscription is best effort instead of reliable, or the other way round. A "
-        "subscription that asks for more than is offered hears nothing."
-    )
     rank = 340
     setting = "reliability"
     examples: ClassVar[tuple[Example, ...]] = (
@@ -152,13 +144,11 @@ class WrongReliability(_OtherOfTwo):
 
 
 class WrongDurability(_OtherOfTwo):
-    """Swaps volatile and transient local."""
+    """A publisher or subscription is volatile instead of transient local, or the other way round. A
+    subscription that asks for more than is offered hears nothing.
+    """
 
     name = "wrong-durability"
-    summary = (
-        "A publisher or subscription is volatile instead of transient local, or the other way round. A "
-        "subscription that asks for more than is offered hears nothing."
-    )
     rank = 350
     setting = "durability"
     examples: ClassVar[tuple[Example, ...]] = (
@@ -174,13 +164,11 @@ class WrongDurability(_OtherOfTwo):
 
 
 class WrongDeadline(_Setting):
-    """Sets a deadline that nobody keeps, or takes one away; 0 is none."""
+    """A publisher or subscription has a deadline of 1 ms, or none where it had one. A subscription that asks
+    for more than is offered hears nothing.
+    """
 
     name = "wrong-deadline"
-    summary = (
-        "A publisher or subscription has a deadline of 1 ms, or none where it had one. A subscription that"
-        " asks for more than is offered hears nothing."
-    )
     rank = 360
     setting = "deadline"
     #: seconds: more often than any of the programs this is for publishes
@@ -198,10 +186,9 @@ class WrongDeadline(_Setting):
 
 
 class WrongPeriod(_Setting):
-    """Doubles or halves the period."""
+    """A timer or rate has twice the period, or half of it."""
 
     name = "wrong-period"
-    summary = "A timer or rate has twice the period, or half of it."
     rank = 370
     setting = "period"
     variants: ClassVar[Mapping[str, float]] = {"x2": 2.0, "x0.5": 0.5}
@@ -218,10 +205,9 @@ class WrongPeriod(_Setting):
 
 
 class UseDefault(FreeValueOperator):
-    """Reads the default of a parameter."""
+    """A parameter has the default that the program gives, instead of what was set."""
 
     name = "use-default"
-    summary = "A parameter has the default that the program gives, instead of what was set."
     rank = 380
     of_written = False
     examples: ClassVar[tuple[Example, ...]] = (

@@ -21,12 +21,11 @@ _SEND = Operation("link:send", message="text", patterns=(_LIFT,))
 
 
 class Skip(CommandOperator):
-    """Does not proceed."""
+    """A command is not carried out; the program goes on as if it had been."""
 
     name = "skip"
     needs = frozenset({Need.IDLE})
     does_nothing = True
-    summary = "A command is not carried out; the program goes on as if it had been."
     rank = 30
     where = "commands whose answer to doing nothing is known"
     published = (Published(7, "do command x", "do nothing"),)
@@ -41,10 +40,9 @@ class Skip(CommandOperator):
 
 
 class Repeat(CommandOperator):
-    """Proceeds twice."""
+    """A command is carried out twice; the program sees the second answer."""
 
     name = "repeat"
-    summary = "A command is carried out twice; the program sees the second answer."
     rank = 40
     where = "any command"
     published = (Published(8, "do command x", "do command x twice"),)
@@ -64,10 +62,9 @@ class Repeat(CommandOperator):
 
 
 class Opposite(CommandOperator):
-    """Does the opposite of a two-state command, or the operation named as the opposite."""
+    """A two-state command does the opposite: open for close, off for on, release for grasp."""
 
     name = "opposite"
-    summary = "A two-state command does the opposite: open for close, off for on, release for grasp."
     rank = 50
     where = "written openings and outputs with two ends, and commands with an opposite"
     published = (Published(11, "do command x", "do the opposite, such as release for grasp"),)

@@ -12,6 +12,7 @@ from mutabot.model import Call, Kind, Middleware, Mode, NotToldError, Operation,
 from mutabot.model.values.direction import EITHER, has_direction
 from mutabot.model.values.quantity import READING_OF, Value
 from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
+from mutabot.operators.numbers import is_number, map_numbers
 from mutabot.operators.operator import (
     Context,
     Example,
@@ -20,8 +21,6 @@ from mutabot.operators.operator import (
     Published,
     Subject,
     Unchanged,
-    is_number,
-    map_numbers,
     quantity_of,
 )
 from mutabot.operators.value import NOT_GIVEN, NOT_TOLD, ValueOperator, checked, label, on_call, the_other_way
@@ -55,10 +54,9 @@ _NEAR = replace(_TO, arguments=(replace(_X, range=(0.0, 0.6)),))
 
 
 class Reverse(ValueOperator):
-    """Negates one component of a motion, or mirrors a target at where the robot is."""
+    """A translation, rotation or speed goes the other way: one component is negated."""
 
     name = "reverse"
-    summary = "A translation, rotation or speed goes the other way: one component is negated."
     rank = 10
     where = "written translations, rotations, orientations as a whole, and speeds and ratios with a direction"
     published = (
@@ -139,11 +137,10 @@ class Reverse(ValueOperator):
 
 
 class ByTo(Operator):
-    """Confuses relative and absolute."""
+    """A relative amount is taken for an absolute target, and the other way round."""
 
     name = "by-to"
     needs = frozenset({Need.PLACE})
-    summary = "A relative amount is taken for an absolute target, and the other way round."
     rank = 20
     where = "written translations and rotations whose operation has a current that tells them"
     published = (

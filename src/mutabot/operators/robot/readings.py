@@ -10,8 +10,9 @@ from typing import ClassVar
 from mutabot.model import Kind, Quantity
 from mutabot.model.values.quantity import MEASURED, PLAIN, Value
 from mutabot.operators.examples import LOCATE, X, changed, reading, unchanged
-from mutabot.operators.operator import Context, Example, Published, Subject, map_numbers, quantity_of
-from mutabot.operators.value import ValueOperator, disturbed, label, next_of, the_other_way, within
+from mutabot.operators.numbers import map_numbers, next_of, within
+from mutabot.operators.operator import Context, Example, Published, Subject, quantity_of
+from mutabot.operators.value import ValueOperator, disturbed, label, the_other_way
 
 #: standard deviation where the vocabulary gives none: a clearly bad sensor, not a broken one (m, rad)
 DEFAULT_DEVIATION = {
@@ -35,10 +36,9 @@ _FEEL = reading("gripper:holding", Kind.FLAG, values=(False, True))
 
 
 class Negate(ValueOperator):
-    """Negates one component of a reading."""
+    """A position, distance or angle is read with the wrong sign."""
 
     name = "negate"
-    summary = "A position, distance or angle is read with the wrong sign."
     rank = 60
     where = "read positions, distances, angles and orientations"
     kinds = MEASURED - PLAIN
@@ -64,10 +64,9 @@ class Negate(ValueOperator):
 
 
 class Noise(ValueOperator):
-    """Adds normally distributed noise of mean zero to one component of a reading."""
+    """A position, distance or angle is read with Gaussian noise added."""
 
     name = "noise"
-    summary = "A position, distance or angle is read with Gaussian noise added."
     rank = 70
     where = "read positions, distances, angles and orientations"
     kinds = frozenset(DEFAULT_DEVIATION)
@@ -109,10 +108,9 @@ class Noise(ValueOperator):
 
 
 class Misread(ValueOperator):
-    """Returns another label of the quantity's values."""
+    """A label, such as a colour, or a flag is read as another one."""
 
     name = "misread"
-    summary = "A label, such as a colour, or a flag is read as another one."
     rank = 80
     where = "read labels and flags"
     published = (Published(12, "a colour is classified", "an incorrect colour is returned"),)

@@ -13,16 +13,13 @@ from mutabot.analysis.thresholds.words import line_of
 from mutabot.model import Verdict
 from mutabot.report.changes import change_lines
 from mutabot.report.format import Format, Material
-from mutabot.report.texts import escaped, rounds_text, short_reason, status_of, table, why_alone
+from mutabot.report.terminal.console import between, percent
+from mutabot.report.texts import OUTSIDE, escaped, rounds_text, short_reason, status_of, table, why_alone
 
 #: rows of a table of mutants; GitHub takes no summary of more than a megabyte
 _ROWS = 100
 #: rows of the table of ladders
 _LADDERS = 50
-#: states of mutants that no test has judged, in the order of their interest
-_UNJUDGED = (
-    Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT,
-)  # fmt: skip
 
 
 def make(material: Material) -> str:
@@ -76,10 +73,8 @@ def _score_cells(group: Group) -> tuple[str, ...]:
 
 
 def _percent(share: float | None, interval: Interval | None) -> str:
-    if share is None:
-        return "–"
-    ends = f" ({100 * interval.low:.0f}–{100 * interval.high:.0f} %)" if interval is not None else ""
-    return f"{100 * share:.1f} %{ends}"
+    ends = f" ({between(interval)})" if share is not None and interval is not None else ""
+    return f"{percent(share)}{ends}"
 
 
 def _survivors(material: Material) -> Iterator[str]:
@@ -141,7 +136,7 @@ def _unjudged(material: Material) -> Iterator[str]:
     if None in by_status:
         yield f"Mutants that have not been run: {len(by_status[None])}."
         yield ""
-    found = [one for status in _UNJUDGED for one in by_status.get(status, ())]
+    found = [one for status in OUTSIDE for one in by_status.get(status, ())]
     if not found:
         return
     yield f"### Not judged: {len(found)}, outside the score"

@@ -11,7 +11,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from mutabot.analysis.results import MutantResult
-from mutabot.model import Mutant, Outcome, Span, Verdict
+from mutabot.analysis.stored import killers
+from mutabot.model import Mutant, Span, Verdict
 from mutabot.report.as_json import dumps
 from mutabot.report.format import Format, Material, utf16
 from mutabot.report.texts import reason_of, status_of
@@ -79,7 +80,7 @@ def _files(material: Material) -> dict[str, Any]:
 
 def _mutant(result: MutantResult, material: Material) -> dict[str, Any]:
     mutant = result.mutant
-    killed_by = _unique(test for outcome in result.outcomes for test in _killers(outcome))
+    killed_by = _unique(test for outcome in result.outcomes for test, _ in killers(outcome))
     covered_by = _unique([*material.campaign.reached_by(mutant), *killed_by])
     return {
         "id": mutant.id,
@@ -113,20 +114,10 @@ def _location(span: Span, material: Material) -> dict[str, Any]:
     }
 
 
-def _killers(outcome: Outcome) -> Iterable[str]:
-    if not outcome.verdict.is_killed:
-        return ()
-    first = (outcome.test,) if outcome.test is not None else ()
-    return (*first, *(kill.test for kill in outcome.kills))
-
-
 def _test_files(material: Material) -> dict[str, Any]:
     """All tests that are known, by their files: what mutants name is among them."""
-    campaign = material.campaign
-    named = (test for result in campaign.mutants for one in result.outcomes for test in _killers(one))
-    baseline = (one.test.test for one in campaign.results.tests)
     found: dict[str, Any] = {}
-    for test in _unique([*baseline, *campaign.reaching.tests, *named]):
+    for test in material.campaign.tests:
         file, _, name = test.partition("::")
         tests = found.setdefault(material.path(file), {"tests": []})["tests"]
         tests.append({"id": test, "name": name or test})

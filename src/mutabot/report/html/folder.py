@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 import shutil
 from collections import Counter
@@ -16,7 +15,7 @@ from mutabot.analysis.chance import false_kills, false_survivors
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group, Score
 from mutabot.analysis.statistics import Interval
-from mutabot.analysis.stored import StoredCampaign, StoredEvidence
+from mutabot.analysis.stored import StoredCampaign, StoredEvidence, killers
 from mutabot.analysis.suggested import Suggestions
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.analysis.unlooked import unlooked
@@ -25,8 +24,8 @@ from mutabot.errors import UsageError
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
 from mutabot.journal.records import Verification
-from mutabot.model import By, Outcome
-from mutabot.report.as_json import facts
+from mutabot.model import By
+from mutabot.report.as_json import facts, finite
 from mutabot.report.format import place_of, utf16
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.terminal.suggested import check_on_page
@@ -149,9 +148,7 @@ class Rows:
     def __init__(self, campaign: StoredCampaign) -> None:
         self._campaign = campaign
         self.files: list[str] = []
-        named = (test for one in campaign.outcomes for test, _ in _killers(one))
-        baseline = (one.test.test for one in campaign.results.tests)
-        self.tests = list(dict.fromkeys([*baseline, *campaign.reaching.tests, *named]))
+        self.tests = campaign.tests
         self._tests = {name: number for number, name in enumerate(self.tests)}
         self._files: dict[str, int] = {}
         self._sites: dict[str, int] = {}
@@ -207,19 +204,11 @@ class Rows:
         """The tests that are known to notice it: number, in how many rounds, in how many by a check."""
         found: dict[int, list[int]] = {}
         for outcome in result.outcomes:
-            for test, by in dict(_killers(outcome)).items():
+            for test, by in dict(killers(outcome)).items():
                 counts = found.setdefault(self._tests[test], [0, 0])
                 counts[0] += 1
                 counts[1] += by is By.CHECK
         return [[test, *counts] for test, counts in found.items()]
-
-
-def _killers(outcome: Outcome) -> list[tuple[str, By | None]]:
-    """The tests that noticed a mutant, as far as they are known."""
-    if not outcome.verdict.is_killed:
-        return []
-    first = [(outcome.test, outcome.by)] if outcome.test is not None else []
-    return [*((one.test, one.by) for one in outcome.kills), *first]
 
 
 def _drawn(result: MutantResult) -> Sequence[Sequence[Any]]:
@@ -417,21 +406,9 @@ def script_of(name: str, data: Any) -> str:
 
     The data are a text that is parsed as JSON: no key of theirs means anything to the language.
     """
-    text = json.dumps(plain(data), ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    data = finite(data, _short)
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"), default=str)
     return f"mutabot.take('{name.translate(_ESCAPES)}','{text.translate(_ESCAPES)}');\n"
-
-
-def plain(value: Any) -> Any:
-    """Data that JSON can hold: numbers that are none become null, and what it does not know a text."""
-    if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if isinstance(value, float):
-        return _short(value) if math.isfinite(value) else None
-    if value is None or isinstance(value, bool | int):
-        return value
-    return str(value)
 
 
 def _short(number: float) -> float | int:

@@ -30,12 +30,11 @@ from mutabot.report.terminal.console import (
     plural,
     short_place,
 )
+from mutabot.report.texts import OUTSIDE
 
 from .mutant import unlooked_lines
 from .trust import budget_lines, control_lines, error_lines, since_lines, trust_lines
 
-#: verdicts outside the score that a user should look at, in this order
-_TOLD = (Verdict.ERROR, Verdict.UNSTABLE, Verdict.REFUSED, Verdict.INVALID, Verdict.NO_EFFECT)
 #: rounds from which on a row gives counts in place of one letter each
 _MANY_ROUNDS = 12
 #: columns from which on every fact of a mutant has a column of its own
@@ -302,7 +301,7 @@ def ladder_lines(results: Results) -> Iterator[RenderableType]:
 
 def _outside(results: Results, width: int) -> Iterator[RenderableType]:
     narrow = width < WIDE
-    for verdict in _TOLD:
+    for verdict in OUTSIDE:
         found = results.with_verdict(verdict)
         if not found:
             continue
@@ -328,3 +327,54 @@ def left_out_lines(left_out: Sequence[LeftOut], *, everything: bool = False) -> 
                     yield Padding(
                         Text(f"{item.id}  {plain(item.description)}", overflow="fold"), (0, 0, 0, 8)
                     )
+
+
+#: survivors that are shown
+_SURVIVORS = 10
+
+
+def print_summary(console: Console, results: Results) -> None:
+    """Print how a run ended."""
+    for part in _summary_parts(results, console.width):
+        console.print(part)
+
+
+def _summary_parts(results: Results, width: int) -> Iterator[RenderableType]:
+    yield Text(title(results), style="bold")
+    yield from error_lines(results)
+    if results.done:
+        yield _score_table(results, with_interval=width >= RATES)
+        yield from sample_lines(results)
+    yield from since_lines(results)
+    yield from budget_lines(results)
+    yield from survivor_lines(results, width, at_most=_SURVIVORS)
+    yield from unlooked_lines(results)
+    yield from better_lines(results)
+    yield from _counted(results)
+    yield from ladder_lines(results)
+    yield from trust_lines(results)
+    yield Text("\n`mutabot results` shows every mutant, `mutabot show N` all about one.", style="dim")
+
+
+def _score_table(results: Results, *, with_interval: bool) -> RenderableType:
+    """A line for each family and role."""
+    table = make_table()
+    table.add_column("family · role", no_wrap=True)
+    for name in ("score", "check score", "killed"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for group in results.groups:
+        total = group.scores.total
+        killed = f"{total.killed} of {total.valid}"
+        interval = group.scores.interval if with_interval else None
+        score = percent(group.scores.mean) + (f" ({between(interval)})" if interval is not None else "")
+        table.add_row(group_name(group), score, percent(group.scores.mean_check), killed)
+    return table
+
+
+def _counted(results: Results) -> Iterator[RenderableType]:
+    counts: Counter[Verdict] = Counter()
+    for verdict in OUTSIDE[1:]:  # errors have a place of their own
+        counts[verdict] = len(results.with_verdict(verdict))
+    told = [f"{count} {verdict.value}" for verdict, count in counts.items() if count]
+    if told:
+        yield heading(f"Mutants outside the score: {', '.join(told)}")

@@ -11,6 +11,7 @@ from rich.text import Text
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
+from mutabot.border.codec import to_data
 from mutabot.report.as_json import facts
 
 from .console import heading, plain, plural
@@ -33,9 +34,7 @@ def suggested_data(found: Suggestions) -> dict[str, Any]:
 
 def _suggestion_data(one: Suggestion, found: Suggestions) -> dict[str, Any]:
     return {
-        **facts(
-            one, "test style moment looks_at statement tolerance band factor spread runs alarm fresh unseen"
-        ),
+        **to_data(one),
         "kills": [
             {"mutant": _mutant_data(mutant, found), "rounds": [round + 1 for round in rounds]}
             for mutant, rounds in one.kills.items()
@@ -90,6 +89,9 @@ def lines_of(one: Suggestion, found: Suggestions) -> Iterator[str]:
     yield f"{one.moment}; {_band(one)}"
     yield f"false alarms: {_alarms(one)}"
     yield f"kills {_kills(one, found)}"
+    if one.by_hand:
+        yield "another tool makes this test, so this is to be added by hand where it ends:"
+        yield from (f"  {line}" for line in one.by_hand.splitlines())
 
 
 def _band(one: Suggestion) -> str:
@@ -152,7 +154,8 @@ def _would_catch(result: MutantResult, found: Suggestions | None) -> Iterator[st
         if mutant.id in one.kills and found is not None:
             yield f"at the end of {one.test}:" if one.moment.startswith("end") else f"in {one.test}:"
             yield from lines_of(one, found)
-            yield "`mutabot suggest` prints it as a diff."
+            if not one.by_hand:
+                yield "`mutabot suggest` prints it as a diff."
             return
     for left in found.unsolved if found is not None else ():
         if left.mutant == mutant.id:
