@@ -91,7 +91,9 @@ def main() -> int:
         theirs = _environment(venvs / "irradiate", [IRRADIATE, PYTEST, *needs])
         for name in given.names:
             project = _project(name, Path(folder, name))
-            suite = min(_cpu([theirs, "-m", "pytest", "-q"], project)[0] for _ in range(3))
+            suite, done = min((_cpu([theirs, "-m", "pytest", "-q"], project) for _ in range(3)), key=_seconds)
+            if done.returncode:
+                raise SystemExit(f"{name}: plain pytest fails: {done.stdout[-2000:]}")
             tools = {"mutabot": (_mutabot, ours), "irradiate": (_irradiate, theirs)}
             found[name] = {"pytest": round(suite, 2)}
             for tool, (run, python) in tools.items():
@@ -108,6 +110,10 @@ def main() -> int:
     return int(any(one["mutabot"]["wrong"] for one in found.values()))
 
 
+def _seconds(done: tuple[float, Any]) -> float:
+    return done[0]
+
+
 def _environment(folder: Path, needs: list[str]) -> str:
     """The Python of a virtual environment with these packages, made if it is not there."""
     python = folder / "bin" / "python"
@@ -118,7 +124,7 @@ def _environment(folder: Path, needs: list[str]) -> str:
 
 
 def _project(name: str, folder: Path) -> Path:
-    """The project from its source distribution: the package and its tests side by side."""
+    """The project from its source distribution, told where its program and its tests are."""
     requirement, program, tests, _ = PROJECTS[name]
     folder.mkdir()
     command = [sys.executable, "-m", "pip", "download", "-q", "--no-deps", "--no-binary", ":all:"]
@@ -127,14 +133,12 @@ def _project(name: str, folder: Path) -> Path:
     with tarfile.open(archive) as tar:
         tar.extractall(folder, filter="data")
     (root,) = (path for path in folder.iterdir() if path.is_dir())
-    project = folder / "project"
-    package = Path(program).name
-    shutil.copytree(root / program, project / package)
-    copy = shutil.copytree if (root / tests).is_dir() else shutil.copy
-    copy(root / tests, project / tests)
-    (project / "pytest.ini").write_text(f"[pytest]\ntestpaths = {tests}\npythonpath = .\n")
+    project = root.rename(folder / "project")
+    (project / "pytest.ini").write_text(
+        f"[pytest]\ntestpaths = {tests}\npythonpath = . {Path(program).parent}\n"
+    )
     (project / "mutabot.toml").write_text(
-        f'program = ["{package}"]\ntests = ["{tests}"]\nfamilies = ["classical"]\n'
+        f'program = ["{program}"]\ntests = ["{tests}"]\nfamilies = ["classical"]\n'
     )
     return project
 
@@ -176,17 +180,9 @@ def _mutabot(python: str, project: Path, mutants: int) -> tuple[Figures, list[Ju
 
 def _irradiate(python: str, project: Path, mutants: int) -> tuple[Figures, list[Judged]]:
     copy = _copy(project, "irradiate")
-    package = next(path.parent.name for path in copy.glob("*/__init__.py") if path.parent.name != "tests")
-    tests = (copy / "pytest.ini").read_text().split("testpaths = ")[1].split("\n")[0]
-    command = [
-        str(Path(python).with_name("irradiate")),
-        "run",
-        package,
-        "--tests-dir",
-        tests,
-        "--python",
-        python,
-    ]
+    _, program, tests, _ = PROJECTS[project.parent.name]
+    command = [str(Path(python).with_name("irradiate")), "run", program, "--tests-dir", tests]
+    command += ["--python", python]
     options = [
         "--workers",
         "1",
