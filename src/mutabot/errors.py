@@ -24,7 +24,6 @@ facts are attributes.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 
 from .exit_codes import ExitCode
 from .limits import shortened
@@ -219,6 +218,8 @@ class OperatorError(MutabotError):
 def nearest_name(name: str, known: Iterable[str]) -> str | None:
     """The known name most like ``name``, or None if none is near."""
     by_folded = {candidate.casefold(): candidate for candidate in known}
+    from difflib import get_close_matches  # noqa: PLC0415  # slow, and most processes make no mistake
+
     matches = get_close_matches(name.casefold(), list(by_folded), n=1, cutoff=0.5)
     return by_folded[matches[0]] if matches else None
 

@@ -17,7 +17,6 @@ from mutabot.frozen import frozen
 from mutabot.model.alternative import Choice, Instrumentation
 from mutabot.model.mutant import Mutant, Span
 from mutabot.model.operation import Vocabulary
-from mutabot.model.values.answer import is_plain
 
 from .codec import from_data, to_data
 
@@ -212,10 +211,14 @@ class Idle:
     @classmethod
     def of(cls, data: Any) -> Idle:
         """The answers in a mutant's ``idle``; a plain value there is the only answer."""
+        from mutabot.model.values.answer import is_plain  # noqa: PLC0415  # most jobs have no answers
+
         return cls((data,)) if is_plain(data) else from_data(cls, data)
 
     def data(self) -> Any:
         """The answers as a mutant carries them."""
+        from mutabot.model.values.answer import is_plain  # noqa: PLC0415  # as above
+
         single = len(self.answers) == 1 and not self.varying and is_plain(self.answers[0])
         return self.answers[0] if single else to_data(self)
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mutabot.errors import MutabotError
-from mutabot.inside.targets.target import is_named
 from mutabot.model.class_name import class_name
 from mutabot.model.outcome import added
 
@@ -40,6 +39,8 @@ def failure_in(error: BaseException, failures: Iterable[str]) -> str | None:
 
     ``failures``: names of exceptions that the vocabulary says mean nothing else.
     """
+    from mutabot.inside.targets.target import is_named  # noqa: PLC0415  # few exceptions are looked at
+
     for link in everything(error):
         if isinstance(link, MemoryError):
             return "the memory limit was reached"

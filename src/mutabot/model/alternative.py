@@ -7,7 +7,7 @@ that crosses the process border as JSON.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from mutabot.frozen import frozen
 
@@ -140,6 +140,15 @@ class Instrumentation:
     texts: tuple[ProgramText, ...]
     record: bool = False
     active: tuple[Choice, ...] = ()
+
+    def only(self, active: tuple[Choice, ...]) -> Instrumentation:
+        """These alternatives in force, and no places but theirs."""
+        places = {choice.place for choice in active}
+        texts = (
+            replace(text, places=tuple(place for place in text.places if place.number in places))
+            for text in self.texts
+        )
+        return Instrumentation(tuple(text for text in texts if text.places), active=active)
 
 
 @frozen

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import compileall
 import contextlib
 import errno
 import os
@@ -253,6 +254,22 @@ def command(arguments: Iterable[str], home: Path) -> list[str]:
 def environment(job_file: Path, pipe: int) -> dict[str, str]:
     """The environment of a worker."""
     return {**usual_environment(), JOB_VARIABLE: str(job_file), PIPE_VARIABLE: str(pipe)}
+
+
+#: what processes of the tests import of us
+_OF_PROCESSES = ("inside", "border", "evidence", "languages", "model", "operators")
+
+
+def compile_us() -> None:
+    """Compile what processes of the tests import of us, if nobody has: they write no compiled files.
+
+    Some installers and all editable installations leave that to the first import, which would be each
+    process's.
+    """
+    ours = Path(__file__).parents[2]
+    compileall.compile_dir(ours, maxlevels=0, quiet=2)
+    for part in _OF_PROCESSES:
+        compileall.compile_dir(ours / part, quiet=2)
 
 
 def usual_environment() -> dict[str, str]:

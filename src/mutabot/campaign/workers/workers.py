@@ -22,7 +22,7 @@ from mutabot.errors import JournalError
 
 from .forkserver import LOOKS, Copy, ForkServer
 from .interruption import Pause, interruptible
-from .processes import EventStream, Home, Spawned, refuse_full_disk
+from .processes import EventStream, Home, Spawned, compile_us, refuse_full_disk
 from .remains import claim, end_abandoned, end_left_over, remove_folder
 from .task import Result, Task
 from .waiting import PERIOD, TokenPool, Waiting
@@ -75,6 +75,7 @@ class Workers:
         self._remains: list[str] = []
         self.pool = TokenPool(self._jobs)
         self.look: Callable[[], None] | None = None
+        compile_us()
         home = root / ".mutabot"
         try:
             home.mkdir(exist_ok=True)

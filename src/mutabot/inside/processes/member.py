@@ -11,20 +11,15 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mutabot import extensions
 from mutabot.border.events import (
     Acted,
     Began,
-    Called,
     Did,
     Event,
     Found,
-    Noted,
     NotInstrumented,
     PlacesReached,
     Problem,
@@ -39,16 +34,19 @@ from mutabot.border.events import (
 from mutabot.border.job import Job, read_job
 from mutabot.border.processes import ANYBODY
 from mutabot.inside import FOLDER as OURS
-from mutabot.inside.calls.locate import Locator
 from mutabot.inside.event_file import EventFile
 from mutabot.inside.evidence import Evidence, failure_in, is_due_to, leaves
 from mutabot.inside.limits import BudgetExceeded
-from mutabot.inside.session import Session
 from mutabot.inside.text.scripts import hook_script
-from mutabot.model import Call
-from mutabot.model.values.quantity import Value
 
-from .environment import Now, carry, starts_a_killer
+from .environment import Now, carry
+from .killers import starts_a_killer
+from .text_only import TextOnly, is_of_text_alone
+
+if TYPE_CHECKING:  # of no use to a job that has nothing to do with calls
+    from mutabot.inside.session import Session
+
+    from .calls import CallsTold
 
 #: the member that this process is; None in all others
 _member: Member | None = None
@@ -59,7 +57,6 @@ def join(folder: str) -> None:
     global _member  # noqa: PLW0603  # one process, one member
     if _member is None:
         job = read_job(os.path.dirname(folder))
-        extensions.use(job.extensions)
         _member = Member(folder, job)
         _member.begin()
 
@@ -84,7 +81,7 @@ class Member:
         session: the session that goes on, in a process that was forked; None to make one.
     """
 
-    def __init__(self, folder: str, job: Job, session: Session | None = None) -> None:
+    def __init__(self, folder: str, job: Job, session: Session | TextOnly | None = None) -> None:
         self._folder = folder
         self._now = Now(folder)
         self._test = self._now.number
@@ -93,15 +90,10 @@ class Member:
         self.file = EventFile(folder, name, job.key, self._now.note_unwritten)
         command = tuple(getattr(sys, "orig_argv", sys.argv))
         self.file.send(Began(os.getpid(), os.getpgrp(), command, now, self._test))
-        locator = Locator(job.root, job.program, job.oracle)
-        self.session = session or Session(
-            replace(job, inspect=False, moments={}, evidence=False),
-            self,
-            locator,
-        )
+        self.session = session or _session(job, self)
+        self._calls: CallsTold | None = None
         self._told = Evidence()
         self._places: set[int] = set()
-        self._found: set[str] = set()
         self._exceeded = False
         self._is_over = False
 
@@ -117,11 +109,13 @@ class Member:
     def go_on(self) -> None:
         """In a process that was forked: go on with the session that it has, and tell of it."""
         session = self.session
-        for site in session.recorder.sites:
-            self.file.send(site)
+        if not isinstance(session, TextOnly):
+            for site in session.recorder.sites:
+                self.file.send(site)
+            session.branch = None  # it tells its own sites, also below a branch
         self._told = _copy_of(session.evidence)
         self._attend()
-        session.pipe, session.branch = self, None  # it tells its own sites, also below a branch
+        session.pipe = self
         if session.text is not None:
             session.text.pipe = self
         self._watch_text()
@@ -129,20 +123,18 @@ class Member:
     def _attend(self) -> None:
         session = self.session
         watch_forks(self._folder, session)
-        session.recorder.on_hit = self._hit
-        session.on_refused, session.on_live = self._refused, self._is_live
-        session.passing.on_end = self._after
-        session.passing.turn = self.turn
-        for targets in session.interception.kinds:
-            if targets.on_heard is not None:
-                targets.on_heard = partial(self._heard, targets.on_heard)
+        if not isinstance(session, TextOnly):
+            from .calls import CallsTold  # noqa: PLC0415  # see above
+
+            self._calls = CallsTold(session, self.file, self.poll)
+            session.passing.turn = self.turn
         atexit.register(self.end)
         self._watch_exits()
 
     def turn(self) -> None:
         """Look whether another test has begun."""
         if self._now.number != self._test:
-            self.session.look_back(at_all=True)
+            self._look_back()
             self.poll()
             self._use()
             self._test = self._now.number
@@ -171,7 +163,8 @@ class Member:
         if now.hits != before.hits or now != before:
             self._told = _copy_of(now)
             self.file.send(self._did(before, now))
-        self._tell_found()
+        if self._calls is not None:
+            self._calls.tell_found()
         meter = session.meter
         if meter is not None and meter.exceeded is not None and not self._exceeded:
             self._exceeded = True
@@ -192,37 +185,14 @@ class Member:
             is_final=now.said is not None,
         )
 
-    def _hit(self, site: int, written: Any, read: Any, answer: Any) -> None:
-        self.file.send(Called(site, written, read, answer, time.monotonic()))
-
-    def _refused(self, site: int, number: int) -> None:
-        self.file.send(Noted(site, number))
-
-    def _is_live(self, site: int) -> None:
-        self.file.send(Noted(site))
-
-    def _after(self, call: Call, read: Mapping[str, Value]) -> None:
-        self.poll()
-
-    def _heard(self, heard: Callable[[str, Any], None], name: str, message: Any) -> None:
-        before = self.session.evidence.said
-        heard(name, message)
-        if self.session.evidence.said != before:
-            self.poll()
-
-    def _tell_found(self) -> None:
-        targets = self.session.interception.found - self._found
-        if targets:
-            self._found |= targets
-            for operation in self.session.job.vocabulary.operations:
-                if operation.target in targets:
-                    self.session.inspection.check_target(operation, self.session.interception)
-            self.file.send(Found(targets=tuple(sorted(targets))))
+    def _look_back(self) -> None:
+        if not isinstance(self.session, TextOnly):
+            self.session.look_back(at_all=True)
 
     def _use(self) -> None:
         meter = self.session.meter
         if meter is not None:
-            commands = self.session.commands
+            commands = 0 if isinstance(self.session, TextOnly) else self.session.commands
             self.file.send(Used(meter.operations, commands, meter.simulated, meter.exceeded))
 
     def _watch_text(self) -> None:
@@ -247,7 +217,7 @@ class Member:
         if self._is_over or _member is not self:
             return
         self._is_over = True
-        self.session.look_back(at_all=True)
+        self._look_back()
         self.poll()
         self._use()
         if self.session.text is not None:
@@ -309,14 +279,29 @@ class Member:
         )
 
 
+def _session(job: Job, pipe: Member) -> Session | TextOnly:
+    text = job.instrumentation
+    if text is not None and not (text.active or text.record):
+        text = None  # a trunk's processes are the original, and fork for nobody
+    job = replace(job, inspect=False, moments={}, evidence=False, instrumentation=text)
+    if is_of_text_alone(job):
+        return TextOnly(job, pipe)
+    from mutabot import extensions  # noqa: PLC0415  # see above
+    from mutabot.inside.calls.locate import Locator  # noqa: PLC0415
+    from mutabot.inside.session import Session  # noqa: PLC0415
+
+    extensions.use(job.extensions)
+    return Session(job, pipe, Locator(job.root, job.program, job.oracle))
+
+
 def _copy_of(evidence: Evidence) -> Evidence:
     return replace(evidence, away=dict(evidence.away))
 
 
-_watched: tuple[str, Session] | None = None
+_watched: tuple[str, Session | TextOnly] | None = None
 
 
-def watch_forks(folder: str, session: Session) -> None:
+def watch_forks(folder: str, session: Session | TextOnly) -> None:
     """Let each process that the program forks off this one be a member of its own."""
     global _watched  # noqa: PLW0603  # hooks cannot be taken back: the last one watched counts
     if _watched is None:
@@ -329,7 +314,7 @@ def _after_fork() -> None:
         _forked(*_watched)
 
 
-def _forked(folder: str, session: Session) -> None:
+def _forked(folder: str, session: Session | TextOnly) -> None:
     """In a process that a program has forked: it is a member of its own from now on."""
     global _member  # noqa: PLW0603  # see above
     _member = Member(folder, session.job, session)

@@ -24,7 +24,8 @@ from mutabot.border.processes import FOLDER
 from mutabot.extensions import brought
 from mutabot.inside.session import Session
 
-from .environment import Exits, Now, carry, watch_unseen, write_wake
+from .environment import Now, carry, write_wake
+from .exits import Exits, watch_unseen
 
 #: what processes of interest load
 _JOIN = "mutabot.inside.processes.member"

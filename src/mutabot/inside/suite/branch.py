@@ -136,7 +136,7 @@ class BranchOfSession:
         session, job = self._session, self._session.job
         text = job.instrumentation
         if text is not None:
-            text = replace(text, active=tuple(bunch.choices[bunch.first.id]))
+            text = text.only(tuple(bunch.choices[bunch.first.id]))
         job = replace(job, mutant=bunch.first, branching=None, instrumentation=text)
         write_job(self._folder, job)
         session.job = replace(job, branching=session.job.branching)

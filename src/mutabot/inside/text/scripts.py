@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import os
+import runpy
 import sys
 from collections.abc import Sequence
 from importlib.machinery import ModuleSpec, SourceFileLoader
@@ -16,18 +17,13 @@ from importlib.util import spec_from_file_location
 from types import ModuleType
 from typing import Any
 
-import wrapt
-
 from . import loading
 
 
 def hook_runpy() -> None:
     """Let ``runpy`` compile files that it runs as files are compiled that are imported."""
-    wrapt.register_post_import_hook(_patch, "runpy")
-
-
-def _patch(runpy: Any) -> None:
-    original = runpy._get_code_from_file
+    module: Any = runpy
+    original = module._get_code_from_file
     if getattr(original, "is_of_mutabot", False):
         return
 
@@ -39,7 +35,7 @@ def _patch(runpy: Any) -> None:
         return (code, arguments[-1]) if len(arguments) > 1 else code
 
     code_of.is_of_mutabot = True  # type: ignore[attr-defined]
-    runpy._get_code_from_file = code_of
+    module._get_code_from_file = code_of
 
 
 def hook_script() -> None:

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mutabot.border.events import NotInstrumented, PlacesReached, TextsSeen
 from mutabot.border.job import Job
-from mutabot.inside.calls.activation import is_refusal, with_refusal
 from mutabot.inside.event_file import Sink
 from mutabot.inside.evidence import Evidence
-from mutabot.inside.fork.bunch import Bunch
-from mutabot.model import Call
 
 from .import_hook import ImportHook
+
+if TYPE_CHECKING:  # not every process makes calls, or forks
+    from mutabot.inside.fork.bunch import Bunch
+    from mutabot.model import Call
 
 #: hits, and hits at which something changed, by place
 _Counts = dict[int, tuple[int, int]]
@@ -115,6 +116,8 @@ class SessionText:
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
+        from mutabot.inside.calls.activation import is_refusal, with_refusal  # noqa: PLC0415  # as above
+
         if self.is_mutant and self.has_acted and is_refusal(error, refusals):
             self._refusals = with_refusal(self._refusals, error)
             # the vocabulary says what commands there are; this is none of them

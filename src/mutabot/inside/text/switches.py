@@ -17,7 +17,6 @@ from typing import Any, NoReturn
 
 from mutabot.inside.readings.plain import opaque
 from mutabot.model.alternative import FATAL, IDENTITY, RUNTIME, Choice
-from mutabot.operators.command import FatalFault
 
 from .foresee import Forms, alone, locals_of, value_of
 
@@ -225,6 +224,8 @@ class Alternatives:
         """The controls, which every place knows: nothing happens, or it raises."""
         if index == FATAL:
             self.tell(place)
+            from mutabot.operators.command import FatalFault  # noqa: PLC0415  # a control, once in a campaign
+
             raise FatalFault(f"control: place {place} fails")
         assert index == IDENTITY
         self.idle[place] = self.idle.get(place, 0) + 1
