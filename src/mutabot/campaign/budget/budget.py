@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from mutabot.border.codec import to_data
 from mutabot.campaign.campaign import Campaign, Sink
 from mutabot.campaign.engines.choice import run_trials
+from mutabot.campaign.engines.confirmation import confirm
 from mutabot.campaign.engines.engine import Trial
 from mutabot.campaign.faults.demanded import apart
 from mutabot.campaign.plan.plan import shuffled
@@ -208,8 +209,9 @@ def run_within(
             is_whole = run_in_batches(
                 batches, trials, lambda batch: run_trials(campaign, batch, sink, take), note
             )
-            if is_whole and ladders:
-                run_ladders(campaign, ladders, sink, found.done)
+            if is_whole:
+                confirm(campaign, alone, sink, found.done)
+                run_ladders(campaign.whole, ladders, sink, found.done)
     except OutOfTimeError:
         is_whole = False
     note(budgeted.run, is_whole)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
 from functools import cache
+from itertools import takewhile
 
 from mutabot.campaign.campaign import Campaign, Sink
-from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.request import Request
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
@@ -69,24 +71,32 @@ def run_trials(
     trials: Sequence[Trial],
     sink: Sink,
     found: Callable[[Outcome], object] | None = None,
+    *,
+    is_confirmation: bool = False,
 ) -> None:
     """Run these mutants in these rounds, with their controls; outcomes are in the journal within a second.
 
-    ``found`` is told each outcome. Nothing else keeps them: a campaign may have a million.
+    What ends in a way that counts with the whole suite only is run with that as well, before it is told.
+
+    Args:
+        found: told each outcome. Nothing else keeps them: a campaign may have a million.
+        is_confirmation: whether the mutants were let through without the tests that do not reach them.
 
     Raises ControlError for a control that ends wrongly.
     """
     left, trials = Remainder(), list(trials)
-    report = _Report(campaign.progress, sink, {mutant.id: mutant.number for mutant, _ in trials}, found)
+    report = _Report(campaign, sink, {mutant.id: mutant for mutant, _ in trials}, found, is_confirmation)
     for engine in engines_of(campaign.request):
         if not trials:
-            return
+            break
         left = Remainder()
         for one in engine.run(campaign, trials, left):
             report.take(one)
         trials = left.all
     for outcome in _refused(trials, left, campaign.request.engine):
         report.take(outcome)
+    if report.again:
+        run_trials(campaign.whole, report.again, sink, found)
 
 
 def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Remainder]:
@@ -105,27 +115,46 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Re
 
 
 class _Report:
-    """Outcomes and controls on their way to the journal and the screen."""
+    """Outcomes and controls on their way to the journal and the screen.
+
+    Attributes:
+        again: what is to be run with the whole suite before anything is said.
+    """
 
     def __init__(
         self,
-        progress: Progress,
+        campaign: Campaign,
         sink: Sink,
-        numbers: dict[str, int],
+        mutants: dict[str, Mutant],
         found: Callable[[Outcome], object] | None,
+        is_confirmation: bool,
     ) -> None:
-        self._progress, self._sink, self._numbers, self._found = progress, sink, numbers, found
+        self._campaign, self._sink, self._mutants, self._found = campaign, sink, mutants, found
+        self._is_confirmation = is_confirmation
+        self.again: list[Trial] = []
 
     def take(self, found: Outcome | ControlEnd) -> None:
         if isinstance(found, ControlEnd):
             self._sink.journal.add_control(found.test_file, found.control, found.ok, found.detail)
             return
+        if not self._counts(found):
+            self.again.append((self._mutants[found.mutant], found.round))
+            return
+        found = replace(found, confirmed=True) if self._is_confirmation else found
         self._sink.add_outcome(found)
         if self._found is not None:
             self._found(found)
         by = f" by {found.by}" if found.by is not None else ""
-        number = self._numbers[found.mutant]
-        self._progress.advance(f"#{number} round {found.round + 1}: {found.verdict}{by}")
+        number = self._mutants[found.mutant].number
+        self._campaign.progress.advance(f"#{number} round {found.round + 1}: {found.verdict}{by}")
+
+    def _counts(self, outcome: Outcome) -> bool:
+        """Whether no test was left out whose absence may have made it end like this."""
+        if outcome.confirmed is None or outcome.verdict is Verdict.SURVIVED:
+            return True
+        baseline, trial = self._campaign.baseline, (outcome.round, self._mutants[outcome.mutant])
+        first = takewhile(set(baseline.tests_reaching(*trial)).__contains__, baseline.tests_judging(*trial))
+        return outcome.verdict is Verdict.REFUSED and outcome.test in list(first)
 
 
 def _refused(trials: Sequence[Trial], left: Remainder, engine: str) -> Iterator[Outcome]:
