@@ -32,8 +32,10 @@ class Campaign:
         executor: runs tasks.
         progress: is told what is going on.
         evidence: what is recorded; None if nothing is.
-        proven: controls that have ended as they must, so that they need not be run again.
+        proven: controls that have ended as they must, and the ways into the program that they have proven of
+            which engine: they need not be run again.
         is_short: whether mutants are run without tests that do not reach them, see ``engines.confirmation``.
+        again: outcomes that were found so, and are to be found with the whole suite before they count.
         sources: names the sites that workers report.
     """
 
@@ -44,6 +46,7 @@ class Campaign:
     evidence: Evidence | None = None
     proven: set[object] = field(default_factory=set)
     is_short: bool = False
+    again: list[Outcome] = field(default_factory=list)
     sources: Sources = field(init=False)
 
     def __post_init__(self) -> None:

@@ -71,21 +71,20 @@ def run_trials(
     trials: Sequence[Trial],
     sink: Sink,
     found: Callable[[Outcome], object] | None = None,
-    *,
-    is_confirmation: bool = False,
+    let_through: Collection[tuple[str, int]] = (),
 ) -> None:
     """Run these mutants in these rounds, with their controls; outcomes are in the journal within a second.
 
-    What ends in a way that counts with the whole suite only is run with that as well, before it is told.
+    What ends in a way that counts with the whole suite only goes to ``campaign.again`` instead.
 
     Args:
         found: told each outcome. Nothing else keeps them: a campaign may have a million.
-        is_confirmation: whether the mutants were let through without the tests that do not reach them.
+        let_through: those that were let through without the tests that do not reach them.
 
     Raises ControlError for a control that ends wrongly.
     """
     left, trials = Remainder(), list(trials)
-    report = _Report(campaign, sink, {mutant.id: mutant for mutant, _ in trials}, found, is_confirmation)
+    report = _Report(campaign, sink, {mutant.id: mutant for mutant, _ in trials}, found, let_through)
     for engine in engines_of(campaign.request):
         if not trials:
             break
@@ -95,8 +94,6 @@ def run_trials(
         trials = left.all
     for outcome in _refused(trials, left, campaign.request.engine):
         report.take(outcome)
-    if report.again:
-        run_trials(campaign.whole, report.again, sink, found)
 
 
 def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Remainder]:
@@ -115,11 +112,7 @@ def try_controls(campaign: Campaign, mutants: Sequence[Mutant]) -> tuple[int, Re
 
 
 class _Report:
-    """Outcomes and controls on their way to the journal and the screen.
-
-    Attributes:
-        again: what is to be run with the whole suite before anything is said.
-    """
+    """Outcomes and controls on their way to the journal and the screen."""
 
     def __init__(
         self,
@@ -127,25 +120,27 @@ class _Report:
         sink: Sink,
         mutants: dict[str, Mutant],
         found: Callable[[Outcome], object] | None,
-        is_confirmation: bool,
+        let_through: Collection[tuple[str, int]],
     ) -> None:
         self._campaign, self._sink, self._mutants, self._found = campaign, sink, mutants, found
-        self._is_confirmation = is_confirmation
-        self.again: list[Trial] = []
+        self._let_through = let_through
 
     def take(self, found: Outcome | ControlEnd) -> None:
         if isinstance(found, ControlEnd):
             self._sink.journal.add_control(found.test_file, found.control, found.ok, found.detail)
             return
+        number = self._mutants[found.mutant].number
         if not self._counts(found):
-            self.again.append((self._mutants[found.mutant], found.round))
+            self._campaign.again.append(found)
+            told = f"{found.verdict}, which the whole suite has yet to say"
+            self._campaign.progress.advance(f"#{number} round {found.round + 1}: {told}")
             return
-        found = replace(found, confirmed=True) if self._is_confirmation else found
+        if (found.mutant, found.round) in self._let_through:
+            found = replace(found, confirmed=True)
         self._sink.add_outcome(found)
         if self._found is not None:
             self._found(found)
         by = f" by {found.by}" if found.by is not None else ""
-        number = self._mutants[found.mutant].number
         self._campaign.progress.advance(f"#{number} round {found.round + 1}: {found.verdict}{by}")
 
     def _counts(self, outcome: Outcome) -> bool:

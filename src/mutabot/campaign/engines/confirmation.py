@@ -9,7 +9,7 @@ all are run.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import accumulate
 
@@ -17,7 +17,7 @@ from mutabot.border.codec import from_data, to_data
 from mutabot.campaign.campaign import Campaign, Sink
 from mutabot.campaign.faults.demanded import apart
 from mutabot.journal.journal import Journal
-from mutabot.journal.records import CONFIRMATION, Confirmation, is_wrong, run_short
+from mutabot.journal.records import CONFIRMATION, LET_THROUGH, Confirmation, is_wrong, run_short
 from mutabot.model import Mutant, Outcome
 
 from .choice import first_engine, repetitions_for, run_trials
@@ -59,61 +59,68 @@ def decide(
 def confirm(
     campaign: Campaign, mutants: Sequence[Mutant], sink: Sink, done: Collection[tuple[str, int]] = ()
 ) -> None:
-    """Run the whole suite for a sample of what was let through without some of it, and for all if need be.
+    """Run with the whole suite what counts with that only, and a sample of what was let through without it.
 
-    ``done`` are the ids and rounds of outcomes that were known before this campaign.
+    If it notices one of these, all of them are run. ``done`` are the ids and rounds of outcomes that were
+    known before this campaign.
 
     Raises ControlError for a control that ends wrongly.
     """
     by_id = {mutant.id: mutant for mutant in mutants}
     found = [one for one in sink.journal.outcomes() if one.mutant in by_id]
     drawn = run_short(found, campaign.request.seed)
-    is_open = [one for one in drawn if not one.confirmed]
-    if not is_open:
-        return
-    spent = _fixed(campaign) + sum(one.wall for one in found if (one.mutant, one.round) not in done)
-    due = is_open if any(map(is_wrong, drawn)) else _affordable(campaign, by_id, drawn, spent)
-    campaign.progress.note(
-        f"{len(is_open)} mutants were let through without tests that do not reach them; {len(due)} of these "
-        "are run with the whole suite as well"
-    )
-    wrong = _run(campaign, by_id, due, sink)
-    if wrong and len(due) < len(is_open):
+    left = [one for one in drawn if not one.confirmed]
+    again = list(campaign.again)
+    campaign.again.clear()
+    seconds = _fixed(campaign) + sum(_cost(campaign, by_id[one.mutant], one) for one in again)
+    seconds += sum(one.wall for one in [*found, *again] if (one.mutant, one.round) not in done)
+    due = left if any(map(is_wrong, drawn)) else list(_affordable(campaign, by_id, left, seconds))
+    if left:
+        campaign.progress.note(
+            f"{len(left)} mutants were let through without tests that do not reach them; {len(due)} of these "
+            "are run with the whole suite as well"
+        )
+    wrong = _run(campaign, by_id, again, due, sink)
+    if wrong and len(due) < len(left):
         campaign.progress.note(
             f"{wrong} of them ended otherwise with the whole suite, so all are run with it"
         )
-        _run(campaign, by_id, is_open[len(due) :], sink)
+        _run(campaign, by_id, (), left[len(due) :], sink)
 
 
-def _run(campaign: Campaign, by_id: dict[str, Mutant], due: Iterable[Outcome], sink: Sink) -> int:
-    """Run these with the whole suite; returns how many it notices that were let through before."""
+def _run(
+    campaign: Campaign, by_id: dict[str, Mutant], again: Iterable[Outcome], due: Iterable[Outcome], sink: Sink
+) -> int:
+    """Run these with the whole suite; returns how many of the second it notices."""
     ended: list[Outcome] = []
-    trials = [(by_id[one.mutant], one.round) for one in due]
-    run_trials(campaign.whole, trials, sink, ended.append, is_confirmation=True)
+    trials = [(by_id[one.mutant], one.round) for one in (*again, *due)]
+    run_trials(campaign.whole, trials, sink, ended.append, {(one.mutant, one.round) for one in due})
     return sum(map(is_wrong, ended))
 
 
 def _affordable(
-    campaign: Campaign, by_id: dict[str, Mutant], drawn: Iterable[Outcome], seconds: float
-) -> list[Outcome]:
-    """So many of those that are open, from the first that was drawn on, as take so many seconds."""
-    baseline = campaign.baseline
+    campaign: Campaign, by_id: dict[str, Mutant], left: Iterable[Outcome], seconds: float
+) -> Iterator[Outcome]:
+    """The first of these that take so many seconds, and one at least."""
     rounds: set[int] = set()
-    found: list[Outcome] = []
-    for one in drawn:
-        if one.confirmed:
-            continue
-        suite = one.round, baseline.suite(one.round)
-        if one.engine == REPLAY:
-            seconds -= _seconds(campaign, [suite]) + baseline.startup
-        else:
-            seconds -= _seconds(campaign, [(one.round, baseline.tests_judging(one.round, by_id[one.mutant]))])
-            seconds -= _seconds(campaign, [suite]) if one.round not in rounds else 0.0
-            rounds.add(one.round)
-        if seconds < 0 and found:
-            return found
-        found.append(one)
-    return found
+    for number, one in enumerate(left):
+        seconds -= _cost(campaign, by_id[one.mutant], one)
+        if one.engine != REPLAY and one.round not in rounds:  # the original runs beside them
+            seconds -= _seconds(campaign, [(one.round, campaign.baseline.suite(one.round))])
+        rounds.add(one.round)
+        if seconds < 0 and number:
+            return
+        yield one
+
+
+def _cost(campaign: Campaign, mutant: Mutant, outcome: Outcome) -> float:
+    """Seconds that a mutant takes with the whole suite, up to the test that has decided, if one has."""
+    baseline, round = campaign.baseline, outcome.round
+    is_fresh = outcome.engine == REPLAY
+    tests = baseline.suite(round) if is_fresh else baseline.tests_judging(round, mutant)
+    last = tests.index(outcome.test) + 1 if outcome.test in tests else len(tests)
+    last = len(tests) if outcome.verdict in LET_THROUGH else last
+    return _seconds(campaign, [(round, tests[:last])]) + (baseline.startup if is_fresh else 0.0)
 
 
 def _fixed(campaign: Campaign) -> float:
