@@ -62,6 +62,7 @@ class Run:
         mutant: the mutant that it is; None for the original.
         before: how often the suite, or this mutant, was run before in this round.
         is_branch: whether it is a fork of the original.
+        is_short: whether tests are left out.
     """
 
     test: str
@@ -70,6 +71,7 @@ class Run:
     mutant: Mutant | None
     before: int
     is_branch: bool = False
+    is_short: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,8 +164,11 @@ class Scripted:
             yield TextsSeen(
                 tuple(sorted(files)), tuple(Sighting(one.number, 1, ("number",)) for one in places)
             )
+        left_out = job.left_out(job.mutant.id) if job.mutant is not None else frozenset()
         for test in tests:
-            run = Run(test, tests, job.round, job.mutant, before)
+            if test in left_out:
+                continue
+            run = Run(test, tests, job.round, job.mutant, before, is_short=bool(left_out))
             yield TestStart(test)
             reached = tuple(
                 one.number for one in places if one.span.function in self.suite.tests[test].functions
@@ -195,10 +200,13 @@ class Scripted:
         assert job.branching is not None
         for mutant in job.branching.mutants:
             is_due = mutant.id in forked or self.suite.tests[trunk.test].hits(mutant)
-            if mutant.id not in found or not is_due:
+            left_out = job.left_out(mutant.id)
+            if mutant.id not in found or not is_due or trunk.test in left_out:
                 continue
             forked.setdefault(mutant.id, 0)
-            run = replace(trunk, mutant=mutant, before=found[mutant.id], is_branch=True)
+            run = replace(
+                trunk, mutant=mutant, before=found[mutant.id], is_branch=True, is_short=bool(left_out)
+            )
             end = self.script.end(run)
             if isinstance(end, Died):
                 yield BranchDied(mutant.id, run.test, end.exit_code, end.overdue, end.where, acted=True)

@@ -35,6 +35,7 @@ from mutabot.journal.records import (
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
 from mutabot.model.mutant import fits
 
+from .confirmation import Confirmed
 from .divergence import explain, is_indistinguishable, quantity_of, rank, worst_of
 from .score import Group, KillRate, RoundScores, groups_of
 
@@ -197,6 +198,12 @@ class Results:
     def planned(self) -> int:
         """Number of (mutant, round) pairs the campaign was to run, without graded mutants."""
         return len(self.mutants) * self.rounds
+
+    @property
+    def confirmation(self) -> Confirmed | None:
+        """What the whole suite says of mutants that were run without some tests; None if all were run."""
+        outcomes = (one for result in self.everything for one in result.outcomes)
+        return Confirmed.of(outcomes, self.meta.get("seed") or 0)
 
     @property
     def is_incomplete(self) -> bool:

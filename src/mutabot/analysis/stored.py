@@ -322,6 +322,7 @@ COLUMNS: tuple[Column, ...] = (
     Column("commands", int, "commands before the deciding test ended", lambda m, o: o.commands),
     Column("engine", str, "engine that ran it", lambda m, o: o.engine),
     Column("repeats", int, "how often it was run once more, and ended the same", lambda m, o: o.repeats),
+    Column("confirmed", bool, "whether the whole suite says so, too", lambda m, o: o.confirmed),
     Column("magnitude", float, "of a graded mutant: how big its fault is", lambda m, o: m.mutant.magnitude),
     Column("magnitude_unit", str, "unit of `magnitude`", lambda m, o: m.mutant.unit),
     Column(

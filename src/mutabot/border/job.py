@@ -119,6 +119,8 @@ class Job:
         seed: the campaign's seed.
         round: 0-based round.
         tests: node ids to run, in this order; None for all that the project's own arguments select.
+        reaching: by the ids of mutants, the numbers of the tests that reach them: after the first of these,
+            all others are left out. Of mutants that are missing here, none is.
         mutant: the fault to plant; None for the original.
         record: whether to report traces and values.
         stop_at_kill: whether to stop after the first test that fails for another reason than a refusal.
@@ -150,6 +152,7 @@ class Job:
     seed: int
     round: int
     tests: tuple[str, ...] | None = None
+    reaching: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     mutant: Mutant | None = None
     record: bool = False
     stop_at_kill: bool = False
@@ -169,6 +172,13 @@ class Job:
     extensions: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     faults: Mapping[str, InProcess] = field(default_factory=dict)
     key: str = ""
+
+    def left_out(self, mutant: str) -> frozenset[str]:
+        """The tests that are not run as this mutant once one has reached it."""
+        numbers = self.reaching.get(mutant)
+        if not numbers or self.tests is None:
+            return frozenset()
+        return frozenset(self.tests[min(numbers) :]).difference(self.tests[number] for number in numbers)
 
 
 def job_file(home: str | os.PathLike[str]) -> Path:

@@ -6,15 +6,16 @@ the journal, each with the key of what it depends on.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.baseline.site_names import Sources
 from mutabot.campaign.workers.task import Executor
+from mutabot.families import CONTROL
 from mutabot.frozen import frozen
 from mutabot.journal.journal import Journal
-from mutabot.model import Outcome
+from mutabot.model import Mutant, Outcome
 
 from .evidence import Evidence
 from .request import Progress, Request
@@ -31,7 +32,10 @@ class Campaign:
         executor: runs tasks.
         progress: is told what is going on.
         evidence: what is recorded; None if nothing is.
-        proven: controls that have ended as they must, so that they need not be run again.
+        proven: controls that have ended as they must, and the ways into the program that they have proven of
+            which engine: they need not be run again.
+        is_short: whether mutants are run without tests that do not reach them, see ``engines.confirmation``.
+        again: outcomes that were found so, and are to be found with the whole suite before they count.
         sources: names the sites that workers report.
     """
 
@@ -41,10 +45,26 @@ class Campaign:
     progress: Progress
     evidence: Evidence | None = None
     proven: set[object] = field(default_factory=set)
+    is_short: bool = False
+    again: list[Outcome] = field(default_factory=list)
     sources: Sources = field(init=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "sources", Sources(self.request.root))
+
+    @property
+    def whole(self) -> Campaign:
+        """The same, in which every mutant is run with the whole suite."""
+        return replace(self, is_short=False)
+
+    def reaching(self, mutants: Iterable[Mutant], round: int) -> dict[str, tuple[int, ...]]:
+        """Which tests of the suite are run as which mutant, see ``Job.reaching``."""
+        numbers = {test: number for number, test in enumerate(self.baseline.suite(round))}
+        return {
+            mutant.id: tuple(sorted(numbers[test] for test in self.baseline.tests_reaching(round, mutant)))
+            for mutant in (mutants if self.is_short else ())
+            if mutant.family != CONTROL
+        }
 
 
 def _no_key(outcome: Outcome) -> str:

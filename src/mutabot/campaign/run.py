@@ -16,6 +16,7 @@ from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.budget.budget import OUT_OF_TIME, run_within
 from mutabot.campaign.engines.choice import first_engine, run_mutants
+from mutabot.campaign.engines.confirmation import confirm, decide, earlier_decision
 from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
 from mutabot.campaign.faults.demanded import apart, demanded_of
@@ -98,7 +99,7 @@ def _run(
     with OpenedFiles(request.root, before.folders) as watch:
         campaign, results = begin(request, opened, progress, evidence)
     _note_lacking(request, watch.opened, progress)
-    baseline = campaign.baseline
+    baseline, decided = campaign.baseline, earlier_decision(journal)
     whole = plan_of(request, baseline)
     plan = selected(campaign, whole)
     part = part_of(plan, request.shard, baseline)
@@ -117,6 +118,7 @@ def _run(
         progress.note(f"{request.shard.words}: {len(part.mutants)} of {len(plan.mutants)} mutants")
     _note_unstable(baseline, progress)
     refuse_flaky(request, baseline)
+    campaign = decide(campaign, plan.mutants, journal, decided)
     after = Snapshot.take(request.root, before)
     edited = after.edited_programs(before)
     if edited:
@@ -183,7 +185,7 @@ def _run_all(campaign: Campaign, plan: Plan, sink: Sink, found: Reused, started:
         _run_mutants(campaign, plan, sink, found.done)
         is_whole = True
     if is_whole:
-        look_again(campaign, plan.mutants, sink, request.clock() - started)
+        look_again(campaign.whole, plan.mutants, sink, request.clock() - started)
     return is_whole
 
 
@@ -191,9 +193,10 @@ def _run_mutants(campaign: Campaign, plan: Plan, sink: Sink, done: Collection[tu
     """Every mutant in all rounds, but of ladders what it takes to find their thresholds."""
     alone, ladders = apart(plan.mutants)
     run_mutants(campaign, alone, sink, done)
+    confirm(campaign, alone, sink, done)
     request = campaign.request
     always = demanded_of(ladders, request.configuration.demands, request.vocabulary)
-    run_ladders(campaign, ladders, sink, done, always)
+    run_ladders(campaign.whole, ladders, sink, done, always)
 
 
 def _tidy(request: Request, journal: Journal, whole: Plan) -> None:

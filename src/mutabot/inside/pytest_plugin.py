@@ -87,6 +87,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if _conductor is not None:
         config.pluginmanager.register(_conductor, "mutabot-conductor")
         config.pluginmanager.register(_conductor.running, "mutabot-running")
+        config.pluginmanager.register(_conductor.running.branch.left_out, "mutabot-left-out")
     if _plain_round is not None:
         config.pluginmanager.register(_plain_round, "mutabot-round")
 

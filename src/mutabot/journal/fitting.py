@@ -15,6 +15,7 @@ from mutabot.model import By, LeftOut, Mutant, Outcome, Verdict, Vocabulary
 from .records import (
     ALTERED,
     BUDGET,
+    CONFIRMATION,
     DRAWING,
     DRAWS,
     FLAKY,
@@ -27,6 +28,7 @@ from .records import (
     VERIFICATION,
     BaselineTest,
     Budgeted,
+    Confirmation,
     ControlEnd,
     Drawing,
     Flaky,
@@ -67,6 +69,7 @@ _FACTS: Mapping[str, Any] = {
     VERIFICATION: Verification,
     FLAKY: Flaky,
     REPEATS: Repeats,
+    CONFIRMATION: Confirmation,
     SINCE: Since,
     BUDGET: Budgeted,
     SHARD: ShardOf,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import field
+from hashlib import blake2b
 
 from mutabot.border.events import TestEnd
 from mutabot.frozen import frozen
@@ -13,7 +14,7 @@ from mutabot.model.outcome import same_end
 #: keys of the journal's meta
 DRAWING = "drawing"
 VERIFICATION, FLAKY = "verification", "flaky"
-REPEATS = "repeats"
+REPEATS, CONFIRMATION = "repeats", "confirmation"
 SINCE, BUDGET = "since", "budget"
 SHARD = "shard"
 #: what is to be known of the machines that the campaign ran on, a line each
@@ -262,6 +263,42 @@ class Flaky:
         more = f"\n  … and {len(self.tests) - 10} more" if len(self.tests) > 10 else ""
         counts = f"{len(self.tests)} of {self.known} tests cannot be relied on ({self.share:.0%})"
         return f"{counts}; the limit is {limit:.0%} (unstable_limit):{shown}{more}"
+
+
+@frozen
+class Confirmation:
+    """Whether mutants were run at first without tests that do not reach them, and why.
+
+    Attributes:
+        is_short: whether they were.
+        rest: seconds that these tests take, if all mutants survive.
+        without: seconds that the campaign takes without them.
+    """
+
+    is_short: bool
+    rest: float
+    without: float
+
+
+def run_short(outcomes: Iterable[Outcome], seed: int) -> list[Outcome]:
+    """Those that were found without some tests, or were before the whole suite was asked, in random order.
+
+    The order depends on the seed and each outcome's mutant and round only, so the first of them are a random
+    sample, whatever becomes of the others.
+    """
+    found = (one for one in outcomes if one.confirmed is not None and one.verdict not in _NOTHING)
+    return sorted(found, key=lambda one: blake2b(f"{seed}:{one.round}:{one.mutant}".encode()).digest())
+
+
+#: outcomes that say nothing about what the whole suite does
+_NOTHING = frozenset({Verdict.ERROR, Verdict.UNSTABLE})
+#: verdicts of what is let through without the tests that do not reach it
+LET_THROUGH = frozenset({Verdict.SURVIVED, Verdict.REFUSED})
+
+
+def is_wrong(outcome: Outcome) -> bool:
+    """Whether the whole suite has noticed a mutant that was let through without some tests."""
+    return bool(outcome.confirmed) and outcome.verdict not in LET_THROUGH | _NOTHING
 
 
 @frozen

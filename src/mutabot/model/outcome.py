@@ -303,6 +303,8 @@ class Outcome:
         diverged: how the recordings of its tests differ from the original's, the worst first; empty if they
             do not, or if there are none.
         figures: of a survivor, figures of merit that differ from the original's by more than their tolerance.
+        confirmed: whether the whole suite says so too, of what was found without tests that do not reach the
+            mutant; None if none was left out, or not before the test that decided.
     """
 
     mutant: str
@@ -338,6 +340,7 @@ class Outcome:
     looked: tuple[Looked, ...] = ()
     diverged: tuple[Diverged, ...] = ()
     figures: tuple[Figure, ...] = ()
+    confirmed: bool | None = None
 
     @property
     def improvement(self) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from mutabot.analysis.chance import Estimate, false_kills, false_survivors
+from mutabot.analysis.confirmation import Confirmed
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import RoundScores, Score
 from mutabot.analysis.statistics import Interval
@@ -15,6 +16,7 @@ from mutabot.border.codec import to_data
 from mutabot.journal.records import (
     ALTERED,
     BUDGET,
+    CONFIRMATION,
     DRAWING,
     DRAWS,
     FLAKY,
@@ -36,7 +38,7 @@ FORMAT = 1
 #: facts of a campaign that are not repeated as they are in the journal
 _ELSEWHERE = {
     "vocabulary", VERIFICATION, FLAKY, DRAWING, REPEATS, OPERATORS, REACHING, DRAWS,
-    SINCE, BUDGET, SHARD, ALTERED,
+    SINCE, BUDGET, SHARD, ALTERED, CONFIRMATION,
 }  # fmt: skip
 
 
@@ -82,6 +84,7 @@ def results_data(results: Results) -> dict[str, Any]:
         "flaky": list(results.flaky.tests),
         "verification": _verification(results.verification),
         "repeats": repeats_data(results.repeats),
+        "confirmation": _confirmation(results.confirmation),
         "shard": facts(results.shard, "number of mutants") if results.shard is not None else None,
         **facts(results, "set_aside altered"),
     }
@@ -179,6 +182,12 @@ def _verification(found: Verification | None) -> dict[str, Any] | None:
     }
 
 
+def _confirmation(found: Confirmed | None) -> dict[str, Any] | None:
+    return (
+        facts(found, "outcomes refused confirmed wrong left most level text") if found is not None else None
+    )
+
+
 def repeats_data(repeats: Repeats) -> dict[str, Any]:
     """What was run once more, and what that says about the others."""
     stratum = "outcomes repeated changed"
@@ -204,7 +213,7 @@ def _round_data(number: int, outcome: Outcome | None) -> dict[str, Any]:
         **facts(outcome, "verdict by test exception message place hits acted away"),
         "example": list(outcome.example) if outcome.example is not None else None,
         **facts(outcome, "tests wall simulated indistinguishable distance divergence way gaps compared"),
-        **facts(outcome, "engine stuck repeats beside"),
+        **facts(outcome, "engine stuck repeats beside confirmed"),
         "figures": [{**to_data(one), "is_better": one.is_better} for one in outcome.figures],
         "looked": [to_data(one) for one in outcome.looked],
         "diverged": [{**to_data(one), "worst": one.worst} for one in outcome.diverged],

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from mutabot.border.codec import to_data
 from mutabot.campaign.campaign import Campaign, Sink
 from mutabot.campaign.engines.choice import run_trials
+from mutabot.campaign.engines.confirmation import confirm
 from mutabot.campaign.engines.engine import Trial
 from mutabot.campaign.faults.demanded import apart
 from mutabot.campaign.plan.plan import shuffled
@@ -202,17 +203,22 @@ def run_within(
         budgeted = replace(budgeted, run=run, cut_off=told - run, is_whole=is_whole)
         sink.journal.set_meta(BUDGET, to_data(budgeted))
 
+    def ended(run: int) -> None:
+        note(run - len(campaign.again))
+
     note(0)
     try:
         with limited(until, request.clock):
             is_whole = run_in_batches(
-                batches, trials, lambda batch: run_trials(campaign, batch, sink, take), note
+                batches, trials, lambda batch: run_trials(campaign, batch, sink, take), ended
             )
-            if is_whole and ladders:
-                run_ladders(campaign, ladders, sink, found.done)
+            if is_whole:
+                confirm(campaign, alone, sink, found.done)
+                run_ladders(campaign.whole, ladders, sink, found.done)
     except OutOfTimeError:
         is_whole = False
-    note(budgeted.run, is_whole)
+    told = len(trials) if is_whole else told
+    note(told if is_whole else budgeted.run, is_whole)
     if not is_whole:
         run = f"{budgeted.run + budgeted.cut_off} of {budgeted.planned} outcomes were found"
         progress.note(f"the budget is spent: {run}; `mutabot run` goes on with what is left")

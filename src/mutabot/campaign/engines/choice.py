@@ -5,10 +5,12 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
 from functools import cache
+from itertools import takewhile
 
 from mutabot.campaign.campaign import Campaign, Sink
-from mutabot.campaign.request import Progress, Request
+from mutabot.campaign.request import Request
 from mutabot.errors import UsageError, unknown_name_text
 from mutabot.journal.records import ControlEnd
 from mutabot.model import Mutant, Outcome, Verdict
@@ -69,18 +71,23 @@ def run_trials(
     trials: Sequence[Trial],
     sink: Sink,
     found: Callable[[Outcome], object] | None = None,
+    let_through: Collection[tuple[str, int]] = (),
 ) -> None:
     """Run these mutants in these rounds, with their controls; outcomes are in the journal within a second.
 
-    ``found`` is told each outcome. Nothing else keeps them: a campaign may have a million.
+    What ends in a way that counts with the whole suite only goes to ``campaign.again`` instead.
+
+    Args:
+        found: told each outcome. Nothing else keeps them: a campaign may have a million.
+        let_through: those that were let through without the tests that do not reach them.
 
     Raises ControlError for a control that ends wrongly.
     """
     left, trials = Remainder(), list(trials)
-    report = _Report(campaign.progress, sink, {mutant.id: mutant.number for mutant, _ in trials}, found)
+    report = _Report(campaign, sink, {mutant.id: mutant for mutant, _ in trials}, found, let_through)
     for engine in engines_of(campaign.request):
         if not trials:
-            return
+            break
         left = Remainder()
         for one in engine.run(campaign, trials, left):
             report.take(one)
@@ -109,23 +116,40 @@ class _Report:
 
     def __init__(
         self,
-        progress: Progress,
+        campaign: Campaign,
         sink: Sink,
-        numbers: dict[str, int],
+        mutants: dict[str, Mutant],
         found: Callable[[Outcome], object] | None,
+        let_through: Collection[tuple[str, int]],
     ) -> None:
-        self._progress, self._sink, self._numbers, self._found = progress, sink, numbers, found
+        self._campaign, self._sink, self._mutants, self._found = campaign, sink, mutants, found
+        self._let_through = let_through
 
     def take(self, found: Outcome | ControlEnd) -> None:
         if isinstance(found, ControlEnd):
             self._sink.journal.add_control(found.test_file, found.control, found.ok, found.detail)
             return
+        number = self._mutants[found.mutant].number
+        if not self._counts(found):
+            self._campaign.again.append(found)
+            told = f"{found.verdict}, which the whole suite has yet to say"
+            self._campaign.progress.advance(f"#{number} round {found.round + 1}: {told}")
+            return
+        if (found.mutant, found.round) in self._let_through:
+            found = replace(found, confirmed=True)
         self._sink.add_outcome(found)
         if self._found is not None:
             self._found(found)
         by = f" by {found.by}" if found.by is not None else ""
-        number = self._numbers[found.mutant]
-        self._progress.advance(f"#{number} round {found.round + 1}: {found.verdict}{by}")
+        self._campaign.progress.advance(f"#{number} round {found.round + 1}: {found.verdict}{by}")
+
+    def _counts(self, outcome: Outcome) -> bool:
+        """Whether no test was left out whose absence may have made it end like this."""
+        if outcome.confirmed is None or outcome.verdict is Verdict.SURVIVED:
+            return True
+        baseline, trial = self._campaign.baseline, (outcome.round, self._mutants[outcome.mutant])
+        first = takewhile(set(baseline.tests_reaching(*trial)).__contains__, baseline.tests_judging(*trial))
+        return outcome.verdict is Verdict.REFUSED and outcome.test in list(first)
 
 
 def _refused(trials: Sequence[Trial], left: Remainder, engine: str) -> Iterator[Outcome]:

@@ -26,7 +26,7 @@ from mutabot.model import Mutant, Outcome, Verdict
 from mutabot.model.mutant import Place
 from mutabot.operators.command import Fatal, Identity
 
-from .fresh import run_of, task
+from .fresh import REPLAY, run_of, task
 from .judge import judge
 
 IDENTITY, FATAL = Identity.name, Fatal.name
@@ -51,6 +51,11 @@ class Control:
     round: int
     tests: tuple[str, ...]
     subject: str
+
+    @property
+    def way(self) -> tuple[str, str, int]:
+        """What it proves of an engine, wherever it acts."""
+        return self.name, self.provider, self.round
 
     @property
     def mutant(self) -> Mutant:
@@ -97,7 +102,8 @@ def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[Cont
     Raises ControlError for a control that ends wrongly, after it was yielded.
     """
     progress = campaign.progress
-    controls = [one for one in controls_of(campaign.baseline, mutants) if one not in campaign.proven]
+    found = controls_of(campaign.baseline, mutants)
+    controls = [one for one in found if campaign.proven.isdisjoint([one, (REPLAY, one.way)])]
     if not controls:
         return
     progress.stage("controls", len(controls))
@@ -107,7 +113,7 @@ def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[Cont
         yield end
         if not end.ok:
             raise control.error(end.detail)
-        campaign.proven.add(control)
+        campaign.proven.update([control, (REPLAY, control.way)])
 
 
 def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:

@@ -131,6 +131,7 @@ def task(
     job = request.job(
         round,
         tests=tests,
+        reaching=campaign.reaching([mutant], round),
         mutant=mutant,
         record=True,
         stop_at_kill=stop and not request.every_test,
@@ -170,6 +171,7 @@ def run_of(result: Result, sources: Sources) -> Run:
         mutant=mutant,
         round=round,
         tests=result.task.job.tests or (),
+        left_out=result.task.job.left_out(mutant.id),
         ends=result.ends,
         observations={end.test: observation(end, places) for end in result.ends if end.outcome != "failed"},
         death=_death(result),
@@ -194,7 +196,9 @@ def _death(result: Result) -> Death | None:
     elif result.end.errors:
         text = "; ".join(result.end.errors)
     else:
-        text = not_run(result.task.job.tests or (), result.ends, result.exit_code)
+        job = result.task.job
+        left_out = job.left_out(job.mutant.id) if job.mutant is not None else frozenset()
+        text = not_run({*(job.tests or ())} - left_out, result.ends, result.exit_code)
     if text is None:
         return None
     return Death(

@@ -70,6 +70,7 @@ class Run:
         engine: ``replay`` or ``branch``.
         exit_code: how the process ended after the whole session; None if it did not get that far.
         problem: why nothing is known of the mutant, or None: it was not there, or reports cannot be trusted.
+        left_out: tests that it was to leave out, unless the original has run them for it.
     """
 
     mutant: Mutant
@@ -83,6 +84,7 @@ class Run:
     engine: str = "replay"
     exit_code: int | None = None
     problem: str | None = None
+    left_out: frozenset[str] = frozenset()
 
     @property
     def hindered(self) -> str | None:
@@ -166,7 +168,20 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
         stuck=run.death.where if run.death is not None else None,
         looked=_looked(run, baseline) if verdict is Verdict.SURVIVED else (),
     )
+    outcome = replace(outcome, confirmed=False if _lacks_tests(run, outcome) else None)
     return _compared(campaign, outcome, run) if verdict is Verdict.SURVIVED else outcome
+
+
+def _lacks_tests(run: Run, outcome: Outcome) -> bool:
+    """Whether tests were left out that might have decided: before the one that did, or any if none did.
+
+    What changes nothing is the original in these as well; a refusal leaves it to other tests to decide.
+    """
+    if not run.left_out or outcome.verdict is Verdict.NO_EFFECT:
+        return False
+    is_decided = outcome.test in run.tests and outcome.verdict is not Verdict.REFUSED
+    before = run.tests[: run.tests.index(outcome.test)] if is_decided else run.tests
+    return not run.left_out.intersection(before) <= {end.test for end in run.ends}
 
 
 def _looked(run: Run, baseline: Baseline) -> tuple[Looked, ...]:

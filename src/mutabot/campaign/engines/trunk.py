@@ -161,6 +161,7 @@ class _Trunk:
         self._undiverged: dict[str, Mapping[str, int]] = {}
         self._trunk_places: dict[int, Place] = {}
         self._doubted: list[Mutant] = []
+        self._left_out: Mapping[str, frozenset[str]] = {}
 
     def add(self, mutant: Mutant) -> None:
         """A mutant to branch."""
@@ -219,6 +220,7 @@ class _Trunk:
         job = request.job(
             round,
             tests=in_order,
+            reaching=self._campaign.reaching(mutants, round),
             record=True,
             budgets=budgets,
             moments=moments_in(baseline.strides, round),
@@ -227,6 +229,7 @@ class _Trunk:
             branching=branching,
             instrumentation=text,
         )
+        self._left_out = {mutant.id: job.left_out(mutant.id) for mutant in mutants}
         patience = 2.0 * sum(walls.values()) + _PATIENCE  # it waits for branches that go to the end
         return Task(key, job, {}, patience, patience, is_trunk=True, may_share=True, alone=branching.serial)
 
@@ -376,9 +379,10 @@ class _Trunk:
     def _judged(self, branch: _Branch, ends: Mapping[str, TestEnd]) -> Iterator[Outcome]:
         run = Run(branch.mutant, self._round, self._tests, engine=self._engine, shared=branch.shared)
         run.ends = [ends[test] for test in self._tests if test in ends]
+        run.left_out = self._left_out[branch.mutant.id]
         run.death, run.exit_code = branch.death, branch.exit_code
         if run.exit_code is not None:
-            text = not_run(self._tests, run.ends, run.exit_code)
+            text = not_run({*self._tests} - run.left_out, run.ends, run.exit_code)
             run.death = Death(text) if text is not None else run.death
         run.observations = branch.observations
         run.wall = sum(end.wall for end in run.ends)

@@ -22,6 +22,7 @@ from mutabot.inside.processes.members import Members
 from mutabot.inside.session import Session
 
 from . import classify
+from .left_out import LeftOut
 
 _PROCESSES = {"subprocess.Popen", "os.posix_spawn", "os.system", "os.fork", "os.forkpty", "os.exec"}
 
@@ -36,11 +37,13 @@ class BranchOfSession:
     Attributes:
         item: the running test.
         members: the processes below a branch; None if it has started none.
+        left_out: the tests that it does not run.
     """
 
     def __init__(self, session: Session, start_clocks: Callable[[], None]) -> None:
         self.item: pytest.Item | None = None
         self.members: Members | None = None
+        self.left_out = LeftOut()
         self._session = session
         self._start_clocks = start_clocks
         self._trunk = 0
@@ -71,6 +74,7 @@ class BranchOfSession:
     def become(self, bunch: Bunch, folder: str) -> None:
         """Go on from here as these mutants; ``folder`` is this process's own."""
         self._bunch, self._trunk, self._folder = bunch, os.getpid(), folder  # from which others may part
+        self.left_out.become(self._session.job, [mutant.id for mutant in bunch.mutants])
         cache = getattr(self.item.config, "cache", None) if self.item is not None else None
         if cache is not None:  # what one process keeps there, others must not find
             cache._cachedir = Path(folder, "cache")
@@ -138,7 +142,7 @@ class BranchOfSession:
         if text is not None:
             text = text.only(tuple(bunch.choices[bunch.first.id]))
         job = replace(job, mutant=bunch.first, branching=None, instrumentation=text)
-        write_job(self._folder, job)
+        write_job(self._folder, replace(job, reaching={}))
         session.job = replace(job, branching=session.job.branching)
         members = Members(self._folder, session, has_acted=self._has_acted)
         members.start_test(session.test)

@@ -127,6 +127,8 @@ class Conductor:
         has_nodes = prepare(self.job.root, home, self.job.vocabulary)
         self.running.members = Members(home, self.session)
         watch_forks(self.running.members.folder, self.session)
+        if self.job.mutant is not None:
+            self.running.branch.left_out.become(self.job, [self.job.mutant.id])
         if self.job.branching is not None:
             preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
             self.grow(self.job.branching, home, has_nodes)

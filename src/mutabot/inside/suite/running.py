@@ -79,6 +79,8 @@ class Running:
         self.looks.clear()
         self._logged = None
         self.branch.start_test()
+        if self.branch.left_out.is_next(node_id(item)):
+            return (yield)
         self.session.pipe.send(TestStart(node_id(item)))
         limit = watched_by_faulthandler(item)
         if limit is not None:

@@ -45,6 +45,9 @@ def _lines(material: Material) -> Iterator[str]:
         yield "No mutants are planned yet." if is_early else "No mutants were planned."
     else:
         yield from _scores(results.groups)
+    if results.confirmation is not None:
+        yield f"{results.confirmation.text}."
+        yield ""
     if material.changes is not None:
         yield from change_lines(material.changes, material.path)
     yield from _survivors(material)

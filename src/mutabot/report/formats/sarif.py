@@ -73,6 +73,8 @@ def _invocation(material: Material) -> dict[str, Any]:
     is_complete = material.campaign.is_complete
     told = f"{results.state}: {results.done} of {results.planned} outcomes are known"
     notes = [] if is_complete else [{"level": "warning", "message": {"text": _message(told)}}]
+    if results.confirmation is not None:
+        notes.append({"level": "note", "message": {"text": _message(f"{results.confirmation.text}.")}})
     return {"executionSuccessful": is_complete, "toolExecutionNotifications": notes}
 
 

@@ -74,6 +74,7 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
             "falseKills": _chance(false_kills(results.repeats)),
             "falseSurvivors": _chance(false_survivors(results.repeats)),
         },
+        "confirmed": results.confirmation.text if results.confirmation is not None else None,
         "drawing": facts(results.drawing, "sample selected") if results.drawing is not None else None,
     }
 

@@ -219,6 +219,7 @@ def _round(outcome: Outcome | None) -> dict[str, Any] | None:
         **facts(outcome, "tests wall simulated divergence gaps"),
         "compared": outcome.compared.text if outcome.compared is not None else None,
         **facts(outcome, "indistinguishable engine repeats stuck beside"),
+        "unconfirmed": outcome.confirmed is False or None,
         "kills": [[one.test, one.by.value, one.message] for one in outcome.kills[1:]],
         "diverged": [_told(to_data(one)) for one in outcome.diverged],
     }

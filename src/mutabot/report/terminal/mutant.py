@@ -335,6 +335,8 @@ def _evidence(outcome: Outcome) -> Iterator[str]:
     if outcome.compared is not None:
         equal = ": nothing differs (indistinguishable)" if outcome.indistinguishable else ""
         yield f"compared with the original: {outcome.compared.text}{equal}"
+    if outcome.confirmed is not None:
+        yield f"{'' if outcome.confirmed else 'not '}confirmed by the whole suite"
     if outcome.beside is not None:
         yield f"run alone, since beside others the wall clock had ended it: {outcome.beside}"
     yield from outcome.divergence

@@ -92,6 +92,10 @@ def trust_lines(results: Results) -> Iterator[RenderableType]:
     yield from _journal_lines(_ALTERED, results.altered)
     for remark in results.meta.get(REMARKS) or ():
         yield Text(f"\n{plain(remark)}", style="bold", overflow="fold")
+    confirmed = results.confirmation
+    if confirmed is not None:
+        style = "bold red" if confirmed.wrong else "bold"
+        yield Text(f"\n{confirmed.text}.", style=style, overflow="fold")
     checked = results.verification
     if checked is not None:
         text = f"\nVerified: {checked.agreed} of {checked.checked} outcomes end the same in fresh processes."

@@ -32,7 +32,8 @@ class _Controls:
     def of(cls, campaign: Campaign, trials: Iterable[Trial]) -> _Controls:
         """Those not proven yet."""
         found = controls_of(campaign.baseline, (mutant for mutant, _ in trials), forked=True)
-        return cls({one.mutant.id: one for one in found if one not in campaign.proven})
+        left = (one for one in found if campaign.proven.isdisjoint([one, (Branch.name, one.way)]))
+        return cls({one.mutant.id: one for one in left})
 
     @property
     def trials(self) -> list[Trial]:
@@ -67,7 +68,7 @@ class Branch:
             yield end
             if not end.ok:
                 raise control.error(end.detail)
-            campaign.proven.add(control)
+            campaign.proven.update([control, (self.name, control.way)])
         _tell(campaign, left)
         clear_up(campaign, trunks.suspects)
         left.trials = [trial for trial in left.trials if trial[0].id not in controls.by_id]

@@ -172,6 +172,7 @@
         : h("li", null, `${count(campaign.controls.length, "control")} ended as they must: one that changes nothing survives, one that breaks everything dies.`));
     }
     if (campaign.flaky.length) lines.push(h("li", { class: "bad" }, `${count(campaign.flaky.length, "test")} cannot be relied on:`, h("ul", null, campaign.flaky.map((one) => h("li", null, one)))));
+    if (campaign.confirmed) lines.push(h("li", null, `${campaign.confirmed}.`));
     const verified = campaign.verification;
     if (verified) {
       lines.push(verified.disagreements.length

@@ -1,0 +1,64 @@
+"""Every report says how many survivors the whole suite has confirmed, and of each whether it has."""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from analysis import samples
+from mutabot.analysis.results import find_mutant
+from mutabot.model import Verdict
+from mutabot.report.as_json import results_data
+from mutabot.report.html.folder import campaign_data
+from mutabot.report.html.mutant import mutant_page
+from mutabot.report.terminal.campaign import print_results
+from mutabot.report.terminal.console import make_console
+from mutabot.report.terminal.mutant import print_mutant
+from report.material import made, stored
+
+SURVIVORS = [one for one in samples.OUTCOMES if one.verdict is Verdict.SURVIVED]
+TEXT = (
+    f"0 of {len(SURVIVORS)} survivors confirmed by the whole suite; "
+    "how many of the others are wrong is not known"
+)
+
+
+def campaign(folder: Path, **changes: Any) -> Any:
+    outcomes = tuple(replace(one, **changes) if one in SURVIVORS else one for one in samples.OUTCOMES)
+    return stored(folder, outcomes=outcomes)
+
+
+def on_terminal(found: Any, number: int) -> tuple[str, str]:
+    files = io.StringIO(), io.StringIO()
+    print_results(make_console(files[0], width=200), found.results)
+    print_mutant(make_console(files[1], width=200), find_mutant(found.results, str(number)), None)
+    return files[0].getvalue(), files[1].getvalue()
+
+
+def test_what_was_not_confirmed_is_told_in_all_of_them(tmp_path: Path) -> None:
+    found = campaign(tmp_path, confirmed=False)
+    survivor = next(one for one in found.results.survivors if one.outcomes[0].confirmed is False)
+    of_all, of_one = on_terminal(found, survivor.mutant.number)
+    assert TEXT in of_all
+    assert "not confirmed by the whole suite" in of_one
+    assert f"{TEXT}." in made("markdown", found)
+    (notice,) = json.loads(made("sarif", found))["runs"][0]["invocations"][0]["toolExecutionNotifications"]
+    assert notice == {"level": "note", "message": {"text": f"{TEXT}."}}
+    assert campaign_data(found, "cell")["confirmed"] == TEXT
+    assert "'unconfirmed': True" in str(mutant_page(survivor))
+    data = results_data(found.results)
+    assert data["confirmation"]["text"] == TEXT
+    assert data["confirmation"]["left"] == len(SURVIVORS)
+    assert [one["rounds"][0]["confirmed"] for one in data["mutants"] if one["id"] == survivor.mutant.id] == [
+        False
+    ]
+
+
+def test_nothing_is_told_where_all_were_run_with_the_whole_suite(tmp_path: Path) -> None:
+    found = campaign(tmp_path)
+    texts = *on_terminal(found, 1), made("markdown", found), made("sarif", found)
+    assert not any("confirmed" in text for text in texts)
+    assert results_data(found.results)["confirmation"] is None
