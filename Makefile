@@ -102,7 +102,7 @@ bench: $(READY)
 	$(RUN) benchmarks/html_report.py
 
 ## slow: kill the controller at 30 random moments and finish by resuming; both engines on every mutant of the
-## examples; both engines against plain pytest; ten thousand mutants; 200 campaigns in a row;
+## examples; both engines against plain pytest; ten thousand mutants; ten thousand tests; 200 campaigns in a row;
 ## 20 whose tests start processes, on each example with some; 400 campaigns with a test that fails at random
 stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	$(RUN) benchmarks/kill_and_resume.py --kills 30
@@ -111,6 +111,7 @@ stress: $(READY) $(ROS1)/.ready $(ROS2)/.ready
 	$(ROS1)/bin/python benchmarks/judged.py ros1
 	$(ROS2)/bin/python benchmarks/judged.py ros2
 	$(RUN) benchmarks/ten_thousand.py
+	$(RUN) benchmarks/suite_length.py
 	$(RUN) benchmarks/campaigns_in_a_row.py --count 200
 	$(RUN) benchmarks/processes_in_a_row.py --examples scales
 	for ros in $(ROS1) $(ROS2); do \
