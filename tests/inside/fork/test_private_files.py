@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -60,12 +61,11 @@ def test_what_a_process_does_stays_with_it(project: Path, tmp_path: Path) -> Non
     assert (project / ".mutabot/work/other home").is_dir()
 
 
-def test_the_project_and_temporary_files_are_private(tmp_path: Path) -> None:
-    folders = private_folders("/home/me/project")
-    assert folders[0] == "/home/me/project"
-    assert len(folders) == 2
+def test_the_project_temporary_files_and_shared_memory_are_private(tmp_path: Path) -> None:
+    temporary = str(Path(tempfile.gettempdir()).resolve())
+    assert set(private_folders("/home/me/project")) == {"/home/me/project", temporary, "/dev/shm"}
     inner = private_folders(str(tmp_path))
-    assert inner.index(str(tmp_path.resolve())) == len(inner) - 1  # the outer folder is covered first
+    assert inner.index(temporary) < inner.index(str(tmp_path.resolve()))  # the outer folder is covered first
 
 
 FORKED = """
