@@ -16,7 +16,7 @@ import pytest
 @contextlib.contextmanager
 def killer() -> Iterator[None]:
     """Kill the process that writes its number to the file that ``VICTIM`` in the environment names."""
-    victim = Path(f"/dev/shm/mutabot-victim-{uuid.uuid4()}")  # a folder that no run keeps to itself
+    victim = Path(f"/var/tmp/mutabot-victim-{uuid.uuid4()}")  # a folder that no run keeps to itself
     is_over = threading.Event()
 
     def kill() -> None:

@@ -213,12 +213,12 @@ def test_a_process_that_fails_before_the_mutant_acts_is_an_error(tmp_path: Path)
     project = write_project(tmp_path, mission, TESTS)
     with pytest.MonkeyPatch.context() as patch:
         # a folder that no run keeps to itself: two runs of the baseline, one of each control, two mutants
-        patch.setenv("RUNS", f"/dev/shm/{tmp_path.name}-{id(tmp_path)}")
+        patch.setenv("RUNS", f"/var/tmp/{tmp_path.name}-{id(tmp_path)}")
         patch.setenv("LIMIT", "5")
         try:
             found = run(project, engine="replay", fresh=True, jobs=1)
         finally:
-            Path(f"/dev/shm/{tmp_path.name}-{id(tmp_path)}").unlink(missing_ok=True)
+            Path(f"/var/tmp/{tmp_path.name}-{id(tmp_path)}").unlink(missing_ok=True)
     failed = [one for one in found.values() if one.message and "licence server" in one.message]
     assert failed
     assert {one.verdict for one in failed} == {Verdict.ERROR}

@@ -101,7 +101,7 @@ def begun(monkeypatch: pytest.MonkeyPatch) -> list[tuple[bool, int]]:
 @pytest.fixture
 def flag() -> Iterator[Path]:
     """A file that no run keeps to itself."""
-    path = Path(f"/dev/shm/mutabot-flag-{os.getpid()}")
+    path = Path(f"/var/tmp/mutabot-flag-{os.getpid()}")
     path.unlink(missing_ok=True)
     yield path
     path.unlink(missing_ok=True)

@@ -74,7 +74,7 @@ TEST_HANGS = """
 @pytest.fixture
 def heartbeat() -> Iterator[Path]:
     """A file that no run keeps to itself."""
-    path = Path(f"/dev/shm/mutabot-heartbeat-{os.getpid()}")
+    path = Path(f"/var/tmp/mutabot-heartbeat-{os.getpid()}")
     path.unlink(missing_ok=True)
     yield path
     for pid in pids_in(path):

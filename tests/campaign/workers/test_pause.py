@@ -81,7 +81,7 @@ class Pausing(Quiet):
 @pytest.fixture
 def log() -> Iterator[Path]:
     """A file that no process has a private copy of."""
-    with NamedTemporaryFile(dir="/dev/shm", prefix="mutabot-test-") as file:
+    with NamedTemporaryFile(dir="/var/tmp", prefix="mutabot-test-") as file:
         yield Path(file.name)
 
 

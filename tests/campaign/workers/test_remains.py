@@ -52,7 +52,7 @@ def is_alive(pid: int) -> bool:
 
 @pytest.mark.whole
 def test_nothing_is_left(tmp_path: Path) -> None:
-    numbers = Path("/dev/shm", tmp_path.name + str(os.getpid()))  # workers see no others' changes in /tmp
+    numbers = Path("/var/tmp", tmp_path.name + str(os.getpid()))  # workers see no others' changes in /tmp
     tests = TESTS.format(numbers=str(numbers))
     project = write_project(tmp_path / "project", MISSION, tests)
     found = outcomes(run_campaign(request_for(project, engine="replay", rounds=1), Quiet()))

@@ -121,7 +121,7 @@ def end_of(folder: Path, monkeypatch: pytest.MonkeyPatch, limit: int) -> Outcome
     project = write_project(folder, MISSION, TESTS, vocabulary=VOCABULARY, configuration=CONFIGURATION)
     (project / "driver.py").write_text(dedent(DRIVER))
     (project / "conftest.py").write_text(dedent(GRAPH))
-    starts = Path(f"/dev/shm/mutabot-{folder.name}-{id(folder)}")  # a place that no run keeps to itself
+    starts = Path(f"/var/tmp/mutabot-{folder.name}-{id(folder)}")  # a place that no run keeps to itself
     monkeypatch.setenv("STARTS", str(starts))
     monkeypatch.setenv("LIMIT", str(limit))
     try:

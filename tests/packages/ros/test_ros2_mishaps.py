@@ -119,7 +119,7 @@ def end_of(
     tests = TESTS.format(drivers=drivers)
     project = write_project(folder, MISSION, tests, vocabulary=VOCABULARY, configuration=CONFIGURATION)
     (project / "driver.py").write_text(dedent(DRIVER))
-    starts = Path(f"/dev/shm/mutabot-{folder.name}-{id(folder)}")  # a place that no run keeps to itself
+    starts = Path(f"/var/tmp/mutabot-{folder.name}-{id(folder)}")  # a place that no run keeps to itself
     monkeypatch.setenv("STARTS", str(starts))
     monkeypatch.setenv("LIMIT", str(limit))
     progress = Quiet()
