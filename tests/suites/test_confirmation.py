@@ -149,7 +149,7 @@ ENGINE = pytest.mark.parametrize("engine", ["branch", REPLAY])
 
 @pytest.mark.usefixtures("always")
 @ENGINE
-@pytest.mark.parametrize("notices", ["pass", NOTICES])
+@pytest.mark.parametrize("notices", [pytest.param("pass", marks=pytest.mark.whole), NOTICES])
 def test_verdicts_are_those_of_plain_pytest(tmp_path: Path, engine: str, notices: str) -> None:
     found = compare(project(tmp_path / "many", notices), engines=(engine,))
     assert found.disagreements == []

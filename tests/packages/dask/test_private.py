@@ -120,11 +120,13 @@ def test_whoever_has_the_certificate_gets_in(opened: Opened, tmp_path: Path) -> 
     assert (tmp_path / "ran").read_text().count("ran") >= 3  # by a client, in the scheduler, in the worker
 
 
+@pytest.mark.whole
 def test_whoever_has_none_does_not(opened: Opened, tmp_path: Path) -> None:
     assert len(intrude(opened, tmp_path / "ran").splitlines()) == 2
     assert not (tmp_path / "ran").exists()
 
 
+@pytest.mark.whole
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can be another user")
 def test_another_user_neither_gets_in_nor_reads_the_key(opened: Opened, tmp_path: Path) -> None:
     user = str(NOBODY)
