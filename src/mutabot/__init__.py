@@ -7,8 +7,9 @@ beside a robot program.
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING
+
+from .lazy import lazily
 
 if TYPE_CHECKING:
     from mutabot.analysis.stored import StoredCampaign as StoredCampaign
@@ -37,14 +38,4 @@ _HOMES = {
     "model": ("Call", "Kind", "Middleware", "Mode", "Operation", "Pattern", "Proceed", "Quantity", "Reply"),
     "operators": ("Example", "Need", "Operator", "Subject"),
 }
-_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
-
-
-def __getattr__(name: str) -> object:
-    if name not in _HOME_OF:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f".{_HOME_OF[name]}", __name__), name)
-
-
-def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOME_OF])
+__getattr__, __dir__ = lazily(__name__, _HOMES)

@@ -32,8 +32,7 @@ class Campaign:
         executor: runs tasks.
         progress: is told what is going on.
         evidence: what is recorded; None if nothing is.
-        proven: controls that have ended as they must, and the ways into the program that they have proven of
-            which engine: they need not be run again.
+        proven: engines, each with a way into the program that controls have proven: see ``Control.way``.
         is_short: whether mutants are run without tests that do not reach them, see ``engines.confirmation``.
         again: outcomes that were found so, and are to be found with the whole suite before they count.
         sources: names the sites that workers report.
@@ -44,7 +43,7 @@ class Campaign:
     executor: Executor
     progress: Progress
     evidence: Evidence | None = None
-    proven: set[object] = field(default_factory=set)
+    proven: set[tuple[str, tuple[str, str, int]]] = field(default_factory=set)
     is_short: bool = False
     again: list[Outcome] = field(default_factory=list)
     sources: Sources = field(init=False)

@@ -227,6 +227,11 @@ class Session:
             activation.keep_early()
 
     @property
+    def sites(self) -> tuple[SiteSeen, ...]:
+        """All sites that were reached so far."""
+        return tuple(self.recorder.sites)
+
+    @property
     def activations(self) -> list[Activation]:
         """The mutants of calls that are at work: none for the original."""
         return self.passing.activations
@@ -426,7 +431,7 @@ class Session:
 
     def _tell_known_later(self) -> None:
         """Tell of sites at which an operation stood in some tests and something unknown in others."""
-        stood = self.standing.stood | {seen.span: seen.operation for seen in self.recorder.sites}
+        stood = self.standing.stood | {seen.span: seen.operation for seen in self.sites}
         for span in sorted(self.standing.alone & stood.keys()):
             self._send(KnownLater(span, stood[span]))
 

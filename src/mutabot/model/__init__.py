@@ -5,8 +5,9 @@ The names below are loaded when they are first used: a process below the tests n
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import TYPE_CHECKING
+
+from mutabot.lazy import lazily
 
 if TYPE_CHECKING:
     from mutabot.model.values.path import Path as Path
@@ -69,15 +70,4 @@ _HOMES = {
     "operation": ("ANY", "Case", "Clock", "Operation", "Pattern", "Probe", "Vocabulary", "Wait"),
     "outcome": ("By", "Check", "Compared", "Diverged", "Kill", "LeftOut", "Looked", "Outcome", "Verdict"),
 }
-_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
-
-
-def __getattr__(name: str) -> object:
-    if name not in _HOME_OF:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    found = globals()[name] = getattr(import_module(f".{_HOME_OF[name]}", __name__), name)
-    return found
-
-
-def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOME_OF])
+__getattr__, __dir__ = lazily(__name__, _HOMES)

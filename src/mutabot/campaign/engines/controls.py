@@ -103,7 +103,7 @@ def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[Cont
     """
     progress = campaign.progress
     found = controls_of(campaign.baseline, mutants)
-    controls = [one for one in found if campaign.proven.isdisjoint([one, (REPLAY, one.way)])]
+    controls = [one for one in found if (REPLAY, one.way) not in campaign.proven]
     if not controls:
         return
     progress.stage("controls", len(controls))
@@ -113,7 +113,7 @@ def run_controls(campaign: Campaign, mutants: Iterable[Mutant]) -> Iterator[Cont
         yield end
         if not end.ok:
             raise control.error(end.detail)
-        campaign.proven.update([control, (REPLAY, control.way)])
+        campaign.proven.add((REPLAY, control.way))
 
 
 def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool = False) -> list[Control]:

@@ -267,6 +267,8 @@ def compile_us() -> None:
     process's.
     """
     ours = Path(__file__).parents[2]
+    if not os.access(ours, os.W_OK):
+        return
     compileall.compile_dir(ours, maxlevels=0, quiet=2)
     for part in _OF_PROCESSES:
         compileall.compile_dir(ours / part, quiet=2)

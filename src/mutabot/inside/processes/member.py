@@ -109,13 +109,11 @@ class Member:
     def go_on(self) -> None:
         """In a process that was forked: go on with the session that it has, and tell of it."""
         session = self.session
-        if not isinstance(session, TextOnly):
-            for site in session.recorder.sites:
-                self.file.send(site)
-            session.branch = None  # it tells its own sites, also below a branch
+        for site in session.sites:
+            self.file.send(site)
         self._told = _copy_of(session.evidence)
         self._attend()
-        session.pipe = self
+        session.pipe, session.branch = self, None  # it tells its own sites, also below a branch
         if session.text is not None:
             session.text.pipe = self
         self._watch_text()
@@ -134,7 +132,7 @@ class Member:
     def turn(self) -> None:
         """Look whether another test has begun."""
         if self._now.number != self._test:
-            self._look_back()
+            self.session.look_back(at_all=True)
             self.poll()
             self._use()
             self._test = self._now.number
@@ -185,15 +183,10 @@ class Member:
             is_final=now.said is not None,
         )
 
-    def _look_back(self) -> None:
-        if not isinstance(self.session, TextOnly):
-            self.session.look_back(at_all=True)
-
     def _use(self) -> None:
         meter = self.session.meter
         if meter is not None:
-            commands = 0 if isinstance(self.session, TextOnly) else self.session.commands
-            self.file.send(Used(meter.operations, commands, meter.simulated, meter.exceeded))
+            self.file.send(Used(meter.operations, self.session.commands, meter.simulated, meter.exceeded))
 
     def _watch_text(self) -> None:
         """Places of the program text are told when they are reached first: the process may die any time."""
@@ -217,7 +210,7 @@ class Member:
         if self._is_over or _member is not self:
             return
         self._is_over = True
-        self._look_back()
+        self.session.look_back(at_all=True)
         self.poll()
         self._use()
         if self.session.text is not None:

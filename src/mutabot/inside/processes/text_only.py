@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mutabot.border.events import Acted
+from mutabot.border.events import Acted, SiteSeen
 from mutabot.border.job import Budget, Job
 from mutabot.inside.evidence import Evidence, together
 from mutabot.inside.limits import Meter
@@ -30,7 +30,12 @@ class TextOnly:
         text: the program text, if it is instrumented.
         test: node id of the running test.
         meter: what the running test has used.
+        commands, sites, branch: of calls there are none.
     """
+
+    commands = 0
+    sites: tuple[SiteSeen, ...] = ()
+    branch: str | None = None
 
     def __init__(self, job: Job, pipe: Sink) -> None:
         self.job, self.pipe = job, pipe
@@ -48,6 +53,9 @@ class TextOnly:
         self.meter = Meter(self.job.budgets.get(test, Budget()))
         if self.text is not None:
             self.text.start_test(test, None, {})
+
+    def look_back(self, *, at_all: bool = False) -> None:
+        """No mutant has handed out anything."""
 
     @property
     def evidence(self) -> Evidence:

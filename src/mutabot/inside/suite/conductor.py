@@ -117,9 +117,8 @@ class Conductor:
             files = PrivateFiles(root, os.path.realpath(home), os.path.join(root, ".mutabot"))
             self._not_private = files.make()
             self._files = files if self._not_private is None else None
-            if (
-                self._files is not None
-            ):  # what it removes there comes back: each process would remove it again
+            if self._files is not None:
+                # it removes old folders of pytest's, which are there again for the next process
                 _pytest.pathlib.cleanup_numbered_dir = lambda *_, **__: None
             die_with_parent()  # a process that changes its rights loses that wish
 

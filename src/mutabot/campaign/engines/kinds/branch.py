@@ -32,7 +32,7 @@ class _Controls:
     def of(cls, campaign: Campaign, trials: Iterable[Trial]) -> _Controls:
         """Those not proven yet."""
         found = controls_of(campaign.baseline, (mutant for mutant, _ in trials), forked=True)
-        left = (one for one in found if campaign.proven.isdisjoint([one, (Branch.name, one.way)]))
+        left = (one for one in found if (Branch.name, one.way) not in campaign.proven)
         return cls({one.mutant.id: one for one in left})
 
     @property
@@ -68,7 +68,7 @@ class Branch:
             yield end
             if not end.ok:
                 raise control.error(end.detail)
-            campaign.proven.update([control, (self.name, control.way)])
+            campaign.proven.add((self.name, control.way))
         _tell(campaign, left)
         clear_up(campaign, trunks.suspects)
         left.trials = [trial for trial in left.trials if trial[0].id not in controls.by_id]
