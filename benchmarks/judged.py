@@ -139,6 +139,8 @@ def table(every: list[Found]) -> str:
     lines = ["| suites | how many | mutants | verdicts | as plain pytest |", "|---|---:|---:|---:|---:|"]
     for style in STYLES:
         found = [one for one in every if style_of(one.project) == style]
+        if not found:
+            continue
         compared = [one for project in found for one in project.compared]
         mutants = len({(one.project, one.mutant) for one in compared})
         agreed = sum(one.agrees for one in compared)
