@@ -19,9 +19,9 @@ T = TypeVar("T")
 def frozen(kind: type[T]) -> type[T]:
     """Make a dataclass with slots of a class, with the methods of ``dataclass(frozen=True)``.
 
-    Only its ``__init__`` is compiled for it, with its first object; what compares, hashes and shows is shared
-    by all. That nobody sets a field is for the type checker: what operators and reports of others are given
-    is better made by ``dataclass(frozen=True)``, which refuses at run time.
+    Only its ``__init__`` is compiled for it, with its first object or by ``compile_all``; what compares, hashes
+    and shows is shared by all. That nobody sets a field is for the type checker: what operators and reports of
+    others are given is better made by ``dataclass(frozen=True)``, which refuses at run time.
     """
     made = dataclass(slots=True, init=False, eq=False, repr=False)(kind)
     made.__init__ = _init_later(made)  # type: ignore[method-assign]
@@ -33,17 +33,32 @@ def frozen(kind: type[T]) -> type[T]:
     return made
 
 
+#: what compiles the ``__init__`` of the classes that have had no object yet
+_pending: dict[type[Any], Callable[[], None]] = {}
+
+
+def compile_all() -> None:
+    """Compile all that is left to compile: in a process that will be forked, else each fork would do it."""
+    for compile_one in list(_pending.values()):
+        compile_one()
+
+
 def _init_later(kind: type[Any]) -> Callable[..., None]:
     """An ``__init__`` that gives way to a compiled one when it is called first."""
 
-    def __init__(self: Any, *values: Any, **named: Any) -> None:  # noqa: N807  # a method to be
+    def compile_one() -> None:
         taken = ("__module__", "__qualname__", "__doc__", "__post_init__")
         body = {name: getattr(kind, name) for name in taken if hasattr(kind, name)}
         body["__annotations__"] = {one.name: one.type for one in fields(kind)}
         body |= {one.name: one for one in fields(kind)}
         kind.__init__ = dataclass(eq=False, repr=False)(type(kind.__name__, (), body)).__init__  # type: ignore[misc]
+        _pending.pop(kind, None)
+
+    def __init__(self: Any, *values: Any, **named: Any) -> None:  # noqa: N807  # a method to be
+        compile_one()
         kind.__init__(self, *values, **named)
 
+    _pending[kind] = compile_one
     return __init__
 
 

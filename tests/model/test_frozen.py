@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from mutabot.frozen import frozen
+from mutabot.frozen import compile_all, frozen
 
 
 @frozen
@@ -59,6 +59,17 @@ def test_it_compares_hashes_and_shows_like_a_frozen_dataclass(arguments: tuple[A
         assert (Thing(*arguments) == Thing(*other)) is is_equal
         assert (len({Thing(*arguments), Thing(*other)}) == 1) is is_equal
     assert repr(Thing(*arguments)) == repr(Reference(*arguments)).replace("Reference", "Thing")
+
+
+def test_nothing_is_left_to_compile_in_a_process_that_is_forked() -> None:
+    @frozen
+    class Late:
+        name: str = "late"
+
+    before = Late.__init__
+    compile_all()
+    assert Late.__init__ is not before
+    assert Late("a") != Late() == Late("late")
 
 
 def test_values_of_two_classes_are_not_equal() -> None:

@@ -17,6 +17,7 @@ import sys
 from dataclasses import dataclass, field
 
 from mutabot.border.events import ForkEnded, Serving
+from mutabot.frozen import compile_all
 from mutabot.inside.event_file import EventFile
 
 from .forkable import open_now, why_not
@@ -69,6 +70,7 @@ class CopyServer:
         if reason is not None:
             self.pipe.send(Serving(reason))
             return None
+        compile_all()
         gc.collect()
         gc.freeze()  # what is never looked at stays shared with all copies
         self.pipe.send(Serving())

@@ -15,6 +15,7 @@ from mutabot import extensions
 from mutabot.border import stack
 from mutabot.border.events import SessionEnd, TestEnd
 from mutabot.border.job import Branching, Job, read_job
+from mutabot.frozen import compile_all
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.assertions import Assertions
@@ -134,6 +135,7 @@ class Conductor:
 
     def grow(self, branching: Branching, home: str, has_nodes: bool) -> None:
         """Be a trunk: fork a branch for every mutant."""
+        compile_all()
         log, pipe = os.stat(os.path.join(home, LOG)), self.session.pipe
         assert isinstance(pipe, EventFile)
         file = os.path.join(home, stack.FILE)
