@@ -19,9 +19,9 @@ T = TypeVar("T")
 def frozen(kind: type[T]) -> type[T]:
     """Make a dataclass with slots of a class, with the methods of ``dataclass(frozen=True)``.
 
-    Only its ``__init__`` is compiled for it, with its first object or by ``compile_all``; what compares, hashes
-    and shows is shared by all. That nobody sets a field is for the type checker: what operators and reports of
-    others are given is better made by ``dataclass(frozen=True)``, which refuses at run time.
+    Only its ``__init__`` is compiled for it, with its first object or by ``compile_all``; what compares,
+    hashes and shows is shared by all. That nobody sets a field is for the type checker: what operators and
+    reports of others are given is better made by ``dataclass(frozen=True)``, which refuses at run time.
     """
     made = dataclass(slots=True, init=False, eq=False, repr=False)(kind)
     made.__init__ = _init_later(made)  # type: ignore[method-assign]
