@@ -6,7 +6,7 @@ What is taken over names lines as they are now.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.pieces.project import Lines
@@ -19,120 +19,70 @@ from mutabot.model import Mutant, Verdict
 
 from .keys import ASIDE, REACHED, REACHING, SUITE, Dependencies, Parts, changes
 
-
-class Trees:
-    """What tests could run in earlier states of the files."""
-
-    def __init__(self, dependencies: Dependencies) -> None:
-        self._dependencies = dependencies
-        self._known: dict[str, Reach | None] = {}
-
-    def reach(self, journal: JournalReader, tree: str) -> Reach | None:
-        """By the digest of the files; None if the journal does not hold them all any more."""
-        if tree not in self._known:
-            self._known[tree] = self._read(journal, tree)
-        return self._known[tree]
-
-    def says_same(self, journal: JournalReader, tree: str) -> bool:
-        """Whether all files say what they say now, comments and layout aside."""
-        now = self._dependencies
-        old = self.reach(journal, tree) if tree != now.tree else now.reach
-        return old is not None and old.whole == now.reach.whole
-
-    def _read(self, journal: JournalReader, tree: str) -> Reach | None:
-        files = journal.parts(tree)
-        if files is None:
-            return None
-        texts = {name: journal.text(digest) for name, digest in files.items()}
-        known = {name: text for name, text in texts.items() if text is not None}
-        return self._dependencies.reach_of(files, known) if len(known) == len(files) else None
-
-
 Pair = tuple[str, int]
-
-
-class TakenOver:
-    """Outcomes on their way from one journal to another.
-
-    Attributes:
-        rows: those that can be taken over.
-        unasked: how many of them are survivors that some tests do not reach, while something has changed that
-            only these could notice.
-    """
-
-    def __init__(self, dependencies: Dependencies) -> None:
-        self.rows: list[Row] = []
-        self.unasked = 0
-        self._dependencies = dependencies
-        self._trees = Trees(dependencies)
-        self._lines: dict[str, Lines | None] = {}
-
-    def take(self, source: JournalReader, mutant: Mutant, round: int, key: str, now: str) -> bool:
-        """Take one over; returns False if it names a line that nobody can find, or is none at all."""
-        row = source.row(mutant.id, round)
-        if row is None:
-            return False
-        tree = key.rsplit(maxsplit=1)[-1]
-        if tree != self._dependencies.tree:
-            lines = self._lines_from(source, tree)
-            data = lines.moved(row.data) if lines is not None else None
-            if data is None:
-                return False
-            row = replace(row, data=data)
-        self._add(source, tree, mutant, replace(row, key=now))
-        return True
-
-    def _add(self, source: JournalReader, tree: str, mutant: Mutant, row: Row) -> None:
-        self.rows.append(row)
-        some, all = (self._dependencies.tests(mutant, row.round, whole=whole) for whole in (False, True))
-        if row.verdict == Verdict.SURVIVED and len(some) < len(all):
-            self.unasked += not self._trees.says_same(source, tree)
-
-    def _lines_from(self, source: JournalReader, tree: str) -> Lines | None:
-        if tree not in self._lines:
-            old = self._trees.reach(source, tree)
-            new = self._dependencies.reach.project
-            self._lines[tree] = Lines(old.project, new) if old is not None else None
-        return self._lines[tree]
-
-
 #: names that are given before it is said how many more there are
 _SHOWN = 3
 
 
-class Reasons:
-    """Why keys of a journal are not what they would be now."""
+class Earlier:
+    """What outcomes depended on when they were found: what keys of a journal, or of a revision, stand for.
 
-    def __init__(self, journal: JournalReader, dependencies: Dependencies) -> None:
-        self._journal, self._dependencies = journal, dependencies
-        self._trees = Trees(dependencies)
+    Args:
+        now: what they depend on now.
+        parts: what a digest in a key stands for; None if nobody knows that any more.
+        text: what stood in a file with this digest, likewise.
+        reaches: what tests could run, by the digest of all files, as far as that is known.
+    """
+
+    def __init__(
+        self,
+        now: Dependencies,
+        parts: Callable[[str], Parts | None],
+        text: Callable[[str], bytes | None] = lambda digest: None,
+        reaches: Mapping[str, Reach] | None = None,
+    ) -> None:
+        self._now, self._parts, self._text = now, parts, text
+        self._reaches: dict[str, Reach | None] = {**(reaches or {}), now.tree: now.reach}
+        self._lines: dict[str, Lines | None] = {}
         self._known: dict[tuple[str, ...], list[str]] = {}
         self._sites: dict[tuple[str, ...], bool] = {}
 
-    def of(self, old: str, mutant: Mutant, round: int) -> str:
-        """In words."""
-        new = self._dependencies.key(mutant, round, whole=self.is_whole(old))
-        names = self._changes(old, new, mutant, round)
-        return shortened(names)
+    def _reach(self, tree: str) -> Reach | None:
+        """What tests could run, by the digest of the files; None if these are not all known any more."""
+        if tree not in self._reaches:
+            files = self._parts(tree)
+            texts = {name: self._text(digest) for name, digest in (files or {}).items()}
+            known = {name: text for name, text in texts.items() if text is not None}
+            is_known = files is not None and len(known) == len(files)
+            self._reaches[tree] = self._now.reach_of(files or {}, known) if is_known else None
+        return self._reaches[tree]
 
-    def is_whole(self, old: str) -> bool:
-        """Whether an outcome depends on all tests."""
-        return SUITE in self._parts(old.split()[1])
+    def row(self, row: Row | None, key: str, now: str) -> Row | None:
+        """An outcome as it is now; None if it names a line that nobody can find, or is none at all."""
+        tree = _tree(key)
+        if row is None or tree == self._now.tree:
+            return row and replace(row, key=now)
+        if tree not in self._lines:
+            old = self._reach(tree)
+            self._lines[tree] = Lines(old.project, self._now.reach.project) if old is not None else None
+        lines = self._lines[tree]
+        data = lines.moved(row.data) if lines is not None else None
+        return replace(row, data=data, key=now) if data is not None else None
 
-    def is_site_changed(self, old: str, mutant: Mutant) -> bool:
-        """Whether what stands where a mutant acts says something else, or nobody knows."""
-        key = (old.rsplit(maxsplit=1)[-1], mutant.site.id)
-        if key not in self._sites:
-            then = self._trees.reach(self._journal, key[0])
-            now = self._dependencies.reach
-            where = mutant.site.span.file, mutant.site.span.function
-            self._sites[key] = then is None or then.standing(*where) != now.standing(*where)
-        return self._sites[key]
+    def is_unasked(self, row: Row, key: str, mutant: Mutant) -> bool:
+        """Whether it is a survivor that some tests do not reach, and only these could notice what changed."""
+        some, all = (self._now.tests(mutant, row.round, whole=whole) for whole in (False, True))
+        if row.verdict != Verdict.SURVIVED or len(some) == len(all):
+            return False
+        old = self._reach(_tree(key))
+        return old is None or old.whole != self._now.reach.whole
 
-    def _changes(self, old: str, new: str, mutant: Mutant, round: int) -> list[str]:
+    def why(self, old: str, mutant: Mutant, round: int) -> str:
+        """Why a key is not what it would be now, in words."""
+        new = self._now.key(mutant, round, whole=self.is_whole(old))
         before, now = old.split(), new.split()
         if len(before) != len(now):
-            return ["they are of an older version of mutabot"]
+            return "they are of an older version of mutabot"
         names: list[str] = []
         if before[1] != now[1]:
             names += self._at_place(before, now, mutant, round)
@@ -140,19 +90,33 @@ class Reasons:
             names += self._of_parts(before[0], now[0])
         if before[2] != now[2] and not names:
             names.append("the calls return something else")
-        return names or ["what they depend on changed"]
+        more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+        return ", ".join(names[:_SHOWN]) + more or "what they depend on changed"
+
+    def is_whole(self, old: str) -> bool:
+        """Whether an outcome depends on all tests."""
+        return SUITE in (self._parts(old.split()[1]) or {})
+
+    def is_site_changed(self, old: str, mutant: Mutant) -> bool:
+        """Whether what stands where a mutant acts says something else, or nobody knows."""
+        key = (_tree(old), mutant.site.id)
+        if key not in self._sites:
+            then, now = self._reach(key[0]), self._now.reach
+            where = mutant.site.span.file, mutant.site.span.function
+            self._sites[key] = then is None or then.standing(*where) != now.standing(*where)
+        return self._sites[key]
 
     def _of_parts(self, old: str, new: str) -> list[str]:
         key = old, new
         if key not in self._known:
-            self._known[key] = changes(self._parts(old), self._dependencies.parts[new])
+            self._known[key] = changes(self._parts(old) or {}, self._now.parts[new])
         return self._known[key]
 
     def _at_place(self, before: list[str], now: list[str], mutant: Mutant, round: int) -> list[str]:
         key = before[1], now[1], before[3]
         if key not in self._known:
-            old, new = self._parts(before[1]), self._dependencies.parts[now[1]]
-            tests = self._dependencies.tests(mutant, round, whole=SUITE in new)
+            old, new = self._parts(before[1]) or {}, self._now.parts[now[1]]
+            tests = self._now.tests(mutant, round, whole=SUITE in new)
             names = self._pieces(before[3], mutant, tests) if old.get(REACHED) != new[REACHED] else []
             unnamed = {REACHED, REACHING, SUITE, ASIDE} if names else set()
             others = changes(
@@ -163,45 +127,19 @@ class Reasons:
         return self._known[key]
 
     def _pieces(self, tree: str, mutant: Mutant, tests: tuple[str, ...]) -> list[str]:
-        """The pieces that say something else."""
-        old = self._trees.reach(self._journal, tree)
+        """The pieces that say something else; what is new last, for it is there as others mention it."""
+        old = self._reach(tree)
         if old is None:
             return []
-        now = self._dependencies.reach.says(self._dependencies.reached(mutant, tests))
-        before = old.says(self._dependencies.reached(mutant, tests, old))
-        return different(before, now)
-
-    def _parts(self, digest: str) -> Parts:
-        return self._journal.parts(digest) or {}
-
-
-def different(before: dict[str, tuple[str, ...]], now: dict[str, tuple[str, ...]]) -> list[str]:
-    """Which pieces say something else, in words; what is new last, for it is there as others mention it."""
-    found = [f"{name} changed" for name in now if name in before and before[name] != now[name]]
-    found += [f"{name} is gone" for name in before if name not in now]
-    return sorted(found) + sorted(f"{name} is new" for name in now if name not in before)
+        now = self._now.reach.says(self._now.reached(mutant, tests))
+        before = old.says(self._now.reached(mutant, tests, old))
+        found = [f"{name} changed" for name in now if name in before and before[name] != now[name]]
+        found += [f"{name} is gone" for name in before if name not in now]
+        return sorted(found) + sorted(f"{name} is new" for name in now if name not in before)
 
 
-def apart(then: Dependencies, now: Dependencies, mutant: Mutant, round: int) -> str:
-    """What differs between two states of the files, as far as a mutant depends on it, in words."""
-    tests = now.tests(mutant, round, whole=False)
-    names = different(
-        then.reach.says(then.reached(mutant, tests)), now.reach.says(now.reached(mutant, tests))
-    )
-    before, after = (one.key(mutant, round).split() for one in (then, now))
-    for position in (1, 0):
-        old, new = then.parts[before[position]], now.parts[after[position]]
-        names += changes(
-            {name: value for name, value in old.items() if name != REACHED},
-            {name: value for name, value in new.items() if name != REACHED},
-        )
-    return shortened(names)
-
-
-def shortened(names: list[str]) -> str:
-    """The first few of them."""
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return ", ".join(names[:_SHOWN]) + more
+def _tree(key: str) -> str:
+    return key.rsplit(maxsplit=1)[-1]
 
 
 #: why an outcome is not taken over although it holds
@@ -220,6 +158,8 @@ class Reused:
         before: what the others were that do not hold.
         sites: mutants at which something else stands than when they were run.
         whole: of those whose outcomes do not hold, the ones that depended on all tests.
+        unasked: how many that are taken over are survivors that some tests do not reach, while something has
+            changed that only these could notice.
     """
 
     done: set[Pair] = field(default_factory=set)
@@ -229,6 +169,7 @@ class Reused:
     before: dict[Pair, Verdict] = field(default_factory=dict)
     sites: set[str] = field(default_factory=set)
     whole: set[Pair] = field(default_factory=set)
+    unasked: int = 0
 
 
 def reuse(
@@ -244,62 +185,61 @@ def reuse(
     Args:
         others: journals of other campaigns of this project, to be looked into beside its own.
     """
-    sources = [(one, one.found()) for one in (journal, *others)]
+    sources = [(one, one.found(), Earlier(dependencies, one.parts, one.text)) for one in (journal, *others)]
     found = Reused()
-    if not any(kept for _, kept in sources):
+    if not any(kept for _, kept, _ in sources):
         found.first = [(mutant.id, round) for round in range(rounds) for mutant in mutants]
         return found
-    reasons = [Reasons(one, dependencies) for one in (journal, *others)]
-    taken = TakenOver(dependencies)
-    for round in range(rounds):
-        for mutant in mutants:
-            _take(found, taken, sources, reasons, dependencies, mutant, round)
+    pairs = [(mutant, round) for round in range(rounds) for mutant in mutants]
+    taken = [_taken(found, sources, dependencies, mutant, round) for mutant, round in pairs]
     journal.add_parts(dependencies.new_parts())
-    journal.take_over(taken.rows)
+    journal.take_over(row for row in taken if row is not None)
     progress.note(text_of(found))
-    if taken.unasked:
+    if found.unasked:
         progress.note(
-            f"{taken.unasked} of them are survivors that tests do not reach which may have changed: "
+            f"{found.unasked} of them are survivors that tests do not reach which may have changed: "
             "these are not asked again; `mutabot run --fresh` asks all"
         )
     return found
 
 
-def _take(
+def _taken(
     found: Reused,
-    taken: TakenOver,
-    sources: Sequence[tuple[JournalReader, Mapping[Pair, Kept]]],
-    reasons: Sequence[Reasons],
+    sources: Sequence[tuple[JournalReader, Mapping[Pair, Kept], Earlier]],
     dependencies: Dependencies,
     mutant: Mutant,
     round: int,
-) -> None:
+) -> Row | None:
     """One outcome from the first source in which it holds; else why it does not in the first that has it."""
     pair = (mutant.id, round)
     why: str | None = None
-    for (source, kept), explained in zip(sources, reasons, strict=True):
+    for source, kept, earlier in sources:
         outcome = kept.get(pair)
-        now = dependencies.holding(outcome.key, mutant, round) if outcome is not None else None
-        if outcome is not None and now is not None and not outcome.is_sound:
+        if outcome is None:
+            continue
+        now = dependencies.holding(outcome.key, mutant, round)
+        if now is not None and not outcome.is_sound:
             found.unsound.add(pair)
-        elif outcome is not None and now is not None:
-            if taken.take(source, mutant, round, outcome.key, now):
+        elif now is not None:
+            row = earlier.row(source.row(*pair), outcome.key, now)
+            if row is not None:
                 found.done.add(pair)
+                found.unsound.discard(pair)
+                found.unasked += earlier.is_unasked(row, outcome.key, mutant)
+                return row
             why = why or GONE
-        elif outcome is not None and why is None:
-            why = explained.of(outcome.key, mutant, round)
+        elif why is None:
+            why = earlier.why(outcome.key, mutant, round)
             found.before[pair] = outcome.verdict
-            if explained.is_whole(outcome.key):
+            if earlier.is_whole(outcome.key):
                 found.whole.add(pair)
-            if explained.is_site_changed(outcome.key, mutant):
+            if earlier.is_site_changed(outcome.key, mutant):
                 found.sites.add(mutant.id)
-        if pair in found.done:
-            found.unsound.discard(pair)
-            return
     if why is not None:
         found.why[pair] = why
     elif pair not in found.unsound:
         found.first.append(pair)
+    return None
 
 
 def text_of(found: Reused) -> str:

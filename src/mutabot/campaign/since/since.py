@@ -22,7 +22,7 @@ from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.plan.plan import Plan
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, says_same
-from mutabot.campaign.reuse.reuse import GONE, Pair, Reused, apart
+from mutabot.campaign.reuse.reuse import GONE, Earlier, Pair, Reused
 from mutabot.campaign.reuse.snapshot import WRITTEN, State, counts_by_name, is_note, own_files
 from mutabot.errors import ConfigurationError, JournalError, UsageError
 from mutabot.frozen import frozen
@@ -299,9 +299,11 @@ class Altered:
             reason = f"the configuration of {revision.ref} cannot be read"
             return cls(revision, {(mutant.id, round): reason for mutant, round in pairs})
         why = {}
+        earlier = Earlier(now, then.parts.get, reaches={then.tree: then.reach})
         for mutant, round in pairs:
-            if not says_same(now.key(mutant, round), then.key(mutant, round)):
-                why[mutant.id, round] = apart(then, now, mutant, round)
+            was = then.key(mutant, round)
+            if not says_same(now.key(mutant, round), was):
+                why[mutant.id, round] = earlier.why(was, mutant, round)
         return cls(revision, why)
 
 
