@@ -7,9 +7,10 @@ from those of the file. So more may be found than is written, never less of what
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from mutabot.border.events import SiteSeen
 from mutabot.languages.front_end import Name
@@ -191,55 +192,37 @@ class Sources:
     """
 
     root: Path
-    _files: dict[str, Mapping[Extent, Name]] = field(default_factory=dict)
-    _written: dict[str, frozenset[Extent]] = field(default_factory=dict)
-    _unused: dict[str, frozenset[Extent]] = field(default_factory=dict)
+    _read: dict[tuple[str, Callable[[str], Any]], Any] = field(default_factory=dict)
 
     def site(self, seen: SiteSeen) -> Site:
         """The site at which something was seen."""
         span = seen.span
-        names = self._files.get(span.file)
-        if names is None:
-            names = self._files[span.file] = self._names_in(span.file)
+        names: Mapping[Extent, Name] = self._in(span.file, front_end_of(span.file).names) or {}
         text, occurrence = names.get(_extent(span), Name(f"line {span.line}", 1))
         return Site(span, text, occurrence, Role.ORACLE if seen.oracle else Role.PROGRAM)
 
     def is_written_through(self, span: Span) -> bool:
         """Whether the file writes to what an expression of it gives, as far as its text says."""
-        if span.file not in self._written:
-            self._written[span.file] = self._written_in(span.file)
-        return _extent(span) in self._written[span.file]
-
-    def _written_in(self, file: str) -> frozenset[Extent]:
-        if front_end_of(file) is not PYTHON:
-            return frozenset()
-        try:
-            return written_through((self.root / file).read_text(encoding="utf-8"))
-        except (OSError, SyntaxError, ValueError):
-            return frozenset()
+        return self._is_among(span, written_through)
 
     def is_unused(self, seen: SiteSeen) -> bool:
         """Whether nobody uses what the call returns: it is a statement by itself."""
-        span = seen.span
-        if not seen.direct or front_end_of(span.file) is not PYTHON:
-            return False
-        found = self._unused.get(span.file)
-        if found is None:
-            found = self._unused[span.file] = self._unused_in(span.file)
-        return _extent(span) in found
+        return seen.direct and self._is_among(seen.span, unused_calls)
 
-    def _unused_in(self, file: str) -> frozenset[Extent]:
-        try:
-            return unused_calls((self.root / file).read_text(encoding="utf-8"))
-        except (OSError, SyntaxError, ValueError):
-            return frozenset()
+    def _is_among(self, span: Span, find: Callable[[str], frozenset[Extent]]) -> bool:
+        """Whether an expression is one of those that are found in the text of its file, if that is Python."""
+        is_python = front_end_of(span.file) is PYTHON
+        return is_python and _extent(span) in (self._in(span.file, find) or ())
 
-    def _names_in(self, file: str) -> Mapping[Extent, Name]:
-        """Names of all that may be a site; none for a file that cannot be read."""
-        try:
-            return front_end_of(file).names((self.root / file).read_text(encoding="utf-8"))
-        except (OSError, SyntaxError, ValueError):
-            return {}
+    def _in(self, file: str, find: Callable[[str], Any]) -> Any:
+        """What is found in the text of a file; None for one that cannot be read."""
+        if (file, find) not in self._read:
+            try:
+                found = find((self.root / file).read_text(encoding="utf-8"))
+            except (OSError, SyntaxError, ValueError):
+                found = None
+            self._read[file, find] = found
+        return self._read[file, find]
 
 
 def _extent(span: Span) -> Extent:
