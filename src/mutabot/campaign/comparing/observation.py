@@ -7,9 +7,9 @@ moments that mutant and original have in common.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from typing import Any, Protocol
+from typing import Any
 
 from mutabot.border.events import TestEnd
 from mutabot.campaign.request import Progress
@@ -60,82 +60,6 @@ def _readings_at(commands: int, stride: int) -> int:
     """About how many readings a test has."""
     moments = commands // stride
     return moments if moments <= _FULL else _FULL + 50 * (moments // _FULL).bit_length()
-
-
-#: differences of two readings, each with its distance, greatest first
-Differences = Callable[[Mapping[str, Any], Mapping[str, Any]], Sequence[tuple[float, str]]]
-
-
-class Called(Protocol):
-    """One call of a trace."""
-
-    @property
-    def key(self) -> str:
-        """Where and what."""
-
-
-class Seen(Protocol):
-    """What is needed of a test."""
-
-    @property
-    def events(self) -> Sequence[Called]:
-        """The calls in order."""
-
-    @property
-    def moments(self) -> Sequence[Any] | None:
-        """As in ``TestEnd.moments``; None if they are not to be compared."""
-
-
-@frozen
-class Way:
-    """How far the way of a mutant's test is from the original's.
-
-    Attributes:
-        distance: the greatest difference, in multiples of its probe's tolerance; None if there is nothing to
-            compare.
-        line: that difference in words, with the call after which it was seen.
-        count: moments that were compared.
-    """
-
-    distance: float | None = None
-    line: str = ""
-    count: int = 0
-
-
-def compare_moments(original: Seen, mutant: Seen, differences: Differences) -> Way:
-    """Compare readings after the same calls, as far as both made the same calls."""
-    before, after = _readings(original.moments or ()), _readings(mutant.moments or ())
-    same = _same_calls(original, mutant)
-    common = [call for call in before if call in after and call <= same]
-    if not common:
-        return Way()
-    worst, line = 0.0, ""
-    for call in common:
-        if before[call] == after[call]:
-            continue
-        for distance, text in differences(before[call], after[call])[:1]:
-            if distance > worst:
-                worst = distance
-                line = f"on the way, after call {call}, {mutant.events[call - 1].key}: {text}"
-    return Way(worst, line, len(common))
-
-
-def _same_calls(original: Seen, mutant: Seen) -> int:
-    """How many calls at the beginning are the same."""
-    for number, (before, after) in enumerate(zip(original.events, mutant.events, strict=False)):
-        if before.key != after.key:
-            return number
-    return min(len(original.events), len(mutant.events))
-
-
-def _readings(moments: Sequence[Any]) -> dict[int, dict[str, Any]]:
-    """All parts at each moment; a trace that is cut off has its last number more than once."""
-    found: dict[int, dict[str, Any]] = {}
-    last: dict[str, Any] = {}
-    for call, parts, is_whole in moments:
-        last = dict(parts) if is_whole else {**last, **parts}
-        found.setdefault(call, last)
-    return found
 
 
 #: greatest difference of two equal numbers where the vocabulary names no probe
@@ -241,22 +165,59 @@ def compare(
     distances = [distance for distance, _ in probe_lines]
     different = [line for distance, line in probe_lines if distance > 1.0]
 
-    def differences(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[tuple[float, str]]:
-        return _probe_differences(Observation(probes=before), Observation(probes=after), probes)
-
-    way = compare_moments(original, mutant, differences)
+    way, way_line, moments = _on_the_way(original, mutant, probes)
     lines = [
         *_outcome_lines(original, mutant),
         *different,
-        *([way.line] if (way.distance or 0.0) > 1.0 else []),
+        *([way_line] if (way or 0.0) > 1.0 else []),
         *filter(None, [returned_line, trace_line]),
     ]
     distance = max(distances, default=None)
     if gaps and not different:  # what cannot be read may be anywhere
         distance = None
-    compared = _compared(original, mutant, way.count)
+    compared = _compared(original, mutant, moments)
     figures = tuple(_figures(original, mutant, probes))
-    return Difference(not lines, distance, tuple(lines), gaps, way.distance, compared, figures)
+    return Difference(not lines, distance, tuple(lines), gaps, way, compared, figures)
+
+
+def _on_the_way(
+    original: Observation, mutant: Observation, probes: Sequence[Probe]
+) -> tuple[float | None, str, int]:
+    """How far readings after the same calls are apart, as far as both made the same calls.
+
+    Returns the greatest distance, in multiples of its probe's tolerance (None if there is nothing to
+    compare), that difference in words, and how many moments were compared.
+    """
+    before, after = _readings(original.moments or ()), _readings(mutant.moments or ())
+    same = _same_calls(original, mutant)
+    common = [call for call in before if call in after and call <= same]
+    worst, line = 0.0, ""
+    for call in common:
+        if before[call] == after[call]:
+            continue
+        sides = Observation(probes=before[call]), Observation(probes=after[call])
+        for distance, text in _probe_differences(*sides, probes)[:1]:
+            if distance > worst:
+                worst = distance
+                line = f"on the way, after call {call}, {mutant.events[call - 1].key}: {text}"
+    return worst if common else None, line, len(common)
+
+
+def _same_calls(original: Observation, mutant: Observation) -> int:
+    """How many calls at the beginning are the same."""
+    pairs = zip(original.events, mutant.events, strict=False)
+    shorter = min(len(original.events), len(mutant.events))
+    return next((number for number, (one, other) in enumerate(pairs) if one.key != other.key), shorter)
+
+
+def _readings(moments: Sequence[Any]) -> dict[int, dict[str, Any]]:
+    """All parts at each moment; a trace that is cut off has its last number more than once."""
+    found: dict[int, dict[str, Any]] = {}
+    last: dict[str, Any] = {}
+    for call, parts, is_whole in moments:
+        last = dict(parts) if is_whole else {**last, **parts}
+        found.setdefault(call, last)
+    return found
 
 
 def as_steady(
@@ -406,11 +367,8 @@ def _returned_difference(original: Observation, mutant: Observation, probes: Seq
     """
     tolerance = min((probe.tolerance for probe in probes), default=DEFAULT_TOLERANCE)
     if original.prepared is not None and mutant.prepared is not None:
-        shorter = min(len(original.prepared), len(mutant.prepared))
-        pairs = zip(
-            original.prepared[::-1][:shorter][::-1], mutant.prepared[::-1][:shorter][::-1], strict=True
-        )
-        for before, after in pairs:
+        pairs = zip(original.prepared[::-1], mutant.prepared[::-1], strict=False)
+        for before, after in [*pairs][::-1]:
             if not _is_same(before, after, tolerance):
                 return _returned_text(before, after)
     if original.returned is None or mutant.returned is None:
