@@ -5,39 +5,13 @@ from __future__ import annotations
 import json
 import math
 import zlib
-from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from mutabot.border.codec import from_data
 from mutabot.border.events import TestEnd
-from mutabot.model import By, LeftOut, Mutant, Outcome, Verdict, Vocabulary
+from mutabot.model import By, LeftOut, Mutant, Outcome, Verdict
 
-from .records import (
-    ALTERED,
-    BUDGET,
-    CONFIRMATION,
-    DRAWING,
-    DRAWS,
-    FLAKY,
-    OPERATORS,
-    REACHING,
-    REMARKS,
-    REPEATS,
-    SHARD,
-    SINCE,
-    VERIFICATION,
-    BaselineTest,
-    Budgeted,
-    Confirmation,
-    ControlEnd,
-    Drawing,
-    Flaky,
-    Reaching,
-    Repeats,
-    ShardOf,
-    Since,
-    Verification,
-)
+from .records import FACTS, BaselineTest, Budgeted, ControlEnd, Reaching, ShardOf
 
 T = TypeVar("T")
 #: what reading a row raises that does not hold what it should
@@ -45,37 +19,6 @@ UNFIT = (ValueError, TypeError, KeyError, AttributeError, OverflowError, Recursi
 #: rounds of a campaign, characters of a row, bytes of a file's text, and levels of nesting, at most
 MOST_ROUNDS, _LONGEST, _LARGEST, _DEEPEST = 100_000, 1 << 28, 1 << 28, 100
 MOST_SHARDS = 1_000_000
-#: the types of facts that are read as they are
-_FACTS: Mapping[str, Any] = {
-    "mutabot": str,
-    "python": str,
-    "versions": Mapping[str, str],
-    "root": str,
-    "seed": int,
-    "rounds": int,
-    "engine": str,
-    "jobs": int,
-    "families": tuple[str, ...],
-    "every_test": bool,
-    "fresh": bool,
-    "started": float,
-    "seconds": float,
-    "shards": int,
-    ALTERED: tuple[str, ...],
-    REMARKS: tuple[str, ...],
-    OPERATORS: Mapping[str, str],
-    DRAWS: tuple[str, ...],
-    DRAWING: Drawing,
-    VERIFICATION: Verification,
-    FLAKY: Flaky,
-    REPEATS: Repeats,
-    CONFIRMATION: Confirmation,
-    SINCE: Since,
-    BUDGET: Budgeted,
-    SHARD: ShardOf,
-    REACHING: Reaching,
-    "vocabulary": Vocabulary,
-}
 #: seconds since 1970 that a date can be made of, about the year 5000
 _LATEST = 1e11
 
@@ -108,9 +51,9 @@ def _refuse_excess(value: Any, depth: int) -> None:
 
 def fact(key: str, value: Any) -> Any:
     """A fact of a campaign, if it can be one."""
-    if value is None or key not in _FACTS:
+    if value is None or key not in FACTS:
         return value
-    found = from_data(_FACTS[key], value)
+    found = from_data(FACTS[key], value)
     if key == "rounds" and not 0 < value <= MOST_ROUNDS:
         raise ValueError
     if isinstance(found, ShardOf) and not 1 <= found.number <= found.of <= MOST_SHARDS:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import field
 from hashlib import blake2b
+from typing import Any
 
 from mutabot.border.events import TestEnd
 from mutabot.frozen import frozen
-from mutabot.model import Outcome, Verdict
+from mutabot.model import Outcome, Verdict, Vocabulary
 from mutabot.model.outcome import same_end
 
 #: keys of the journal's meta
@@ -356,3 +357,36 @@ class Repeats:
     others: Repeated = Repeated()
     certain: int = 0
     survivors: Repeated = Repeated()
+
+
+#: the types of facts that are read as they are
+FACTS: Mapping[str, Any] = {
+    "mutabot": str,
+    "python": str,
+    "versions": Mapping[str, str],
+    "root": str,
+    "seed": int,
+    "rounds": int,
+    "engine": str,
+    "jobs": int,
+    "families": tuple[str, ...],
+    "every_test": bool,
+    "fresh": bool,
+    "started": float,
+    "seconds": float,
+    "shards": int,
+    ALTERED: tuple[str, ...],
+    REMARKS: tuple[str, ...],
+    OPERATORS: Mapping[str, str],
+    DRAWS: tuple[str, ...],
+    DRAWING: Drawing,
+    VERIFICATION: Verification,
+    FLAKY: Flaky,
+    REPEATS: Repeats,
+    CONFIRMATION: Confirmation,
+    SINCE: Since,
+    BUDGET: Budgeted,
+    SHARD: ShardOf,
+    REACHING: Reaching,
+    "vocabulary": Vocabulary,
+}

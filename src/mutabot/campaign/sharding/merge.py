@@ -20,15 +20,13 @@ from mutabot.journal.recordings import Recordings
 from mutabot.journal.records import (
     ALTERED,
     DRAWING,
+    FACTS,
     FLAKY,
     REPEATS,
     SHARD,
     VERIFICATION,
     Flaky,
-    Repeated,
-    Repeats,
     ShardOf,
-    Verification,
 )
 from mutabot.model import Mutant
 
@@ -239,49 +237,24 @@ def _meta(parts: Sequence[Part]) -> dict[str, Any]:
         values = [meta[key] for meta in metas if meta.get(key) is not None]
         if values:
             found[key] = together(values)
-    for key, added in _ADDED.items():
-        said = [meta[key] for meta in metas if key in meta]
+    for key in (ALTERED, FLAKY, VERIFICATION, REPEATS):
+        said = [from_data(FACTS[key], meta[key]) for meta in metas if key in meta]
         if said:
-            found[key] = added(said)
+            found[key] = to_data(_flaky(said)) if key == FLAKY else _summed([to_data(one) for one in said])
     return found
 
 
-def _flaky(said: Sequence[Any]) -> Any:
-    each = [from_data(Flaky, one) for one in said]
-    tests = dict.fromkeys(test for one in each for test in one.tests)
-    return to_data(Flaky(tuple(tests), max(one.known for one in each)))
+def _flaky(said: Sequence[Flaky]) -> Flaky:
+    tests = dict.fromkeys(test for one in said for test in one.tests)
+    return Flaky(tuple(tests), max(one.known for one in said))
 
 
-def _verification(said: Sequence[Any]) -> Any:
-    each = [from_data(Verification, one) for one in said]
-    disagreements = tuple(other for one in each for other in one.disagreements)
-    whole = Verification(sum(one.wanted for one in each), sum(one.checked for one in each), disagreements)
-    return to_data(whole)
-
-
-def _repeats(said: Sequence[Any]) -> Any:
-    each = [from_data(Repeats, one) for one in said]
-    doubted, others, survivors = (
-        Repeated(
-            sum(one.outcomes for one in those),
-            sum(one.repeated for one in those),
-            sum(one.changed for one in those),
-        )
-        for those in (
-            [one.doubted for one in each],
-            [one.others for one in each],
-            [one.survivors for one in each],
-        )
-    )
-    return to_data(Repeats(doubted, others, sum(one.certain for one in each), survivors))
-
-
-_ADDED = {
-    ALTERED: lambda said: [line for one in said for line in one],
-    FLAKY: _flaky,
-    VERIFICATION: _verification,
-    REPEATS: _repeats,
-}
+def _summed(said: Sequence[Any]) -> Any:
+    """Data of one form: numbers are added, lists put one behind the other."""
+    first = said[0]
+    if isinstance(first, dict):
+        return {key: _summed([one[key] for one in said]) for key in first}
+    return [item for one in said for item in one] if isinstance(first, list) else sum(said)
 
 
 def _known(journal: Journal, parts: Sequence[Part]) -> list[tuple[Any, bool]]:
