@@ -28,7 +28,7 @@ from mutabot.campaign.reuse.reuse import Reused, reuse
 from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.search.search import run_ladders
 from mutabot.campaign.sharding.shards import part_of, write_shard
-from mutabot.campaign.since.since import Altered, Revision, only_altered, open_others
+from mutabot.campaign.since.since import Revision, altered_since, only_altered, open_others
 from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Executor, Result
 from mutabot.errors import JournalError
@@ -132,8 +132,8 @@ def _run(
     note_outdated(journal, request, dependencies)
     found = reuse(journal, dependencies, part.mutants, request.rounds, progress, others)
     if revision is not None:
-        altered = Altered.of(revision, campaign, _collected(results), dependencies, part.mutants)
-        part = only_altered(journal, altered, found, part, request.rounds, progress)
+        altered = altered_since(revision, campaign, _collected(results), dependencies, part.mutants)
+        part = only_altered(journal, revision, altered, found, part, request.rounds, progress)
     sink = Sink(journal, _key_of(journal, dependencies, plan))
     try:
         is_whole = _run_all(campaign, part, sink, found, started)

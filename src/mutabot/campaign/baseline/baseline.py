@@ -79,12 +79,22 @@ class PlantedFaults:
 
     def choices(self, mutant: Mutant) -> tuple[Choice, ...]:
         """The alternatives in the program text that a mutant is."""
-        choice = self._choice(mutant)
-        return () if choice is None else (choice,)
+        if mutant.family == CONTROL:
+            number = self._numbers.get(Place.of(mutant))
+            index = IDENTITY if mutant.operator == Identity.name else FATAL
+            return () if number is None else (Choice(number, index),)
+        planted = self.by_id.get(mutant.id)
+        return () if planted is None or planted.choice is None else (planted.choice,)
 
     def in_process(self, mutant: Mutant) -> dict[str, InProcess]:
         """What puts a mutant in place that its provider does by itself, by the mutant's id."""
-        how = self._in_process(mutant)
+        if mutant.family == CONTROL:
+            place = Place.of(mutant)
+            is_own = place in self.providers and place not in self._numbers
+            how = InProcess(f"{_CONTROLS}:{mutant.operator.capitalize()}") if is_own else None
+        else:
+            planted = self.by_id.get(mutant.id)
+            how = planted.in_process if planted is not None else None
         return {} if how is None else {mutant.id: how}
 
     def instrumentation(self, mutants: Iterable[Mutant], *, active: bool = False) -> Instrumentation | None:
@@ -105,22 +115,6 @@ class PlantedFaults:
         return Instrumentation(
             tuple(text for text in texts if text.places), active=tuple(choices) if active else ()
         )
-
-    def _choice(self, mutant: Mutant) -> Choice | None:
-        if mutant.family == CONTROL:
-            number = self._numbers.get(Place.of(mutant))
-            index = IDENTITY if mutant.operator == Identity.name else FATAL
-            return Choice(number, index) if number is not None else None
-        planted = self.by_id.get(mutant.id)
-        return planted.choice if planted is not None else None
-
-    def _in_process(self, mutant: Mutant) -> InProcess | None:
-        if mutant.family == CONTROL:
-            place = Place.of(mutant)
-            is_own = place in self.providers and place not in self._numbers
-            return InProcess(f"{_CONTROLS}:{mutant.operator.capitalize()}") if is_own else None
-        planted = self.by_id.get(mutant.id)
-        return planted.in_process if planted is not None else None
 
 
 #: characters that all answers of one mutant may take; they go to every process that runs it

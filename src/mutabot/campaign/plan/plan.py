@@ -7,7 +7,7 @@ of earlier campaigns stay in the journal with their outcomes, and reports show t
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from hashlib import blake2b
 from itertools import groupby
@@ -42,37 +42,20 @@ class Plan:
 
 def draw(mutants: Sequence[Mutant], seed: int, sample: Sample) -> tuple[list[Mutant], Drawing]:
     """The mutants to run, in their order and with their numbers, and how they were drawn."""
-    strata = _strata(mutants)
-    drawn = _sampled(strata, seed, sample)
+    strata: dict[tuple[str, str], list[Mutant]] = {}
+    for mutant in mutants:
+        strata.setdefault((mutant.family, mutant.site.role.value), []).append(mutant)
+    drawn: set[str] = set()
+    for family in {family for family, _ in strata}:
+        roles = {role: those for (name, role), those in strata.items() if name == family}
+        for role, size in sample.sizes({role: len(those) for role, those in roles.items()}).items():
+            drawn.update(one.id for one in shuffled(roles[role], f"{seed}:sample")[:size])
     described = (
         Stratum(family, role, len(those), sum(one.id in drawn for one in those))
         for (family, role), those in strata.items()
     )
     drawing = Drawing(sample.text, len(mutants), tuple(described))
     return [mutant for mutant in mutants if mutant.id in drawn], drawing
-
-
-def _sampled(strata: Mapping[tuple[str, str], Sequence[Mutant]], seed: int, sample: Sample) -> set[str]:
-    return {
-        mutant.id
-        for family in dict.fromkeys(family for family, _ in strata)
-        for mutant in _sampled_of_family(
-            {role: those for (name, role), those in strata.items() if name == family}, seed, sample
-        )
-    }
-
-
-def _sampled_of_family(roles: Mapping[str, Sequence[Mutant]], seed: int, sample: Sample) -> Iterator[Mutant]:
-    sizes = sample.sizes({role: len(those) for role, those in roles.items()})
-    for role, those in roles.items():
-        yield from shuffled(those, f"{seed}:sample")[: sizes[role]]
-
-
-def _strata(mutants: Iterable[Mutant]) -> dict[tuple[str, str], list[Mutant]]:
-    strata: dict[tuple[str, str], list[Mutant]] = {}
-    for mutant in mutants:
-        strata.setdefault((mutant.family, mutant.site.role.value), []).append(mutant)
-    return strata
 
 
 def shuffled(mutants: Iterable[Mutant], salt: str) -> list[Mutant]:

@@ -268,47 +268,38 @@ def open_others(request: Request, progress: Progress) -> list[JournalReader]:
         return []
 
 
-@frozen
-class Altered:
-    """Which mutants the changes since a revision can have altered.
-
-    Attributes:
-        revision: the revision.
-        why: by mutant and round, why; those that are missing cannot have been altered.
-    """
-
-    revision: Revision
-    why: dict[Pair, str]
-
-    @classmethod
-    def of(
-        cls,
-        revision: Revision,
-        campaign: Campaign,
-        tests: Iterable[str],
-        now: Dependencies,
-        mutants: Sequence[Mutant],
-    ) -> Altered:
-        """Compare the files of the revision with those of now."""
-        request = campaign.request
-        pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
-        try:
-            then = dependencies_then(revision, request, campaign.baseline, tests, now)
-        except ConfigurationError as error:
-            campaign.progress.note(f"{error}; so everything counts as changed")
-            reason = f"the configuration of {revision.ref} cannot be read"
-            return cls(revision, {(mutant.id, round): reason for mutant, round in pairs})
-        why = {}
-        earlier = Earlier(now, then.parts.get, reaches={then.tree: then.reach})
-        for mutant, round in pairs:
-            was = then.key(mutant, round)
-            if not says_same(now.key(mutant, round), was):
-                why[mutant.id, round] = earlier.why(was, mutant, round)
-        return cls(revision, why)
+def altered_since(
+    revision: Revision,
+    campaign: Campaign,
+    tests: Iterable[str],
+    now: Dependencies,
+    mutants: Sequence[Mutant],
+) -> dict[Pair, str]:
+    """Mutants and rounds that the changes since a revision can have altered, and why."""
+    request = campaign.request
+    pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
+    try:
+        then = dependencies_then(revision, request, campaign.baseline, tests, now)
+    except ConfigurationError as error:
+        campaign.progress.note(f"{error}; so everything counts as changed")
+        reason = f"the configuration of {revision.ref} cannot be read"
+        return {(mutant.id, round): reason for mutant, round in pairs}
+    earlier = Earlier(now, then.parts.get, reaches={then.tree: then.reach})
+    return {
+        (mutant.id, round): earlier.why(was, mutant, round)
+        for mutant, round in pairs
+        if not says_same(now.key(mutant, round), was := then.key(mutant, round))
+    }
 
 
 def only_altered(
-    journal: Journal, altered: Altered, found: Reused, plan: Plan, rounds: int, progress: Progress
+    journal: Journal,
+    revision: Revision,
+    altered: Mapping[Pair, str],
+    found: Reused,
+    plan: Plan,
+    rounds: int,
+    progress: Progress,
 ) -> Plan:
     """The plan without mutants of which nothing is known nor run.
 
@@ -317,18 +308,18 @@ def only_altered(
     """
     pairs = [(mutant.id, round) for round in range(rounds) for mutant in plan.mutants]
     again = {pair: why for pair, why in found.why.items() if why == GONE or pair in found.whole}
-    why = {**altered.why, **again}
+    why = {**altered, **again}
     left = [pair for pair in pairs if pair not in found.done and pair not in why]
     run = {pair: reason for pair, reason in why.items() if pair not in found.done}
     reasons = Counter(_why_not_taken(found, pair) for pair in left)
     since = Since(
-        ref=altered.revision.ref,
-        commit=altered.revision.commit,
+        ref=revision.ref,
+        commit=revision.commit,
         run=dict(Counter(run.values()).most_common()),
         taken_over=len(found.done),
         not_judged=dict(reasons.most_common()),
     )
-    _tell(since, altered.revision.short, progress)
+    _tell(since, revision.short, progress)
     journal.set_meta(SINCE, to_data(since))
     known = {mutant for mutant, _ in found.done | run.keys()}
     kept = [mutant for mutant in plan.mutants if mutant.id in known]
