@@ -92,10 +92,8 @@ def replay(
         request = request_again(path.parent.parent, found, jobs)
         with progress_shown() as progress:
             replayed = replay_one(request, journal, chosen, rounds, progress)
-    if json:
-        print_json(replayed_data(chosen, replayed))
-    else:
-        print_replayed(make_console(), chosen, replayed)
+    data = replayed_data(chosen, replayed)
+    print_json(data) if json else print_replayed(make_console(), chosen, replayed)
     differs = any(one.agrees is False for one in replayed)
     raise typer.Exit(ExitCode.UNRELIABLE if differs else ExitCode.FINE)
 

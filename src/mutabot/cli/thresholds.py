@@ -50,7 +50,10 @@ def thresholds(
 ) -> None:
     """Show from which magnitude on the tests notice graded faults, the loosest first."""
     from mutabot.analysis.thresholds.thresholds import thresholds_of
+    from mutabot.report.terminal.console import make_console
+    from mutabot.report.thresholds.data import thresholds_data
     from mutabot.report.thresholds.picture import check_picture
+    from mutabot.report.thresholds.text import print_thresholds
 
     if sort not in _SORTS:
         raise UsageError(unknown_name_text("order", sort, _SORTS))
@@ -68,8 +71,10 @@ def thresholds(
     found = thresholds_of(results, sort)
     if suggest_demands:
         _suggest(found, context.obj)
+    elif json:
+        print_json(thresholds_data(found))
     else:
-        _show(found, steps=steps, json=json)
+        print_thresholds(make_console(), found, steps=steps)
     if picture is not None:
         _draw(found, picture)
 
@@ -87,35 +92,18 @@ def _read(journal: Path) -> Results:
     return found
 
 
-def _show(found: Thresholds, *, steps: bool, json: bool) -> None:
-    if json:
-        from mutabot.report.thresholds.data import thresholds_data
-
-        print_json(thresholds_data(found))
-    else:
-        from mutabot.report.terminal.console import make_console
-        from mutabot.report.thresholds.text import print_thresholds
-
-        print_thresholds(make_console(), found, steps=steps)
-
-
 def _compare(results: Results, journal: Path, old: Path, *, json: bool) -> None:
     from mutabot.analysis.stored import journal_at
     from mutabot.analysis.thresholds.thresholds import compare
+    from mutabot.report.terminal.console import make_console
+    from mutabot.report.thresholds.data import compared_data
+    from mutabot.report.thresholds.text import print_compared
 
     other = journal_at(old)
     if other.exists() and other.samefile(journal):
         raise UsageError(f"{old} is the campaign itself; keep a copy of its journal to compare with it later")
     comparison = compare(_read(other), results)
-    if json:
-        from mutabot.report.thresholds.data import compared_data
-
-        print_json(compared_data(comparison))
-    else:
-        from mutabot.report.terminal.console import make_console
-        from mutabot.report.thresholds.text import print_compared
-
-        print_compared(make_console(), comparison)
+    print_json(compared_data(comparison)) if json else print_compared(make_console(), comparison)
 
 
 def _suggest(found: Thresholds, project: Path) -> None:
