@@ -14,26 +14,27 @@ from bisect import bisect_left
 #: the way to a value from the top of a document: keys of tables and indices of lists
 KeyPath = tuple[str | int, ...]
 
-_BLANK = re.compile(r"(?:[ \t\n]|#[^\n]*)*")
-_SPACE = re.compile(r"[ \t]*")
-_KEY = re.compile(r"""(?P<bare>[A-Za-z0-9_-]+)|(?P<quoted>"(?:[^"\\\n]|\\.)*"|'[^'\n]*')""")
-_TEXT = re.compile(
-    r'''"""(?:[^\\]|\\.)*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*\'''',
-    re.DOTALL,
+_IGNORED = r"(?:[ \t\n]|#[^\n]*)*"
+_BLANK = re.compile(_IGNORED)
+_OPENED = re.compile(r"(\[{0,2})[ \t]*")
+_CLOSED = re.compile(r"\]{1,2}")
+_KEY = re.compile(
+    r"""(?:(?P<bare>[A-Za-z0-9_-]+)|(?P<quoted>"(?:[^"\\\n]|\\.)*"|'[^'\n]*'))[ \t]*(?P<dot>(?:\.[ \t]*)?)"""
 )
-_SCALAR = re.compile(r"[^,\]}#\n]+")
+_EQUALS = re.compile(r"=[ \t]*")
+_PLAIN = re.compile(
+    r"""\"""(?:[^\\]|\\.)*?"{3,5}|\'\'\'.*?\'{3,5}|"(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[^,\]}#\n]+""", re.DOTALL
+)
+_COMMA = re.compile(f"{_IGNORED}(?:,{_IGNORED})?")
+_ENDS = {"[": "]", "{": "}"}
 
 
 def key_lines(text: str) -> dict[KeyPath, int]:
     """The 1-based line of every key, table header and list item of a valid TOML text."""
     scanner = _Scanner(text)
-    with contextlib.suppress(_LostError, RecursionError):
+    with contextlib.suppress(ValueError, IndexError, RecursionError):
         scanner.document()
     return scanner.lines
-
-
-class _LostError(Exception):
-    """The scan does not understand the text."""
 
 
 class _Scanner:
@@ -45,91 +46,62 @@ class _Scanner:
 
     def document(self) -> None:
         table: KeyPath = ()
-        while True:
-            self.skip(_BLANK)
-            if self.position >= len(self.text):
-                return
-            table = self.header() if self.sees("[") else self.pair(table)
+        self.take(_BLANK)
+        while self.position < len(self.text):
+            start, opened = self.position, self.take(_OPENED)[1]
+            if opened:
+                table = self.header(start, is_list=opened == "[[")
+            else:
+                self.pair(table)
+            self.take(_BLANK)
 
-    def header(self) -> KeyPath:
-        start = self.position
-        is_list = self.sees("[[")
-        self.position += 2 if is_list else 1
-        self.skip(_SPACE)
-        keys = self.key()
-        self.skip(_SPACE)
-        self.position += 2 if is_list else 1
-        place = self.inside_tables(keys[:-1]) + keys[-1:]
+    def header(self, start: int, *, is_list: bool) -> KeyPath:
+        *outer, last = self.key()
+        self.take(_CLOSED)
+        place: KeyPath = ()
+        for key in outer:
+            place = self.with_index((*place, key))
+        place = (*place, last)
         if is_list:
             self.tables[place] = self.tables.get(place, 0) + 1
-        self.note(place, start)
-        place = self.with_index(place)
-        self.note(place, start)
-        return place
+        for one in (place, self.with_index(place)):
+            self.note(one, start)
+        return self.with_index(place)
 
-    def pair(self, table: KeyPath) -> KeyPath:
+    def pair(self, table: KeyPath) -> None:
         start = self.position
         place = table + self.key()
         for length in range(len(table) + 1, len(place) + 1):
             self.note(place[:length], start)
-        self.skip(_SPACE)
-        self.expect("=")
+        self.take(_EQUALS)
         self.value(place)
-        return table
 
     def value(self, place: KeyPath) -> None:
-        self.skip(_SPACE)
-        if self.sees("["):
-            self.array(place)
-        elif self.sees("{"):
-            self.inline_table(place)
-        elif self.sees('"') or self.sees("'"):
-            self.match(_TEXT)
-        else:
-            self.match(_SCALAR)
-
-    def array(self, place: KeyPath) -> None:
-        self.expect("[")
+        end = _ENDS.get(self.text[self.position])
+        if end is None:
+            self.take(_PLAIN)
+            return
+        self.position += 1
+        self.take(_BLANK)
         index = 0
-        self.skip(_BLANK)
-        while not self.sees("]"):
-            self.note((*place, index), self.position)
-            self.value((*place, index))
+        while self.text[self.position] != end:
+            if end == "}":
+                self.pair(place)
+            else:
+                self.note((*place, index), self.position)
+                self.value((*place, index))
             index += 1
-            self.comma("]")
-        self.expect("]")
-
-    def inline_table(self, place: KeyPath) -> None:
-        self.expect("{")
-        self.skip(_BLANK)
-        while not self.sees("}"):
-            self.pair(place)
-            self.comma("}")
-        self.expect("}")
-
-    def comma(self, end: str) -> None:
-        self.skip(_BLANK)
-        if not self.sees(end):
-            self.expect(",")
-            self.skip(_BLANK)
+            self.take(_COMMA)
+        self.position += 1
 
     def key(self) -> KeyPath:
         parts: list[str] = []
-        while True:
-            match = self.match(_KEY)
-            bare = match["bare"]
-            parts.append(bare if bare is not None else tomllib.loads(f"key = {match['quoted']}")["key"])
-            self.skip(_SPACE)
-            if not self.sees("."):
-                return tuple(parts)
-            self.expect(".")
-            self.skip(_SPACE)
-
-    def inside_tables(self, keys: KeyPath) -> KeyPath:
-        place: KeyPath = ()
-        for key in keys:
-            place = self.with_index((*place, key))
-        return place
+        dot = "."
+        while dot:
+            found = self.take(_KEY)
+            parts.append(found["bare"] or tomllib.loads(f"key = {found['quoted']}")["key"])
+            dot = found["dot"]
+        return tuple(parts)
 
     def with_index(self, place: KeyPath) -> KeyPath:
         return (*place, self.tables[place] - 1) if place in self.tables else place
@@ -137,20 +109,9 @@ class _Scanner:
     def note(self, place: KeyPath, position: int) -> None:
         self.lines.setdefault(place, bisect_left(self.ends, position) + 1)
 
-    def sees(self, text: str) -> bool:
-        return self.text.startswith(text, self.position)
-
-    def skip(self, pattern: re.Pattern[str]) -> None:
-        self.match(pattern)
-
-    def expect(self, text: str) -> None:
-        if not self.sees(text):
-            raise _LostError
-        self.position += len(text)
-
-    def match(self, pattern: re.Pattern[str]) -> re.Match[str]:
+    def take(self, pattern: re.Pattern[str]) -> re.Match[str]:
         match = pattern.match(self.text, self.position)
         if match is None:
-            raise _LostError
+            raise ValueError("the scan does not understand the text")
         self.position = match.end()
         return match
