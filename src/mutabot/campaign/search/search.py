@@ -14,13 +14,12 @@ round. The first round comes first; the others, which begin with what it found, 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from random import Random
 
 from mutabot.campaign.campaign import Campaign, Sink
 from mutabot.campaign.engines.choice import run_trials
-from mutabot.campaign.engines.engine import Trial
 from mutabot.campaign.faults.demanded import Ladder
 from mutabot.model import Outcome
 from mutabot.model.graded import Seen, bracket_of, seen
@@ -141,11 +140,6 @@ def _outward(row: Mapping[Step, Seen], start: Step, way: int, size: int) -> Step
         reach *= 2
 
 
-def steps_run(searches: Iterable[LadderSearch]) -> int:
-    """How many runs were made in all."""
-    return sum(len(row) for search in searches for row in search.found.values())
-
-
 def run_ladders(
     campaign: Campaign,
     ladders: Sequence[Ladder],
@@ -165,67 +159,44 @@ def run_ladders(
     kept = {
         (one.mutant, one.round): one for one in sink.journal.outcomes() if (one.mutant, one.round) in done
     }
-    search = _Search(campaign, ladders, sink, kept, always or {})
+    sizes = always or {}
+    searches = {
+        ladder.id: LadderSearch(
+            len(ladder.mutants),
+            campaign.request.rounds,
+            campaign.request.seed,
+            frozenset(
+                step for step, one in enumerate(ladder.mutants) if one.magnitude in sizes.get(ladder.id, ())
+            ),
+        )
+        for ladder in ladders
+    }
+
+    found: list[Outcome] = []
+
+    def run(known: range) -> None:
+        """Run until nothing more is asked in these rounds; a violation asks in all of them."""
+        while trials := [
+            (searches[one.id], step, one.mutants[step], round)
+            for round in known
+            for one in ladders
+            for step in sorted(searches[one.id].due(round))
+        ]:
+            found.clear()
+            new = [(mutant, round) for *_, mutant, round in trials if (mutant.id, round) not in kept]
+            run_trials(campaign, new, sink, found.append)
+            ended = {**kept, **{(one.mutant, one.round): one for one in found}}
+            for search, step, mutant, round in trials:
+                outcome = ended.get((mutant.id, round))
+                if outcome is not None:
+                    search.take(round, step, seen(outcome))
+
     rounds = range(campaign.request.rounds)
-    search.run(rounds[:1])
-    search.run(rounds[1:])
+    run(rounds[:1])
+    run(rounds)
     whole = len(rounds) * sum(len(ladder.mutants) for ladder in ladders)
-    runs = steps_run(search.searches.values())
+    runs = sum(len(row) for search in searches.values() for row in search.found.values())
     campaign.progress.note(
         f"thresholds: {len(ladders)} ladders in {len(rounds)} rounds took {runs} runs; all their magnitudes "
         f"would have taken {whole}"
     )
-
-
-@dataclass(slots=True)
-class _Search:
-    campaign: Campaign
-    ladders: Sequence[Ladder]
-    sink: Sink
-    kept: Mapping[tuple[str, int], Outcome]
-    always: Mapping[str, Collection[float]]
-    searches: dict[str, LadderSearch] = field(init=False)
-
-    def __post_init__(self) -> None:
-        request = self.campaign.request
-        self.searches = {
-            one.id: LadderSearch(
-                len(one.mutants), request.rounds, seed=request.seed, always=self._always(one)
-            )
-            for one in self.ladders
-        }
-
-    def run(self, rounds: Sequence[int]) -> None:
-        """Run until nothing more is asked in these rounds; a violation asks in all before as well."""
-        known = range(max(rounds, default=-1) + 1)
-        while trials := [trial for round in known for trial in self._due(round)]:
-            new: list[Trial] = []
-            for ladder, step, round in trials:
-                mutant = ladder.mutants[step]
-                outcome = self.kept.get((mutant.id, round))
-                if outcome is None:
-                    new.append((mutant, round))
-                else:
-                    self._take(ladder, step, outcome)
-            ended: dict[tuple[str, int], Outcome] = {}
-
-            def take(one: Outcome, ended: dict[tuple[str, int], Outcome] = ended) -> None:
-                ended[one.mutant, one.round] = one
-
-            run_trials(self.campaign, new, self.sink, take)
-            for ladder, step, round in trials:
-                outcome = ended.get((ladder.mutants[step].id, round))
-                if outcome is not None:
-                    self._take(ladder, step, outcome)
-
-    def _due(self, round: int) -> Iterable[tuple[Ladder, Step, int]]:
-        for ladder in self.ladders:
-            for step in sorted(self.searches[ladder.id].due(round)):
-                yield ladder, step, round
-
-    def _take(self, ladder: Ladder, step: Step, outcome: Outcome) -> None:
-        self.searches[ladder.id].take(outcome.round, step, seen(outcome))
-
-    def _always(self, ladder: Ladder) -> frozenset[Step]:
-        sizes = self.always.get(ladder.id, ())
-        return frozenset(step for step, one in enumerate(ladder.mutants) if one.magnitude in sizes)
