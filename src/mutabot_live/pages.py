@@ -117,7 +117,7 @@ class Pages:
             stored = open_campaign(self._journal)
         except JournalError:  # there is none yet
             return None, Cleaner(None)
-        if stored.results.attempt is not None or not stored.results.everything:
+        if stored.attempt is not None or not stored.everything:
             return None, Cleaner(None)  # it is still that of the campaign before
         return portable(stored), Cleaner(stored.meta.get("root"))
 

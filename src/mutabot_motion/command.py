@@ -109,7 +109,7 @@ def _tells(outcome: Outcome) -> tuple[bool, float, int]:
 def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:
     found = results.meta.get(REACHING)
     if found is None:  # an older journal does not say it
-        return tuple(dict.fromkeys(one.test.test for one in results.tests))
+        return tuple(dict.fromkeys(one.test.test for one in results.baseline))
     return from_data(Reaching, found).at(result.mutant.site.id)
 
 

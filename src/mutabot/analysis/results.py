@@ -120,7 +120,7 @@ class Results:
             ``groups``, because it mixes roles.
         left_out: what the plan leaves out.
         controls: the control mutants.
-        tests: the baseline.
+        baseline: its tests on the original.
         verification: what ``--verify`` found; None if it was not asked for.
         repeats: how many outcomes were run once more, and how many ended otherwise.
         flaky: tests that cannot be relied on.
@@ -144,7 +144,7 @@ class Results:
     all: RoundScores
     left_out: tuple[LeftOut, ...]
     controls: tuple[ControlEnd, ...]
-    tests: tuple[BaselineTest, ...]
+    baseline: tuple[BaselineTest, ...]
     verification: Verification | None = None
     repeats: Repeats = field(default_factory=Repeats)
     flaky: Flaky = field(default_factory=Flaky)
@@ -168,6 +168,11 @@ class Results:
         if not self.graded:
             return self.mutants
         return tuple(sorted((*self.mutants, *self.graded), key=lambda one: one.mutant.number))
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """Every outcome there is: by mutant, then by round."""
+        return tuple(outcome for result in self.everything for outcome in result.outcomes)
 
     @property
     def ladders(self) -> int:
@@ -202,8 +207,7 @@ class Results:
     @property
     def confirmation(self) -> Confirmed | None:
         """What the whole suite says of mutants that were run without some tests; None if all were run."""
-        outcomes = (one for result in self.everything for one in result.outcomes)
-        return Confirmed.of(outcomes, self.meta.get("seed") or 0)
+        return Confirmed.of(self.outcomes, self.meta.get("seed") or 0)
 
     @property
     def is_incomplete(self) -> bool:
@@ -271,17 +275,14 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         outcomes = [*outcomes, *old.outcomes]
         groups = groups_of(mutants, outcomes, rounds, None)
     graded = {mutant.id for mutant in mutants if mutant.has_sizes}
+    old_ids = {outcome.mutant for outcome in old.outcomes}
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
     def result(mutant: Mutant) -> MutantResult:
         row = tuple(by_place.get((mutant.id, number)) for number in range(rounds))
         why = explain(mutant, [outcome for outcome in row if outcome is not None], vocabulary)
-        found = MutantResult(mutant, row, quantity_of(mutant, vocabulary), why)
-        return replace(
-            found,
-            earlier=mutant.id in old.ids,
-            outdated=mutant.id in old.outdated,
-        )
+        quantity = quantity_of(mutant, vocabulary)
+        return MutantResult(mutant, row, quantity, why, mutant.id in old_ids, mutant.id in old.outdated)
 
     found = Results(
         meta=meta,
@@ -293,7 +294,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         all=RoundScores.of([one for one in outcomes if one.mutant not in graded], rounds),
         left_out=tuple(journal.left_out()),
         controls=tuple(journal.controls()),
-        tests=tuple(journal.tests()),
+        baseline=tuple(journal.tests()),
         verification=from_data(Verification, meta[VERIFICATION]) if VERIFICATION in meta else None,
         repeats=from_data(Repeats, meta[REPEATS]) if REPEATS in meta else Repeats(),
         flaky=from_data(Flaky, meta[FLAKY]) if FLAKY in meta else Flaky(),
@@ -323,10 +324,6 @@ class _Earlier:
     mutants: tuple[Mutant, ...] = ()
     outcomes: tuple[Outcome, ...] = ()
     outdated: frozenset[str] = frozenset()
-
-    @property
-    def ids(self) -> set[str]:
-        return {outcome.mutant for outcome in self.outcomes}
 
     @classmethod
     def of(

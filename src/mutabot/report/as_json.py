@@ -76,7 +76,7 @@ def results_data(results: Results) -> dict[str, Any]:
                 "repetition": one.repetition + 1,
                 **facts(one.test, "outcome wall simulated"),
             }
-            for one in results.tests
+            for one in results.baseline
         ],
         "sample": drawing_data(results.drawing),
         "since": to_data(results.since),

@@ -46,12 +46,12 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
     Args:
         name: what the project is called.
     """
-    results, rows = campaign.results, Rows(campaign)
+    rows = Rows(campaign)
     return {
         "name": name,
-        **facts(results, "state attempt done planned rounds"),
-        "meta": {key: results.meta[key] for key in _META if key in results.meta},
-        "groups": [_group(one) for one in results.groups],
+        **facts(campaign, "state attempt done planned rounds"),
+        "meta": {key: campaign.meta[key] for key in _META if key in campaign.meta},
+        "groups": [_group(one) for one in campaign.groups],
         "operators": dict(campaign.operators),
         "files": rows.files,
         "tests": rows.tests,
@@ -60,22 +60,22 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
         "columns": rows.columns,
         "mutants": rows.rows,
         "unlooked": [
-            [*one.places[:3], one.operation, one.quantity, one.text] for one in unlooked(results.mutants)
+            [*one.places[:3], one.operation, one.quantity, one.text] for one in unlooked(campaign.mutants)
         ],
         "ladders": [
             [f"{one.place} {one.name}", line_of(one)] for one in campaign.thresholds.ladders[:_LADDERS]
         ],
         "leftOut": _left_out(campaign),
-        "flaky": results.flaky.tests,
-        "controls": [[one.test_file, one.control, one.ok, one.detail] for one in results.controls],
-        "verification": _verification(results.verification),
+        "flaky": campaign.flaky.tests,
+        "controls": [[one.test_file, one.control, one.ok, one.detail] for one in campaign.controls],
+        "verification": _verification(campaign.verification),
         "repeats": {
-            "repeats": to_data(results.repeats),
-            "falseKills": _chance(false_kills(results.repeats)),
-            "falseSurvivors": _chance(false_survivors(results.repeats)),
+            "repeats": to_data(campaign.repeats),
+            "falseKills": _chance(false_kills(campaign.repeats)),
+            "falseSurvivors": _chance(false_survivors(campaign.repeats)),
         },
-        "confirmed": results.confirmation.text if results.confirmation is not None else None,
-        "drawing": facts(results.drawing, "sample selected") if results.drawing is not None else None,
+        "confirmed": campaign.confirmation.text if campaign.confirmation is not None else None,
+        "drawing": facts(campaign.drawing, "sample selected") if campaign.drawing is not None else None,
     }
 
 
@@ -107,7 +107,7 @@ def _ends(interval: Interval | None) -> list[float] | None:
 def _baseline(campaign: StoredCampaign, tests: list[str]) -> list[list[Any]]:
     """Per test: its outcomes on the original that occurred, and its simulated seconds."""
     found: dict[str, list[Any]] = {name: [[], None] for name in tests}
-    for one in campaign.results.tests:
+    for one in campaign.baseline:
         ends, seconds = found[one.test.test]
         if one.test.outcome not in ends:
             ends.append(one.test.outcome)
@@ -116,7 +116,7 @@ def _baseline(campaign: StoredCampaign, tests: list[str]) -> list[list[Any]]:
 
 
 def _left_out(campaign: StoredCampaign) -> list[list[Any]]:
-    left_out = campaign.results.left_out
+    left_out = campaign.left_out
     reasons = Counter(one.reason for one in left_out)
     return [
         [reason, count, [[one.id, one.description] for one in left_out if one.reason == reason][:_ITEMS]]

@@ -98,7 +98,7 @@ def _circumstances(results: Results) -> str:
     started = meta.get("started")
     if isinstance(started, int | float):
         parts.append(f"started {datetime.fromtimestamp(started).astimezone():%Y-%m-%d %H:%M}")
-    tests = {one.test.test for one in results.tests}
+    tests = {one.test.test for one in results.baseline}
     if tests:
         parts.append(f"baseline of {plural(len(tests), 'test')}")
     return " · ".join(parts)
