@@ -37,7 +37,7 @@ from mutabot.model.mutant import fits
 
 from .confirmation import Confirmed
 from .divergence import explain, is_indistinguishable, quantity_of, rank, worst_of
-from .score import Group, KillRate, RoundScores, groups_of
+from .score import Group, RoundScores, Score, groups_of
 
 #: mutants that are named where a text fits several
 _SHOWN = 10
@@ -69,9 +69,9 @@ class MutantResult:
         return tuple(outcome for outcome in self.rounds if outcome is not None)
 
     @property
-    def kill_rate(self) -> KillRate:
+    def kill_rate(self) -> Score:
         """In how many rounds it was killed."""
-        return KillRate.of(self.outcomes)
+        return Score.of(self.outcomes)
 
     @property
     def is_survivor(self) -> bool:

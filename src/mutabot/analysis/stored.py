@@ -143,7 +143,7 @@ def _is_judged(result: MutantResult | None) -> bool:
 
 def _told(result: MutantResult | None) -> tuple[float | None, bool] | None:
     """What of a survivor is compared: numbers of its probes differ a little from machine to machine."""
-    return (result.kill_rate.rate, result.indistinguishable) if result is not None else None
+    return (result.kill_rate.score, result.indistinguishable) if result is not None else None
 
 
 def _scores(

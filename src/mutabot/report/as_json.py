@@ -119,7 +119,11 @@ def result_data(result: MutantResult) -> dict[str, Any]:
         **mutant_data(result.mutant),
         "meaning": facts(meaning, "kind axis unit frame mode") if meaning is not None else None,
         "rounds": [_round_data(number, one) for number, one in enumerate(result.rounds, start=1)],
-        "kill_rate": {**facts(rate, "killed valid rate"), "interval": interval_data(rate.interval)},
+        "kill_rate": {
+            **facts(rate, "killed valid"),
+            "rate": rate.score,
+            "interval": interval_data(rate.interval),
+        },
         "survivor": result.is_survivor,
         "indistinguishable": result.indistinguishable,
         "distance": result.distance if result.is_survivor else None,

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from mutabot.analysis.divergence import first_line
 from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.score import Group, KillRate, RoundScores
+from mutabot.analysis.score import Group, RoundScores, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.model import LeftOut, Outcome, Verdict
 from mutabot.report.terminal.console import (
@@ -156,7 +156,7 @@ def _row(outcomes: Sequence[Outcome | None], many: bool) -> Text:
     return Text(" ").join(parts)
 
 
-def _kill_rate(rate: KillRate, *, narrow: bool) -> Text:
+def _kill_rate(rate: Score, *, narrow: bool) -> Text:
     """``3/5`` and its interval, on a line each where there is little room."""
     interval = between(rate.interval) if rate.interval is not None else ""
     # spaces that do not break are not cut off at the end of a cell either

@@ -14,7 +14,7 @@ from rich.text import Text
 
 from mutabot.analysis.divergence import change_text, worst_of
 from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.score import KillRate
+from mutabot.analysis.score import Score
 from mutabot.analysis.stored import Pair, StoredEvidence
 from mutabot.analysis.suggested import Suggestions
 from mutabot.analysis.unlooked import unlooked
@@ -244,10 +244,10 @@ def _place_text(mutant: Mutant) -> str:
     return f"{mutant.site.place} in {function}" if function else mutant.site.place
 
 
-def _interval_text(rate: KillRate) -> str:
+def _interval_text(rate: Score) -> str:
     if rate.interval is None:
         return ""
-    return f": {percent(rate.rate)}, 95 % interval {between(rate.interval)}"
+    return f": {percent(rate.score)}, 95 % interval {between(rate.interval)}"
 
 
 def _quantity_text(name: str | None, quantity: Quantity | None) -> str:
