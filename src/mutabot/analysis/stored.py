@@ -158,21 +158,6 @@ def _scores(
 _HELD = 32
 
 
-@frozen
-class Pair:
-    """One test, as the original and as a mutant.
-
-    Attributes:
-        test: node id.
-        original: its recording; None if there is none.
-        mutant: the mutant's; None if nothing in it differs, or if there was no room for it.
-    """
-
-    test: str
-    original: Recording | None
-    mutant: Recording | None
-
-
 class StoredEvidence:
     """All recordings of a campaign, to be closed. Raises JournalError if they cannot be read.
 
@@ -193,9 +178,12 @@ class StoredEvidence:
         """The tests in which a mutant, by its id, differed in a round (from 0), if they were recorded."""
         return self._recordings.tests(mutant, round) if self._recordings is not None else ()
 
-    def pair(self, mutant: str, round: int, test: str) -> Pair:
-        """One test, as the original and as a mutant."""
-        return Pair(test, self.recording(ORIGINAL, round, test), self.recording(mutant, round, test))
+    def pair(self, mutant: str, round: int, test: str) -> tuple[Recording | None, Recording | None]:
+        """One test, as the original and as a mutant.
+
+        None if there is none; of a mutant also if nothing in it differs, or if there was no room for it.
+        """
+        return self.recording(ORIGINAL, round, test), self.recording(mutant, round, test)
 
     def _read(self, mutant: str, round: int, test: str) -> Recording | None:
         data = self._recordings.data(mutant, round, test) if self._recordings is not None else None

@@ -7,8 +7,7 @@ import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from mutabot.analysis.chance import Estimate, false_kills, false_survivors
-from mutabot.analysis.confirmation import Confirmed
+from mutabot.analysis.chance import Confirmed, Estimate, false_kills, false_survivors
 from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import RoundScores, Score
 from mutabot.analysis.statistics import Interval

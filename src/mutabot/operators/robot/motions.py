@@ -8,7 +8,6 @@ from dataclasses import replace
 from typing import ClassVar
 
 from mutabot.model import Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
-from mutabot.model.values.direction import EITHER, has_direction
 from mutabot.model.values.quantity import READING_OF, Value
 from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
 from mutabot.operators.numbers import is_number, map_numbers
@@ -41,6 +40,9 @@ _X = MOVE_TO.arguments[0]
 _BY = replace(MOVE_BY, current="robot:Arm.tool_pose")
 _TO = replace(MOVE_TO, arguments=(_X,), current="robot:Arm.tool_pose")
 _NEAR = replace(_TO, arguments=(replace(_X, range=(0.0, 0.6)),))
+#: kinds that may be a motion with a direction, or only its magnitude
+_EITHER = frozenset({Kind.SPEED, Kind.RATIO})
+_COMPONENTS = frozenset({"x", "y", "z"})
 
 
 class Reverse(ValueOperator):
@@ -98,7 +100,7 @@ class Reverse(ValueOperator):
     def needs_of(self, subject: Subject) -> frozenset[Need]:
         quantity = quantity_of(subject)
         found = {Need.PLACE} if quantity.relative else set()
-        if quantity.kind in EITHER and has_direction(quantity) is None:
+        if quantity.kind in _EITHER and has_direction(quantity) is None:
             found.add(Need.SIGN)
         return frozenset(found)
 
@@ -115,7 +117,7 @@ class Reverse(ValueOperator):
         return f"{label(quantity)} {quantity.text(before)} → as far to the other side of where it is"
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        if quantity.kind in EITHER:
+        if quantity.kind in _EITHER:
             return has_direction(quantity) is not False
         return quantity.kind in (Kind.TRANSLATION, Kind.ROTATION) or quantity.is_whole
 
@@ -197,3 +199,25 @@ def _within_turn(quantity: Quantity, angle: float) -> float:
         return angle
     wrapped = angle + (turn if angle < low else -turn)
     return int(wrapped) if isinstance(angle, int) and wrapped.is_integer() else wrapped
+
+
+def has_direction(quantity: Quantity) -> bool | None:
+    """Whether negative values of a speed or ratio make sense; None if the vocabulary does not say.
+
+    What the vocabulary allows decides first. Otherwise, a component along an axis, the speed of a joint and
+    a vector have a direction. A number of its own may be the speed of a motor or a speed limit.
+    """
+    if quantity.values is not None:
+        return any(value < 0 for value in quantity.values)
+    limits = quantity.range or quantity.clip
+    if limits is not None:
+        return limits[0] < 0
+    return True if quantity.axis is not None or _is_part_of_vector(quantity.path) else None
+
+
+def _is_part_of_vector(path: Path) -> bool:
+    """Whether a path leads to a component of a vector, such as ``linear.x``, or to a slice of one."""
+    if not path.steps:
+        return path.root in _COMPONENTS
+    last = path.steps[-1]
+    return last.bounds is not None or last.attribute in _COMPONENTS or last.item in _COMPONENTS

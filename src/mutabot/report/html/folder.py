@@ -12,13 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.analysis.chance import false_kills, false_survivors
-from mutabot.analysis.results import MutantResult
+from mutabot.analysis.results import MutantResult, unlooked
 from mutabot.analysis.score import Group, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.analysis.stored import StoredCampaign, StoredEvidence, killers
 from mutabot.analysis.suggested import Suggestions
 from mutabot.analysis.thresholds.words import line_of
-from mutabot.analysis.unlooked import unlooked
 from mutabot.border.codec import to_data
 from mutabot.errors import UsageError
 from mutabot.frozen import frozen
@@ -148,7 +147,6 @@ class Rows:
 
     def __init__(self, campaign: StoredCampaign) -> None:
         self._campaign = campaign
-        self.files: list[str] = []
         self.tests = campaign.tests
         self._tests = {name: number for number, name in enumerate(self.tests)}
         self._files: dict[str, int] = {}
@@ -157,6 +155,7 @@ class Rows:
         made = [self._row(one) for one in campaign.mutants]
         self.columns = [*made[0]] if made else []
         self.rows = [[*one.values()] for one in made]
+        self.files = [*self._files]
 
     def _row(self, result: MutantResult) -> dict[str, Any]:
         mutant, rate, status = result.mutant, result.kill_rate, status_of(result)
@@ -165,7 +164,7 @@ class Rows:
         return {
             "number": mutant.number,
             "id": mutant.id,
-            "file": self._file(span.file),
+            "file": self._files.setdefault(span.file, len(self._files)),
             "line": place.line,
             "column": place.column,
             "endLine": place.end_line,
@@ -186,12 +185,6 @@ class Rows:
             "earlier": result.earlier or result.outdated,
             "drawn": _drawn(result) if result.mutant.operator in self._campaign.draws else None,
         }
-
-    def _file(self, file: str) -> int:
-        if file not in self._files:
-            self._files[file] = len(self.files)
-            self.files.append(file)
-        return self._files[file]
 
     def _site(self, result: MutantResult) -> int:
         """The number of the site, and the tests that reach it."""
