@@ -11,20 +11,15 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from mutabot.analysis.chance import false_kills, false_survivors
 from mutabot.analysis.results import MutantResult, unlooked
-from mutabot.analysis.score import Group, Score
-from mutabot.analysis.statistics import Interval
 from mutabot.analysis.stored import StoredCampaign, StoredEvidence, killers
 from mutabot.analysis.suggested import Suggestions
 from mutabot.analysis.thresholds.words import line_of
-from mutabot.border.codec import to_data
 from mutabot.errors import UsageError
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
-from mutabot.journal.records import Verification
 from mutabot.model import By
-from mutabot.report.as_json import facts, finite
+from mutabot.report.as_json import drawing_data, facts, finite, group_data, repeats_data, verification_data
 from mutabot.report.format import place_of, utf16
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.terminal.suggested import check_on_page
@@ -50,7 +45,7 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
         "name": name,
         **facts(campaign, "state attempt done planned rounds"),
         "meta": {key: campaign.meta[key] for key in _META if key in campaign.meta},
-        "groups": [_group(one) for one in campaign.groups],
+        "groups": [group_data(one) for one in campaign.groups],
         "operators": dict(campaign.operators),
         "files": rows.files,
         "tests": rows.tests,
@@ -66,41 +61,12 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
         ],
         "leftOut": _left_out(campaign),
         "flaky": campaign.flaky.tests,
-        "controls": [[one.test_file, one.control, one.ok, one.detail] for one in campaign.controls],
-        "verification": _verification(campaign.verification),
-        "repeats": {
-            "repeats": to_data(campaign.repeats),
-            "falseKills": _chance(false_kills(campaign.repeats)),
-            "falseSurvivors": _chance(false_survivors(campaign.repeats)),
-        },
+        "controls": [facts(one, "test_file control ok detail") for one in campaign.controls],
+        "verification": verification_data(campaign.verification),
+        "repeats": repeats_data(campaign.repeats),
         "confirmed": campaign.confirmation.text if campaign.confirmation is not None else None,
-        "drawing": facts(campaign.drawing, "sample selected") if campaign.drawing is not None else None,
+        "drawing": drawing_data(campaign.drawing),
     }
-
-
-def _group(group: Group) -> dict[str, Any]:
-    scores, total = group.scores, group.scores.total
-    return {
-        **facts(group, "family role mutants population"),
-        "score": scores.mean,
-        "check": scores.mean_check,
-        "interval": _ends(scores.interval),
-        "checkInterval": _ends(scores.check_interval),
-        "sampleInterval": _ends(scores.sample_interval),
-        "killed": total.killed,
-        "valid": total.valid,
-        "byCheck": total.by_check,
-        "counts": [[verdict.value, count] for verdict, count in total.counts.items()],
-        "rounds": [_score(one) for one in scores.rounds],
-    }
-
-
-def _score(score: Score) -> list[Any]:
-    return [score.score, score.check_score, score.killed, score.valid]
-
-
-def _ends(interval: Interval | None) -> list[float] | None:
-    return [interval.low, interval.high] if interval is not None else None
 
 
 def _baseline(campaign: StoredCampaign, tests: list[str]) -> list[list[Any]]:
@@ -121,17 +87,6 @@ def _left_out(campaign: StoredCampaign) -> list[list[Any]]:
         [reason, count, [[one.id, one.description] for one in left_out if one.reason == reason][:_ITEMS]]
         for reason, count in reasons.most_common()
     ]
-
-
-def _verification(found: Verification | None) -> dict[str, Any] | None:
-    if found is None:
-        return None
-    told = [[one.number, one.round, one.first, one.second] for one in found.disagreements]
-    return {"checked": found.checked, "wanted": found.wanted, "disagreements": told}
-
-
-def _chance(found: Any) -> list[float] | None:
-    return [found.expected, found.low, found.high, found.known] if found is not None else None
 
 
 class Rows:

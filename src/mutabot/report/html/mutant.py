@@ -19,7 +19,7 @@ from mutabot.border.codec import to_data
 from mutabot.evidence.recording import Kind, Recording, Told, Track
 from mutabot.model import Looked, Outcome
 from mutabot.model.values.quantity import value_text
-from mutabot.report.as_json import facts
+from mutabot.report.as_json import facts, interval_data
 from mutabot.report.texts import mapped, rounds_text
 
 #: what one step of the whole numbers is, and by how many steps a line may miss: m; quaternions without unit
@@ -173,7 +173,6 @@ _CHECKS = 40
 def mutant_page(result: MutantResult) -> dict[str, Any]:
     """All but what was recorded."""
     mutant = result.mutant
-    interval = result.kill_rate.interval
     quantity = result.quantity
     change = next(filter(None, (change_text(mutant, one, quantity) for one in result.outcomes)), None)
     return {
@@ -182,7 +181,7 @@ def mutant_page(result: MutantResult) -> dict[str, Any]:
         "places": [{"place": mutant.site.place, "function": mutant.site.span.function}],
         "pattern": mutant.pattern_name,
         "meaning": _meaning_words(result),
-        "interval": [interval.low, interval.high] if interval is not None else None,
+        "interval": interval_data(result.kill_rate.interval),
         "roundsText": rounds_text(result),
         "change": change,
         "rounds": [_round(one) for one in result.rounds],
