@@ -36,7 +36,7 @@ from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
 
 from .chance import Confirmed
-from .divergence import explain, is_indistinguishable, quantity_of, rank, worst_of
+from .divergence import explain, quantity_of, worst_of
 from .score import Group, RoundScores, Score, groups_of
 
 #: mutants that are named where a text fits several
@@ -69,6 +69,11 @@ class MutantResult:
         return tuple(outcome for outcome in self.rounds if outcome is not None)
 
     @property
+    def survived(self) -> list[Outcome]:
+        """Those in which every test that reaches it passed."""
+        return [one for one in self.outcomes if one.verdict is Verdict.SURVIVED]
+
+    @property
     def kill_rate(self) -> Score:
         """In how many rounds it was killed."""
         return Score.of(self.outcomes)
@@ -79,15 +84,9 @@ class MutantResult:
         return any(one.verdict.is_valid and not one.verdict.is_killed for one in self.outcomes)
 
     @property
-    def way(self) -> float:
-        """How far the way of its survivors' tests was from the original's, in multiples of the tolerance."""
-        return max((one.way or 0.0 for one in self.outcomes), default=0.0)
-
-    @property
     def worst(self) -> float:
         """How far its survivors were from the original at the worst moment, in multiples of the tolerance."""
-        survivors = (one for one in self.outcomes if one.verdict is Verdict.SURVIVED)
-        return max(map(worst_of, survivors), default=0.0)
+        return max(map(worst_of, self.survived), default=0.0)
 
     @property
     def improvement(self) -> str:
@@ -97,12 +96,12 @@ class MutantResult:
     @property
     def indistinguishable(self) -> bool:
         """Whether no survivor of it looked other than the original."""
-        return is_indistinguishable(self.outcomes)
+        return bool(self.survived) and all(one.indistinguishable for one in self.survived)
 
     @property
     def distance(self) -> float:
         """How far its survivors took the world from the original's, in multiples of the tolerance."""
-        return rank(self.outcomes)
+        return max((one.distance or 0.0 for one in self.survived), default=0.0)
 
 
 @frozen

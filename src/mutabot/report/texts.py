@@ -194,8 +194,7 @@ def status_of(result: MutantResult) -> Verdict | None:
 
 def is_divergent(result: MutantResult) -> bool:
     """Whether a survivor is known to have made the robot do anything else than the original."""
-    survived = (one for one in result.outcomes if one.verdict is Verdict.SURVIVED)
-    return any(one.divergence and not one.indistinguishable for one in survived)
+    return any(one.divergence and not one.indistinguishable for one in result.survived)
 
 
 def rounds_text(result: MutantResult) -> str:

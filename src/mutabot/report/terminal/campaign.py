@@ -168,8 +168,7 @@ def _kill_rate(rate: Score, *, narrow: bool) -> Text:
 
 
 def _place(result: MutantResult) -> str:
-    span = result.mutant.site.span
-    return short_place(span.file, span.line)
+    return short_place(result.mutant.site.span)
 
 
 def round_tables(results: Results, width: int) -> Iterator[Table]:
@@ -272,7 +271,11 @@ def survivor_lines(results: Results, width: int, *, at_most: int | None = None) 
     for result in survivors[:at_most]:
         rate = result.kill_rate
         let_through = f"{rate.valid - rate.killed} of {rate.valid}"
-        facts = (_place(result), result.mutant.operator, f"{let_through} rounds" if narrow else let_through)
+        facts = (
+            _place(result),
+            result.mutant.operator,
+            f"{let_through} rounds" if narrow else let_through,
+        )
         add_row(table, result.mutant.number, facts, result.why, narrow=narrow)
     yield table
     if at_most is not None and len(survivors) > at_most:
