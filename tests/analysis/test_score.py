@@ -30,7 +30,6 @@ def outcome(verdict: Verdict, by: By | None = None, *, round: int = 0, mutant: s
 def test_every_verdict_has_its_place_in_the_score(verdict: Verdict) -> None:
     score = Score.of([outcome(verdict)])
     assert (score.killed, score.valid) == PLACES[verdict]
-    assert score.outside == 1 - score.valid
 
 
 def test_the_check_score_counts_only_kills_by_a_check() -> None:

@@ -50,11 +50,6 @@ class Score:
         return self.counts.get(Verdict.TIMEOUT, 0)
 
     @property
-    def outside(self) -> int:
-        """Outcomes that do not count: refused, invalid, without effect, unstable, errors."""
-        return sum(self.counts.values()) - self.valid
-
-    @property
     def score(self) -> float | None:
         """Killed / valid, 0 … 1; None when nothing was valid."""
         return self.killed / self.valid if self.valid else None
