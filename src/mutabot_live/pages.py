@@ -117,7 +117,7 @@ class Pages:
             stored = open_campaign(self._journal)
         except JournalError:  # there is none yet
             return None, Cleaner(None)
-        if stored.results.attempt is not None or not stored.results.everything:
+        if stored.attempt is not None or not stored.everything:
             return None, Cleaner(None)  # it is still that of the campaign before
         return portable(stored), Cleaner(stored.meta.get("root"))
 
@@ -142,18 +142,15 @@ class Pages:
             return None
         page = _bytes(f"mutant {number}", {**mutant_page(result), "suggestion": None, "media": []})
         with closing(StoredEvidence(self._journal)) as evidence:
-            recorded = self._recorded = Recorded(evidence, snapshot.clean, **self._originals())
+            # originals that were asked for before keep their numbers: browsers know them by these
+            known = self._recorded.originals if self._recorded is not None else {}
+            recorded = self._recorded = Recorded(evidence, snapshot.clean, known)
             data = _recordings(recorded, result)
             return page + (_bytes(f"recordings {number}", data) if any(data.values()) else b"")
 
     def _original(self, number: int, snapshot: _Snapshot) -> bytes | None:
         originals = [*self._recorded.originals.values()] if self._recorded is not None else []
         return _bytes(f"original {number}", originals[number]) if number < len(originals) else None
-
-    def _originals(self) -> dict[str, Any]:
-        """Originals that were asked for before keep their numbers: browsers know them by these."""
-        known = self._recorded
-        return {} if known is None else {"originals": known.originals, "_numbers": known._numbers}
 
 
 def _recordings(recorded: Recorded, result: MutantResult) -> dict[str, Any]:

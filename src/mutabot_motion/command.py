@@ -68,7 +68,7 @@ def choose(
     if not tests:
         raise UsageError(f"no test reaches mutant {mutant.number} ({mutant.id}): there is nothing to see")
     name = tests[0] if test is None else _one_of(tests, test)
-    pair = evidence.pair(mutant.id, where, name)
+    original, mutated = evidence.pair(mutant.id, where, name)
     diverged = _diverged(outcome, name)
     return Shown(
         mutant.number,
@@ -77,8 +77,8 @@ def choose(
         mutant.site.span.place,
         name,
         where,
-        pair.original,
-        pair.mutant,
+        original,
+        mutated,
         diverged.story if diverged is not None else "",
         diverged.at if diverged is not None else None,
     )
@@ -109,7 +109,7 @@ def _tells(outcome: Outcome) -> tuple[bool, float, int]:
 def _reached_by(results: Results, result: MutantResult) -> tuple[str, ...]:
     found = results.meta.get(REACHING)
     if found is None:  # an older journal does not say it
-        return tuple(dict.fromkeys(one.test.test for one in results.tests))
+        return tuple(dict.fromkeys(one.test.test for one in results.baseline))
     return from_data(Reaching, found).at(result.mutant.site.id)
 
 

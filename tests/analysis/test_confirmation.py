@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from mutabot.analysis.confirmation import Confirmed
+from mutabot.analysis.chance import Confirmed
 from mutabot.journal.records import run_short
 from mutabot.model import Outcome, Verdict
 

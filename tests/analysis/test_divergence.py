@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from mutabot.analysis.divergence import change_text, explain, is_indistinguishable, quantity_of, rank
+from mutabot.analysis.divergence import change_text, explain, quantity_of
+from mutabot.analysis.results import MutantResult
 from mutabot.model import By, Compared, Kind, Outcome, Path, Quantity, Verdict
 from tests.analysis.samples import BACK, NEGATE, REVERSE, SKIP, VOCABULARY, mutant
 
@@ -51,7 +52,7 @@ def test_without_the_vocabulary_values_stand_without_unit() -> None:
 def test_the_survivor_farthest_from_the_original_is_told() -> None:
     near = replace(FAR, round=0, distance=2.0, divergence=("near",))
     assert explain(SKIP, [near, FAR], VOCABULARY) == "gripper.command: do nothing; box.x: 1"
-    assert rank([near, FAR]) == 312.0
+    assert MutantResult(SKIP, (near, FAR), None, "").distance == 312.0
 
 
 @pytest.mark.parametrize(
@@ -85,9 +86,9 @@ def test_a_round_that_no_test_reaches_outweighs_errors() -> None:
 
 
 def test_a_survivor_is_indistinguishable_only_if_it_always_is() -> None:
-    assert is_indistinguishable([READ])
-    assert not is_indistinguishable([READ, FAR])
-    assert not is_indistinguishable([Outcome("m", 0, Verdict.KILLED)])
+    killed = Outcome("m", 0, Verdict.KILLED)
+    for outcomes, is_so in (((READ,), True), ((READ, FAR), False), ((killed,), False)):
+        assert MutantResult(SKIP, outcomes, None, "").indistinguishable is is_so
 
 
 def test_the_quantity_of_a_mutant_comes_from_the_vocabulary() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mutabot.analysis.score import KillRate, RoundScores, Score, groups_of
+from mutabot.analysis.score import RoundScores, Score, groups_of
 from mutabot.model import By, Outcome, Verdict
 from tests.analysis.samples import MUTANTS, OUTCOMES
 
@@ -30,7 +30,6 @@ def outcome(verdict: Verdict, by: By | None = None, *, round: int = 0, mutant: s
 def test_every_verdict_has_its_place_in_the_score(verdict: Verdict) -> None:
     score = Score.of([outcome(verdict)])
     assert (score.killed, score.valid) == PLACES[verdict]
-    assert score.outside == 1 - score.valid
 
 
 def test_the_check_score_counts_only_kills_by_a_check() -> None:
@@ -73,9 +72,9 @@ def test_the_mean_is_over_rounds_and_leaves_out_rounds_without_a_score() -> None
 
 def test_a_kill_rate_counts_only_rounds_in_which_the_mutant_was_valid() -> None:
     ends = [outcome(Verdict.KILLED), outcome(Verdict.REFUSED), outcome(Verdict.SURVIVED)]
-    assert KillRate.of(ends) == KillRate(1, 2)
-    assert KillRate.of(ends).rate == 0.5
-    assert KillRate.of(ends[1:2]).rate is None
+    assert (Score.of(ends).killed, Score.of(ends).valid) == (1, 2)
+    assert Score.of(ends).score == 0.5
+    assert Score.of(ends[1:2]).score is None
 
 
 def test_families_and_roles_are_never_added_up() -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 
-from mutabot.analysis.score import KillRate, RoundScores
+from mutabot.analysis.score import RoundScores, Score
 from mutabot.analysis.statistics import LEVEL, crossed, mean_of, sampled, student, wilson
 from mutabot.model import By, Outcome, Verdict
 
@@ -230,8 +230,8 @@ def test_scores_carry_their_intervals() -> None:
 
 
 def test_a_kill_rate_has_an_interval_from_two_rounds_on() -> None:
-    assert KillRate(3, 5).interval == wilson(3, 5)
-    assert KillRate(1, 1).interval is None
+    assert Score({Verdict.KILLED: 3, Verdict.SURVIVED: 2}).interval == wilson(3, 5)
+    assert Score({Verdict.KILLED: 1}).interval is None
 
 
 def sample_coverage(

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from analysis import samples
-from mutabot.analysis.results import read_results
-from mutabot.analysis.unlooked import Unlooked, unlooked
+from mutabot.analysis.results import Unlooked, read_results, unlooked
 from mutabot.journal.journal import Journal
 from mutabot.model import By, Outcome, Verdict
 

@@ -61,15 +61,11 @@ def made(name: str, campaign: mutabot.StoredCampaign, **options: Any) -> str:
 
 def with_text(campaign: mutabot.StoredCampaign, text: str) -> mutabot.StoredCampaign:
     """The same campaign with this text wherever a program, a test or a message can bring one."""
-    results = campaign.results
     return replace(
         campaign,
-        results=replace(
-            results,
-            mutants=tuple(_mutant(one, text) for one in results.mutants),
-            left_out=tuple(LeftOut(one.id, text, text) for one in results.left_out),
-            flaky=replace(results.flaky, tests=(text,)),
-        ),
+        mutants=tuple(_mutant(one, text) for one in campaign.mutants),
+        left_out=tuple(LeftOut(one.id, text, text) for one in campaign.left_out),
+        flaky=replace(campaign.flaky, tests=(text,)),
         sources={file: "\n".join([text] * 3 + ["    " + text] * 3) for file in campaign.sources},
         operators=dict.fromkeys(campaign.operators, text),
     )

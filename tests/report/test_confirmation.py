@@ -33,14 +33,14 @@ def campaign(folder: Path, **changes: Any) -> Any:
 
 def on_terminal(found: Any, number: int) -> tuple[str, str]:
     files = io.StringIO(), io.StringIO()
-    print_results(make_console(files[0], width=200), found.results)
-    print_mutant(make_console(files[1], width=200), find_mutant(found.results, str(number)), None)
+    print_results(make_console(files[0], width=200), found)
+    print_mutant(make_console(files[1], width=200), find_mutant(found, str(number)), None)
     return files[0].getvalue(), files[1].getvalue()
 
 
 def test_what_was_not_confirmed_is_told_in_all_of_them(tmp_path: Path) -> None:
     found = campaign(tmp_path, confirmed=False)
-    survivor = next(one for one in found.results.survivors if one.outcomes[0].confirmed is False)
+    survivor = next(one for one in found.survivors if one.outcomes[0].confirmed is False)
     of_all, of_one = on_terminal(found, survivor.mutant.number)
     assert TEXT in of_all
     assert "not confirmed by the whole suite" in of_one
@@ -49,7 +49,7 @@ def test_what_was_not_confirmed_is_told_in_all_of_them(tmp_path: Path) -> None:
     assert notice == {"level": "note", "message": {"text": f"{TEXT}."}}
     assert campaign_data(found, "cell")["confirmed"] == TEXT
     assert "'unconfirmed': True" in str(mutant_page(survivor))
-    data = results_data(found.results)
+    data = results_data(found)
     assert data["confirmation"]["text"] == TEXT
     assert data["confirmation"]["left"] == len(SURVIVORS)
     assert [one["rounds"][0]["confirmed"] for one in data["mutants"] if one["id"] == survivor.mutant.id] == [
@@ -61,4 +61,4 @@ def test_nothing_is_told_where_all_were_run_with_the_whole_suite(tmp_path: Path)
     found = campaign(tmp_path)
     texts = *on_terminal(found, 1), made("markdown", found), made("sarif", found)
     assert not any("confirmed" in text for text in texts)
-    assert results_data(found.results)["confirmation"] is None
+    assert results_data(found)["confirmation"] is None

@@ -50,12 +50,6 @@ def change_text(mutant: Mutant, outcome: Outcome, quantity: Quantity | None = No
     return f"{_verb(quantity)} {after} instead of {before}"
 
 
-def rank(outcomes: Sequence[Outcome]) -> float:
-    """How far a mutant's survivors took the world from the original's, in multiples of the tolerance."""
-    survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
-    return max((one.distance or 0.0 for one in survivors), default=0.0)
-
-
 def worst_of(outcome: Outcome) -> float:
     """How far the world was from the original's at the worst moment, in multiples of the tolerance.
 
@@ -67,17 +61,6 @@ def worst_of(outcome: Outcome) -> float:
     return max(outcome.distance or 0.0, outcome.way or 0.0)
 
 
-def story_of(outcome: Outcome) -> str:
-    """What happened in the worst of its tests, in a sentence; empty if nothing tells."""
-    return next((one.story for one in outcome.diverged if one.story), "")
-
-
-def is_indistinguishable(outcomes: Sequence[Outcome]) -> bool:
-    """Whether the mutant survived somewhere and never looked other than the original."""
-    survivors = [one for one in outcomes if one.verdict is Verdict.SURVIVED]
-    return bool(survivors) and all(one.indistinguishable for one in survivors)
-
-
 def _verb(quantity: Quantity | None) -> str:
     if quantity is None:
         return "had"
@@ -87,7 +70,7 @@ def _verb(quantity: Quantity | None) -> str:
 def _world_text(outcome: Outcome) -> str:
     if outcome.indistinguishable:
         return f"nothing differs{_extent_text(outcome)} (indistinguishable)"
-    story = story_of(outcome)
+    story = next((one.story for one in outcome.diverged if one.story), "")
     if story:
         return story
     if outcome.divergence:

@@ -9,7 +9,7 @@ from mutabot.exit_codes import ExitCode
 from mutabot.families import GRADED
 from mutabot.frozen import frozen
 from mutabot.journal.records import ShardOf
-from mutabot.model import Outcome, Verdict
+from mutabot.model import Verdict
 from mutabot.model.graded import Demand
 
 from .results import Results
@@ -139,7 +139,7 @@ def _too_many(
     results: Results, verdict: Verdict, words: str, limit: float | None, key: str
 ) -> tuple[str, ...]:
     """A line if more outcomes than the limit allows ended so."""
-    outcomes = _outcomes(results)
+    outcomes = results.outcomes
     count, run = sum(one.verdict is verdict for one in outcomes), len(outcomes)
     if limit is None or not run or count / run <= limit:
         return ()
@@ -156,7 +156,7 @@ def _too_many(
 def _nothing_valid(results: Results) -> str:
     if not results.everything:
         return "no mutant was planned, so nothing is known about the tests"
-    counts = Counter(one.verdict for one in _outcomes(results))
+    counts = Counter(one.verdict for one in results.outcomes)
     if not counts:
         return "no mutant was run, so nothing is known about the tests"
     if set(counts) == {Verdict.REFUSED}:
@@ -178,10 +178,6 @@ def _too_loose(results: Results, demands: Sequence[Demand]) -> Iterator[str]:
     for one in rulings(demands, ladders_of(results), families):
         if one.held is not Held.PASSED:
             yield one.text
-
-
-def _outcomes(results: Results) -> list[Outcome]:
-    return [outcome for result in results.everything for outcome in result.outcomes]
 
 
 def _too_low(results: Results, min_score: float) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
 from typing import Any
@@ -32,12 +32,12 @@ from mutabot.journal.records import (
     Since,
     Verification,
 )
-from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
+from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
 
-from .confirmation import Confirmed
-from .divergence import explain, is_indistinguishable, quantity_of, rank, worst_of
-from .score import Group, KillRate, RoundScores, groups_of
+from .chance import Confirmed
+from .divergence import explain, quantity_of, worst_of
+from .score import Group, RoundScores, Score, groups_of
 
 #: mutants that are named where a text fits several
 _SHOWN = 10
@@ -69,9 +69,14 @@ class MutantResult:
         return tuple(outcome for outcome in self.rounds if outcome is not None)
 
     @property
-    def kill_rate(self) -> KillRate:
+    def survived(self) -> list[Outcome]:
+        """Those in which every test that reaches it passed."""
+        return [one for one in self.outcomes if one.verdict is Verdict.SURVIVED]
+
+    @property
+    def kill_rate(self) -> Score:
         """In how many rounds it was killed."""
-        return KillRate.of(self.outcomes)
+        return Score.of(self.outcomes)
 
     @property
     def is_survivor(self) -> bool:
@@ -79,15 +84,9 @@ class MutantResult:
         return any(one.verdict.is_valid and not one.verdict.is_killed for one in self.outcomes)
 
     @property
-    def way(self) -> float:
-        """How far the way of its survivors' tests was from the original's, in multiples of the tolerance."""
-        return max((one.way or 0.0 for one in self.outcomes), default=0.0)
-
-    @property
     def worst(self) -> float:
         """How far its survivors were from the original at the worst moment, in multiples of the tolerance."""
-        survivors = (one for one in self.outcomes if one.verdict is Verdict.SURVIVED)
-        return max(map(worst_of, survivors), default=0.0)
+        return max(map(worst_of, self.survived), default=0.0)
 
     @property
     def improvement(self) -> str:
@@ -97,12 +96,12 @@ class MutantResult:
     @property
     def indistinguishable(self) -> bool:
         """Whether no survivor of it looked other than the original."""
-        return is_indistinguishable(self.outcomes)
+        return bool(self.survived) and all(one.indistinguishable for one in self.survived)
 
     @property
     def distance(self) -> float:
         """How far its survivors took the world from the original's, in multiples of the tolerance."""
-        return rank(self.outcomes)
+        return max((one.distance or 0.0 for one in self.survived), default=0.0)
 
 
 @frozen
@@ -120,7 +119,7 @@ class Results:
             ``groups``, because it mixes roles.
         left_out: what the plan leaves out.
         controls: the control mutants.
-        tests: the baseline.
+        baseline: its tests on the original.
         verification: what ``--verify`` found; None if it was not asked for.
         repeats: how many outcomes were run once more, and how many ended otherwise.
         flaky: tests that cannot be relied on.
@@ -144,7 +143,7 @@ class Results:
     all: RoundScores
     left_out: tuple[LeftOut, ...]
     controls: tuple[ControlEnd, ...]
-    tests: tuple[BaselineTest, ...]
+    baseline: tuple[BaselineTest, ...]
     verification: Verification | None = None
     repeats: Repeats = field(default_factory=Repeats)
     flaky: Flaky = field(default_factory=Flaky)
@@ -168,6 +167,11 @@ class Results:
         if not self.graded:
             return self.mutants
         return tuple(sorted((*self.mutants, *self.graded), key=lambda one: one.mutant.number))
+
+    @property
+    def outcomes(self) -> tuple[Outcome, ...]:
+        """Every outcome there is: by mutant, then by round."""
+        return tuple(outcome for result in self.everything for outcome in result.outcomes)
 
     @property
     def ladders(self) -> int:
@@ -202,8 +206,7 @@ class Results:
     @property
     def confirmation(self) -> Confirmed | None:
         """What the whole suite says of mutants that were run without some tests; None if all were run."""
-        outcomes = (one for result in self.everything for one in result.outcomes)
-        return Confirmed.of(outcomes, self.meta.get("seed") or 0)
+        return Confirmed.of(self.outcomes, self.meta.get("seed") or 0)
 
     @property
     def is_incomplete(self) -> bool:
@@ -271,17 +274,14 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         outcomes = [*outcomes, *old.outcomes]
         groups = groups_of(mutants, outcomes, rounds, None)
     graded = {mutant.id for mutant in mutants if mutant.has_sizes}
+    old_ids = {outcome.mutant for outcome in old.outcomes}
     by_place = {(outcome.mutant, outcome.round): outcome for outcome in outcomes}
 
     def result(mutant: Mutant) -> MutantResult:
         row = tuple(by_place.get((mutant.id, number)) for number in range(rounds))
         why = explain(mutant, [outcome for outcome in row if outcome is not None], vocabulary)
-        found = MutantResult(mutant, row, quantity_of(mutant, vocabulary), why)
-        return replace(
-            found,
-            earlier=mutant.id in old.ids,
-            outdated=mutant.id in old.outdated,
-        )
+        quantity = quantity_of(mutant, vocabulary)
+        return MutantResult(mutant, row, quantity, why, mutant.id in old_ids, mutant.id in old.outdated)
 
     found = Results(
         meta=meta,
@@ -293,7 +293,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         all=RoundScores.of([one for one in outcomes if one.mutant not in graded], rounds),
         left_out=tuple(journal.left_out()),
         controls=tuple(journal.controls()),
-        tests=tuple(journal.tests()),
+        baseline=tuple(journal.tests()),
         verification=from_data(Verification, meta[VERIFICATION]) if VERIFICATION in meta else None,
         repeats=from_data(Repeats, meta[REPEATS]) if REPEATS in meta else Repeats(),
         flaky=from_data(Flaky, meta[FLAKY]) if FLAKY in meta else Flaky(),
@@ -323,10 +323,6 @@ class _Earlier:
     mutants: tuple[Mutant, ...] = ()
     outcomes: tuple[Outcome, ...] = ()
     outdated: frozenset[str] = frozenset()
-
-    @property
-    def ids(self) -> set[str]:
-        return {outcome.mutant for outcome in self.outcomes}
 
     @classmethod
     def of(
@@ -381,3 +377,49 @@ def _state(journal: JournalReader, shard: ShardOf | None, *, is_whole: bool) -> 
         return state
     # a part of a campaign is never complete, whatever has become of it
     return shard.words if state == "complete" else f"{shard.words}, {state}"
+
+
+@frozen
+class Unlooked:
+    """A part of what an operation reads for the tests.
+
+    Attributes:
+        operation: the operation, as the vocabulary names it.
+        quantity: the part, as the vocabulary names it.
+        places: ``file:line:column`` of the calls.
+        mutants: how many mutants of it there were, none of which was noticed.
+    """
+
+    operation: str
+    quantity: str
+    places: tuple[str, ...]
+    mutants: int
+
+    @property
+    def text(self) -> str:
+        """``tests/sensors.py:12:5 tracker:robot_position .y: none of its 3 mutants was noticed``."""
+        more = f" and {len(self.places) - 1} more" if len(self.places) > 1 else ""
+        which = "its only mutant was not" if self.mutants == 1 else f"none of its {self.mutants} mutants was"
+        return f"{self.places[0]}{more} {self.operation} {self.quantity}: {which} noticed"
+
+
+def unlooked(results: Iterable[MutantResult]) -> tuple[Unlooked, ...]:
+    """Such readings of the oracle, in the order of their mutants; only those that were judged count.
+
+    Of a reading with a mutant that is still to be run, as in another shard, nothing is said.
+    """
+    groups: dict[tuple[str, str], list[MutantResult]] = {}
+    open_ones: set[tuple[str, str]] = set()
+    for one in results:
+        mutant = one.mutant
+        is_reading = mutant.site.role is Role.ORACLE and mutant.operation and mutant.quantity
+        key = (mutant.operation, mutant.quantity or "")
+        if is_reading and not one.outdated and one.kill_rate.valid:
+            groups.setdefault(key, []).append(one)
+        elif is_reading and not one.outcomes and not mutant.ladder:  # of a ladder, a search runs some
+            open_ones.add(key)
+    return tuple(
+        Unlooked(*key, tuple(dict.fromkeys(one.mutant.site.place for one in found)), len(found))
+        for key, found in groups.items()
+        if key not in open_ones and not any(one.kill_rate.killed for one in found)
+    )

@@ -50,11 +50,6 @@ class Score:
         return self.counts.get(Verdict.TIMEOUT, 0)
 
     @property
-    def outside(self) -> int:
-        """Outcomes that do not count: refused, invalid, without effect, unstable, errors."""
-        return sum(self.counts.values()) - self.valid
-
-    @property
     def score(self) -> float | None:
         """Killed / valid, 0 … 1; None when nothing was valid."""
         return self.killed / self.valid if self.valid else None
@@ -63,6 +58,11 @@ class Score:
     def check_score(self) -> float | None:
         """Killed by a check / valid, 0 … 1; None when nothing was valid."""
         return self.by_check / self.valid if self.valid else None
+
+    @property
+    def interval(self) -> Interval | None:
+        """Wilson's interval of the score of one mutant, over rounds; None with fewer than two."""
+        return wilson(self.killed, self.valid) if self.valid > 1 else None
 
 
 @frozen
@@ -121,35 +121,6 @@ class RoundScores:
     def mean_check(self) -> float | None:
         """Mean of the rounds' check scores, likewise."""
         return _mean([score.check_score for score in self.rounds])
-
-
-@frozen
-class KillRate:
-    """In how many rounds a mutant was killed.
-
-    Attributes:
-        killed: rounds in which it was killed.
-        valid: rounds in which it was valid.
-    """
-
-    killed: int
-    valid: int
-
-    @classmethod
-    def of(cls, outcomes: Iterable[Outcome]) -> KillRate:
-        """The kill rate of one mutant from its outcomes, one per round."""
-        score = Score.of(outcomes)
-        return cls(score.killed, score.valid)
-
-    @property
-    def rate(self) -> float | None:
-        """Killed / valid, or None when it was valid in no round."""
-        return self.killed / self.valid if self.valid else None
-
-    @property
-    def interval(self) -> Interval | None:
-        """Wilson's interval of the rate, over rounds; None with fewer than two."""
-        return wilson(self.killed, self.valid) if self.valid > 1 else None
 
 
 @frozen

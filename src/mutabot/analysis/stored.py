@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mutabot.analysis.thresholds.thresholds import Thresholds, thresholds_of
-from mutabot.border.codec import from_data
+from mutabot.border.codec import from_data, shallow
 from mutabot.errors import UsageError
 from mutabot.evidence.recording import Recording, from_bytes
 from mutabot.frozen import frozen
@@ -143,7 +143,7 @@ def _is_judged(result: MutantResult | None) -> bool:
 
 def _told(result: MutantResult | None) -> tuple[float | None, bool] | None:
     """What of a survivor is compared: numbers of its probes differ a little from machine to machine."""
-    return (result.kill_rate.rate, result.indistinguishable) if result is not None else None
+    return (result.kill_rate.score, result.indistinguishable) if result is not None else None
 
 
 def _scores(
@@ -156,21 +156,6 @@ def _scores(
 
 #: recordings that are held
 _HELD = 32
-
-
-@frozen
-class Pair:
-    """One test, as the original and as a mutant.
-
-    Attributes:
-        test: node id.
-        original: its recording; None if there is none.
-        mutant: the mutant's; None if nothing in it differs, or if there was no room for it.
-    """
-
-    test: str
-    original: Recording | None
-    mutant: Recording | None
 
 
 class StoredEvidence:
@@ -193,9 +178,12 @@ class StoredEvidence:
         """The tests in which a mutant, by its id, differed in a round (from 0), if they were recorded."""
         return self._recordings.tests(mutant, round) if self._recordings is not None else ()
 
-    def pair(self, mutant: str, round: int, test: str) -> Pair:
-        """One test, as the original and as a mutant."""
-        return Pair(test, self.recording(ORIGINAL, round, test), self.recording(mutant, round, test))
+    def pair(self, mutant: str, round: int, test: str) -> tuple[Recording | None, Recording | None]:
+        """One test, as the original and as a mutant.
+
+        None if there is none; of a mutant also if nothing in it differs, or if there was no room for it.
+        """
+        return self.recording(ORIGINAL, round, test), self.recording(mutant, round, test)
 
     def _read(self, mutant: str, round: int, test: str) -> Recording | None:
         data = self._recordings.data(mutant, round, test) if self._recordings is not None else None
@@ -332,11 +320,10 @@ COLUMNS: tuple[Column, ...] = (
 
 
 @frozen
-class StoredCampaign:
+class StoredCampaign(Results):
     """The last campaign of a journal, as it was when it was read. Nothing of it changes later.
 
     Attributes:
-        results: all that reports tell.
         sources: text of the mutated files at the time of the campaign, by path relative to the project.
         operators: what each operator does, in a sentence, by its name; those of journals that do not say it
             are missing.
@@ -344,21 +331,10 @@ class StoredCampaign:
         draws: names of operators that draw a number for each round.
     """
 
-    results: Results
     sources: Mapping[str, str] = field(default_factory=dict)
     operators: Mapping[str, str] = field(default_factory=dict)
     reaching: Reaching = field(default_factory=Reaching)
     draws: frozenset[str] = frozenset()
-
-    @property
-    def meta(self) -> Mapping[str, Any]:
-        """What the campaign said about itself: ``seed``, ``rounds``, ``engine``, ``versions`` …"""
-        return self.results.meta
-
-    @property
-    def state(self) -> str:
-        """``complete``, ``interrupted``, ``running``, ``killed`` or why it stopped."""
-        return self.results.state
 
     @property
     def is_complete(self) -> bool:
@@ -366,48 +342,28 @@ class StoredCampaign:
         return self.state == "complete"
 
     @property
-    def rounds(self) -> int:
-        """Number of rounds."""
-        return self.results.rounds
-
-    @property
-    def mutants(self) -> tuple[MutantResult, ...]:
-        """Every planned mutant with what became of it, by number; graded ones have ``thresholds``."""
-        return self.results.mutants
-
-    @property
-    def outcomes(self) -> tuple[Outcome, ...]:
-        """Every outcome there is: by mutant, then by round."""
-        return tuple(outcome for result in self.results.everything for outcome in result.outcomes)
-
-    @property
     def tests(self) -> list[str]:
         """Node ids of all tests that are known: what mutants name is among them."""
         named = (test for one in self.outcomes for test, _ in killers(one))
-        baseline = (one.test.test for one in self.results.tests)
+        baseline = (one.test.test for one in self.baseline)
         return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
-
-    @property
-    def survivors(self) -> tuple[MutantResult, ...]:
-        """Mutants that some round lets through, the farthest from the original first."""
-        return tuple(self.results.survivors)
 
     @property
     def scores(self) -> tuple[Group, ...]:
         """Scores per family and role. They are never added up."""
-        return self.results.groups
+        return self.groups
 
     @property
     def thresholds(self) -> Thresholds:
         """The ladders of graded mutants, the loosest first."""
-        return thresholds_of(self.results)
+        return thresholds_of(self)
 
     def mutant(self, name: str) -> MutantResult:
         """The mutant with this number or id, or the only one that a part of an id fits.
 
         Raises SelectionError if there is none or more than one.
         """
-        return find_mutant(self.results, name)
+        return find_mutant(self, name)
 
     def source(self, file: str) -> str | None:
         """The text of a mutated file at the time of the campaign; None if it was not written down."""
@@ -422,7 +378,7 @@ class StoredCampaign:
 
         Raises UsageError if pandas is not installed.
         """
-        return frame_of(self.results)
+        return frame_of(self)
 
 
 def killers(outcome: Outcome) -> list[tuple[str, By | None]]:
@@ -451,7 +407,7 @@ def open(path: str | Path = ".") -> StoredCampaign:
         found = {file: journal.source(file) for file in sorted(files)}
     meta = results.meta
     return StoredCampaign(
-        results,
+        **shallow(results),
         sources={file: text for file, text in found.items() if text is not None},
         operators=meta.get(OPERATORS, {}),
         reaching=from_data(Reaching, meta[REACHING]) if REACHING in meta else Reaching(),

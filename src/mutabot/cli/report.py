@@ -102,7 +102,7 @@ def report(
     if html is not None:
         _write_pages(html, campaign, journal, stored.meta.get("root"))
     if not campaign.is_complete:
-        known = f"{campaign.results.done} of {campaign.results.planned} outcomes are known"
+        known = f"{campaign.done} of {campaign.planned} outcomes are known"
         tell([f"mutabot: the campaign is not complete ({campaign.state}): {known}"])
 
 
@@ -153,7 +153,7 @@ def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: st
 
     name = Path(root).name if root else ""
     with closing(StoredEvidence(journal)) as evidence:
-        suggestions = kept_suggestions(journal, campaign.results.meta)
+        suggestions = kept_suggestions(journal, campaign.meta)
         written = write_folder(folder, Contents(campaign, name, evidence, Cleaner(root), suggestions))
     lines = [f"mutabot: {written.page}, {written.size / 1e6:.1f} MB in its folder: open it in a browser"]
     if written.without:
@@ -183,7 +183,7 @@ def _changes(campaign: StoredCampaign, journal: Path, old: Path) -> Changes:
             f"{old} is the campaign itself; the last complete one before it, if there was any, is in "
             f"{previous_of(journal).name} beside it"
         )
-    return changes(portable(open_campaign(other)).results, campaign.results)
+    return changes(portable(open_campaign(other)), campaign)
 
 
 def _write(format: Format, material: Material, file: Path) -> None:

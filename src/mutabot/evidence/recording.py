@@ -135,11 +135,6 @@ class Recording:
     is_simulated: bool = True
     problems: list[str] = field(default_factory=list)
 
-    @property
-    def is_empty(self) -> bool:
-        """Whether it holds nothing."""
-        return not (self.times or self.calls or self.moments)
-
 
 def to_bytes(recording: Recording) -> bytes:
     """The recording as compressed bytes, to be kept."""

@@ -41,6 +41,13 @@ _FORMS: Mapping[When, re.Pattern[str]] = {
     When.ONCE: re.compile(r"once"),
     When.BETWEEN: re.compile(rf"(?P<first>{_NUMBER}) ?s? ?(?:-|–|to) ?(?P<last>{_NUMBER}) ?s"),
 }
+#: how each is written, and how it stands in a sentence about what the mutant does
+_TEXTS: Mapping[When, tuple[str, str]] = {
+    When.NTH: ("{first:g}", "at call {first:g} only"),
+    When.FROM: ("from {first:g}", "from call {first:g} on"),
+    When.ONCE: ("once", "at one call, drawn for each round"),
+    When.BETWEEN: ("{first:g}-{last:g} s", "from {first:g} to {last:g} s of simulated time"),
+}
 
 
 @frozen
@@ -88,24 +95,12 @@ class Moment:
     @property
     def text(self) -> str:
         """The moment as it is written."""
-        if self.when is When.NTH:
-            return f"{self.first:g}"
-        if self.when is When.FROM:
-            return f"from {self.first:g}"
-        if self.when is When.ONCE:
-            return "once"
-        return f"{self.first:g}-{self.last:g} s"
+        return _TEXTS[self.when][0].format(first=self.first, last=self.last)
 
     @property
     def words(self) -> str:
         """The moment in a sentence about what the mutant does."""
-        if self.when is When.NTH:
-            return f"at call {self.first:g} only"
-        if self.when is When.FROM:
-            return f"from call {self.first:g} on"
-        if self.when is When.ONCE:
-            return "at one call, drawn for each round"
-        return f"from {self.first:g} to {self.last:g} s of simulated time"
+        return _TEXTS[self.when][1].format(first=self.first, last=self.last)
 
     @property
     def asks_time(self) -> bool:

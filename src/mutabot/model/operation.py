@@ -205,6 +205,12 @@ class Clock:
     step: float | None = None
 
 
+def _owner(target: str) -> str:
+    """What a callable lies in, as ``module:Name``; empty for what its module has itself."""
+    owner = target.rpartition(".")[0]
+    return owner if ":" in owner else ""
+
+
 @frozen
 class Wait:
     """How the program's time is let pass.
@@ -222,9 +228,7 @@ class Wait:
     @property
     def owner(self) -> str:
         """The class whose objects have it; empty for a plain function."""
-        module, _, qualname = self.target.partition(":")
-        parent = qualname.rpartition(".")[0]
-        return f"{module}:{parent}" if parent else ""
+        return _owner(self.target)
 
 
 @frozen
@@ -249,9 +253,7 @@ class Probe:
     @property
     def owner(self) -> str:
         """The object or class in which the target lies; empty for what its module has itself."""
-        module, _, qualname = self.target.partition(":")
-        parent = qualname.rpartition(".")[0]
-        return f"{module}:{parent}" if parent else ""
+        return _owner(self.target)
 
 
 @frozen

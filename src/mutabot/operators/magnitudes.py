@@ -10,6 +10,7 @@ sensors give as the full scale (235 N and 0.15 m/s for a two-finger gripper, 2 k
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -42,14 +43,9 @@ def sized(subject: Subject, ladder: Ladder, direction: str = "") -> Iterator[Sub
 
 def series(first: float, count: int) -> tuple[float, ...]:
     """So many numbers of the 1-2-5 series from ``first`` on, which is 1, 2 or 5 times a power of ten."""
-    lead = first
-    while lead >= 10.0:
-        lead /= 10.0
-    while lead < 1.0 - 1e-9:
-        lead *= 10.0
-    at = (1, 2, 5).index(round(lead))
-    scale = first / (1, 2, 5)[at]
-    numbers = ((1, 2, 5)[(at + n) % 3] * 10 ** ((at + n) // 3) * scale for n in range(count))
+    decade = 10.0 ** math.floor(math.log10(first) + 1e-9)
+    at = (1, 2, 5).index(round(first / decade))
+    numbers = ((1, 2, 5)[n % 3] * 10 ** (n // 3) * decade for n in range(at, at + count))
     return tuple(float(f"{number:.6g}") for number in numbers)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from abc import abstractmethod
-from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from random import Random
 from typing import Any, ClassVar, TypeVar
@@ -35,20 +35,21 @@ class ValuesOperator(Operator):
     variants: ClassVar[Mapping[str, Any]] = {"": None}
 
     @abstractmethod
-    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         """The values that are others than before, by quantity. Raises Unchanged to leave the call alone.
 
-        ``values`` are those of the side on which the subject's quantity stands.
+        ``values`` are those of the side on which the subject's quantity stands. What it may await is
+        ``context.call.current``.
         """
 
     def middleware(self, subject: Subject, random: Random) -> Middleware:
         context = Context(subject, random, self.variants.get(subject.variant))
 
         async def written(call: Call, proceed: Proceed) -> Reply:
-            return await proceed(self._changed(call, call, context))
+            return await proceed(await self._changed(call, call, context))
 
         async def read(call: Call, proceed: Proceed) -> Reply:
-            return self._changed(await proceed(call), call, context)
+            return await self._changed(await proceed(call), call, context)
 
         return written if subject.is_written else read
 
@@ -62,14 +63,18 @@ class ValuesOperator(Operator):
         """Why a new value is not put in place of another one; empty if it can be."""
         return why_unchanged(quantity, before, after)
 
-    def _changed(self, one: CallOrReply, call: Call, context: Context) -> CallOrReply:
+    async def _changed(self, one: CallOrReply, call: Call, context: Context) -> CallOrReply:
         """The call, or the reply to it, with the new values in it."""
         context.call = call  # others may have been made while this one waited for its reply
         try:
-            changed = self.changes(one.values, context)
-            checked(context.subject.side, one.values, changed, self.why_unchanged)
+            changed = await self.changes(one.values, context)
         except Unchanged as why:
             return one.as_is(str(why))
+        known = {quantity.name: quantity for quantity in context.subject.side}
+        reasons = [self.why_unchanged(known[name], one.values[name], changed[name]) for name in changed]
+        serious = [reason for reason in reasons if reason and reason != SAME]
+        if serious or all(reasons):
+            return one.as_is((serious or [SAME])[0])
         return replace(one, values={**one.values, **changed})
 
 
@@ -123,24 +128,11 @@ class ValueOperator(ValuesOperator):
             for direction in self.directions_of(quantity):
                 yield from sized(subject, ladder, direction)
 
-    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         name = context.quantity.name
         value = given(values, name)
         context.number += 1
         return {name: self.change(value, context)}
-
-
-def on_call(change: Callable[[Call], Awaitable[Call]]) -> Middleware:
-    """A mutant at work that makes another call of a call, unless ``change`` raises Unchanged."""
-
-    async def mutated(call: Call, proceed: Proceed) -> Reply:
-        try:
-            other = await change(call)
-        except Unchanged as why:
-            other = call.as_is(str(why))
-        return await proceed(other)
-
-    return mutated
 
 
 def label(quantity: Quantity) -> str:
@@ -156,21 +148,6 @@ def given(values: Mapping[str, Value], name: str) -> Value:
     if name not in values:
         raise Unchanged(NOT_GIVEN)
     return values[name]
-
-
-def checked(
-    quantities: Iterable[Quantity],
-    before: Mapping[str, Value],
-    changed: Mapping[str, Value],
-    why: Callable[[Quantity, Value, Value | None], str] | None = None,
-) -> Mapping[str, Value]:
-    """The changed values of a call. Raises Unchanged if one may not be put there, or all stay the same."""
-    known = {one.name: one for one in quantities}
-    reasons = [(why or why_unchanged)(known[name], before[name], value) for name, value in changed.items()]
-    serious = [reason for reason in reasons if reason and reason != SAME]
-    if serious or all(reasons):
-        raise Unchanged((serious or [SAME])[0])
-    return changed
 
 
 def why_unchanged(quantity: Quantity, before: Value, after: Value | None) -> str:
@@ -237,7 +214,7 @@ class Exchange(ValuesOperator):
         for one, other in self.pairs(whole):
             yield replace(whole, quantity=one, variant=other.name.lstrip("."))
 
-    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         one, other = context.quantity.name, _other_of(context.subject).name
         first, second = given(values, one), given(values, other)
         return {one: second, other: first}

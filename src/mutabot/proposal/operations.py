@@ -10,9 +10,8 @@ from typing import Any
 from mutabot.proposal.commands import MESSAGES, commands_of, is_read, patterns_of, tells_commands
 
 from .compared import with_compared
-from .guess import Guess, Setting, guess_argument, guess_reading, is_complete
+from .guess import Guess, Setting, guess_argument, guess_elements, guess_reading, is_complete
 from .observed import Part, SeenCall, part_of
-from .sequences import guess_elements
 
 _COMMANDS = re.compile(
     r"(?:^|_)(?:home|park|move[a-z]?|go|goto|pick|place|grasp|grip|release|open|close|wait|sleep|stop|lift|lower"

@@ -7,10 +7,9 @@ import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from mutabot.analysis.chance import Estimate, false_kills, false_survivors
-from mutabot.analysis.confirmation import Confirmed
+from mutabot.analysis.chance import Confirmed, Estimate, false_kills, false_survivors
 from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.score import RoundScores, Score
+from mutabot.analysis.score import Group, RoundScores, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.border.codec import to_data
 from mutabot.journal.records import (
@@ -61,10 +60,7 @@ def results_data(results: Results) -> dict[str, Any]:
         "attempt": results.attempt,
         "meta": {key: value for key, value in results.meta.items() if key not in _ELSEWHERE},
         "rounds": _score_rounds(results.all),
-        "groups": [
-            {**facts(group, "family role mutants population"), **scores_data(group.scores)}
-            for group in results.groups
-        ],
+        "groups": [group_data(group) for group in results.groups],
         "mutants": [result_data(result) for result in results.mutants],
         "graded": [result_data(result) for result in results.graded],
         "left_out": [facts(item, "id description reason") for item in results.left_out],
@@ -76,13 +72,13 @@ def results_data(results: Results) -> dict[str, Any]:
                 "repetition": one.repetition + 1,
                 **facts(one.test, "outcome wall simulated"),
             }
-            for one in results.tests
+            for one in results.baseline
         ],
         "sample": drawing_data(results.drawing),
         "since": to_data(results.since),
         "budget": to_data(results.budget),
         "flaky": list(results.flaky.tests),
-        "verification": _verification(results.verification),
+        "verification": verification_data(results.verification),
         "repeats": repeats_data(results.repeats),
         "confirmation": _confirmation(results.confirmation),
         "shard": facts(results.shard, "number of mutants") if results.shard is not None else None,
@@ -119,7 +115,11 @@ def result_data(result: MutantResult) -> dict[str, Any]:
         **mutant_data(result.mutant),
         "meaning": facts(meaning, "kind axis unit frame mode") if meaning is not None else None,
         "rounds": [_round_data(number, one) for number, one in enumerate(result.rounds, start=1)],
-        "kill_rate": {**facts(rate, "killed valid rate"), "interval": interval_data(rate.interval)},
+        "kill_rate": {
+            **facts(rate, "killed valid"),
+            "rate": rate.score,
+            "interval": interval_data(rate.interval),
+        },
         "survivor": result.is_survivor,
         "indistinguishable": result.indistinguishable,
         "distance": result.distance if result.is_survivor else None,
@@ -136,9 +136,11 @@ def score_data(score: Score) -> dict[str, Any]:
     }
 
 
-def scores_data(scores: RoundScores) -> dict[str, Any]:
-    """Scores over the rounds: the mean, the counts of all rounds together, and each round."""
+def group_data(group: Group) -> dict[str, Any]:
+    """The scores of a family and role: the mean, the counts of all rounds together, and each round."""
+    scores = group.scores
     return {
+        **facts(group, "family role mutants population"),
         **score_data(scores.total),
         "score": scores.mean,
         "check_score": scores.mean_check,
@@ -170,7 +172,8 @@ def replayed_data(mutant: Mutant, rounds: Iterable[Replayed]) -> dict[str, Any]:
     }
 
 
-def _verification(found: Verification | None) -> dict[str, Any] | None:
+def verification_data(found: Verification | None) -> dict[str, Any] | None:
+    """What was run again in fresh processes, and what came out otherwise; None if nothing was."""
     if found is None:
         return None
     return {

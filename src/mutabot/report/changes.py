@@ -206,6 +206,6 @@ def _mutants(section: Section, width: int) -> Table:
     table = make_mutant_table(("place", "operator"), "what it does, and how it ended", narrow=narrow)
     for result, told in section.rows[:_ROWS]:
         mutant = result.mutant
-        facts = (short_place(mutant.site.span.file, mutant.site.span.line), mutant.operator)
+        facts = (short_place(mutant.site.span), mutant.operator)
         add_row(table, mutant.number, facts, f"{mutant.description}\n{told}", narrow=narrow)
     return table

@@ -107,22 +107,19 @@ _META = (
 
 def portable(campaign: StoredCampaign) -> StoredCampaign:
     """The same campaign, fit for any report."""
-    results = campaign.results
-    clean = Cleaner(results.meta.get("root"))
-    return StoredCampaign(
-        replace(
-            results,
-            meta=mapped({key: results.meta[key] for key in _META if key in results.meta}, clean),
-            state=clean(results.state),
-            mutants=tuple(_mutant(one, clean) for one in results.mutants),
-            graded=tuple(_mutant(one, clean) for one in results.graded),
-            left_out=mapped(results.left_out, legible),
-            controls=mapped(results.controls, clean),
-            flaky=mapped(results.flaky, clean),
-            attempt=mapped(results.attempt, clean),
-            tests=tuple(
-                replace(one, test=replace(one.test, test=clean(one.test.test))) for one in results.tests
-            ),
+    clean = Cleaner(campaign.meta.get("root"))
+    return replace(
+        campaign,
+        meta=mapped({key: campaign.meta[key] for key in _META if key in campaign.meta}, clean),
+        state=clean(campaign.state),
+        mutants=tuple(_mutant(one, clean) for one in campaign.mutants),
+        graded=tuple(_mutant(one, clean) for one in campaign.graded),
+        left_out=mapped(campaign.left_out, legible),
+        controls=mapped(campaign.controls, clean),
+        flaky=mapped(campaign.flaky, clean),
+        attempt=mapped(campaign.attempt, clean),
+        baseline=tuple(
+            replace(one, test=replace(one.test, test=clean(one.test.test))) for one in campaign.baseline
         ),
         # a mark of the byte order is no part of the first line
         sources={
@@ -197,8 +194,7 @@ def status_of(result: MutantResult) -> Verdict | None:
 
 def is_divergent(result: MutantResult) -> bool:
     """Whether a survivor is known to have made the robot do anything else than the original."""
-    survived = (one for one in result.outcomes if one.verdict is Verdict.SURVIVED)
-    return any(one.divergence and not one.indistinguishable for one in survived)
+    return any(one.divergence and not one.indistinguishable for one in result.survived)
 
 
 def rounds_text(result: MutantResult) -> str:

@@ -17,7 +17,7 @@ from mutabot.analysis.suggested import Dropped, Suggestion, Suggestions, Unsolve
 from mutabot.campaign.request import Progress, Request
 from mutabot.errors import NothingToDoError
 from mutabot.frozen import frozen
-from mutabot.model import Mutant, Verdict
+from mutabot.model import Mutant
 
 from .candidates import candidates, part_of_way, tolerance_of
 from .checks import Check, decimal, is_number, unseen
@@ -48,13 +48,12 @@ def survivors_of(chosen: Sequence[MutantResult]) -> Survivors:
     to_kill, never = [], []
     tests: dict[str, None] = {}
     for one in chosen:
-        survived = [out for out in one.outcomes if out.verdict is Verdict.SURVIVED]
-        different = [out for out in survived if out.indistinguishable is not True]
+        different = [out for out in one.survived if out.indistinguishable is not True]
         if different:
             to_kill.append((one, tuple(out.round for out in different)))
             tests.update({looked.test: None for out in different for looked in out.looked if looked.acted})
-        elif survived:
-            compared = survived[0].compared
+        elif one.survived:
+            compared = one.survived[0].compared
             extent = f" in {compared.text}" if compared is not None else " that was compared"
             reason = f"nothing differs{extent} (indistinguishable)"
             never.append(Unsolved(one.mutant.id, reason, never=True))

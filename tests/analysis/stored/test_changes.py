@@ -31,7 +31,7 @@ def results(
 ) -> Results:
     path = folder / f"{len(list(folder.iterdir()))}.sqlite"
     samples.write_journal(path, outcomes=tuple(found), mutants=mutants, **meta)
-    return mutabot.open(path).results
+    return mutabot.open(path)
 
 
 def ids(changes: Changes, section: str) -> list[str]:

@@ -59,7 +59,7 @@ def test_a_number_that_is_none_is_missing(tmp_path: Path) -> None:
         samples.SKIP.id, 0, Verdict.SURVIVED, distance=math.inf, way=math.nan, example=(math.nan, [1])
     )
     campaign = mutabot.open(samples.write_journal(tmp_path / "journal.sqlite", outcomes=(odd,)))
-    (row,) = rows(campaign.results)
+    (row,) = rows(campaign)
     found = dict(zip((column.name for column in COLUMNS), row, strict=True))
     assert (found["distance"], found["way"], found["before"], found["after"]) == (None, None, None, "[1]")
 

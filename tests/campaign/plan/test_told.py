@@ -65,4 +65,4 @@ def test_the_tests_that_reach_a_site_are_known_for_calls_and_for_program_text(
 
 
 def test_results_as_json_do_not_repeat_it(campaign: StoredCampaign) -> None:
-    assert not {"operators", "reaching"} & set(results_data(campaign.results)["meta"])
+    assert not {"operators", "reaching"} & set(results_data(campaign)["meta"])

@@ -42,7 +42,7 @@ def found(tmp_path: Path) -> Changes:
         tmp_path / "old", outcomes=before, mutants=(*samples.MUTANTS[:4], GONE), finish="interrupted"
     )
     new = stored(tmp_path / "new", outcomes=now)
-    return changes(portable(old).results, portable(new).results)
+    return changes(portable(old), portable(new))
 
 
 def test_text_tells_every_section_and_what_happened(found: Changes) -> None:
@@ -92,7 +92,7 @@ def test_markdown_has_a_table_for_every_section(found: Changes) -> None:
 def test_every_text_is_shown_as_it_is(tmp_path: Path, text: str) -> None:
     new = with_text(stored(tmp_path / "new"), text)
     old = with_text(stored(tmp_path / "old", outcomes=KILLED), text)
-    found = changes(portable(old).results, portable(new).results)
+    found = changes(portable(old), portable(new))
     json.loads(dumps(changes_data(found)), parse_constant=pytest.fail)
     rows = [row for row in cells(made("markdown", new, changes=found)) if len(row) == 5 and row[0] == "2"]
     assert shown([rows[0][3]]) == shown([portable(new).mutants[1].mutant.description])

@@ -68,7 +68,7 @@ def test_numbers_that_json_cannot_hold_are_not_in_it(tmp_path: Path, name: str) 
         replace(one, rounds=tuple(odd[2 * index : 2 * index + 2]))
         for index, one in enumerate(campaign.mutants)
     )
-    check(name, made(name, replace(campaign, results=replace(campaign.results, mutants=mutants))))
+    check(name, made(name, replace(campaign, mutants=mutants)))
 
 
 @pytest.mark.parametrize("text", HOSTILE)
@@ -94,20 +94,17 @@ def test_no_report_names_a_folder_of_the_machine(tmp_path: Path, name: str) -> N
     campaign = with_text(stored(tmp_path), "safe")
     campaign = replace(
         campaign,
-        results=replace(
-            campaign.results,
-            state=f"OSError: {told}",
-            mutants=tuple(
-                replace(
-                    one,
-                    why=told,
-                    rounds=tuple(replace(each, message=told, place=told, test=f"{ROOT}/tests/a.py::b")
-                                 for each in one.rounds if each is not None),
-                )
-                for one in campaign.mutants
-            ),
-            meta={**campaign.meta, "root": ROOT},
+        state=f"OSError: {told}",
+        mutants=tuple(
+            replace(
+                one,
+                why=told,
+                rounds=tuple(replace(each, message=told, place=told, test=f"{ROOT}/tests/a.py::b")
+                             for each in one.rounds if each is not None),
+            )
+            for one in campaign.mutants
         ),
+        meta={**campaign.meta, "root": ROOT},
     )  # fmt: skip
     text = format_of(name).make(Material(portable(campaign)))
     data = text.encode() if isinstance(text, str) else text

@@ -80,7 +80,7 @@ def test_a_file_with_odd_letters_is_a_uri(campaign: mutabot.StoredCampaign) -> N
     span = replace(samples.OPEN.span, file="größe 100%.py")
     mutant = replace(samples.SKIP, site=replace(samples.OPEN, span=span))
     (result, *_) = campaign.survivors
-    odd = replace(campaign, results=replace(campaign.results, mutants=(replace(result, mutant=mutant),)))
+    odd = replace(campaign, mutants=(replace(result, mutant=mutant),))
     found = run(odd)["results"][0]["locations"][0]["physicalLocation"]
     assert found["artifactLocation"]["uri"] == "gr%C3%B6%C3%9Fe%20100%25.py"
     assert "snippet" not in found["region"]

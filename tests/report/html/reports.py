@@ -107,6 +107,4 @@ def evil(folder: Path) -> Path:
         else one
         for one, known in zip(stored.mutants, mutabot.open(journal).mutants, strict=True)
     )
-    return write(
-        folder / "report", journal, replace(stored, results=replace(stored.results, mutants=mutants))
-    ).page
+    return write(folder / "report", journal, replace(stored, mutants=mutants)).page

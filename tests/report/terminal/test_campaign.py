@@ -16,7 +16,7 @@ from analysis import samples
 from mutabot.analysis.results import Results, find_mutant, read_results
 from mutabot.errors import SelectionError
 from mutabot.journal.journal import Journal
-from mutabot.model import By, Outcome, Verdict
+from mutabot.model import By, Outcome, Span, Verdict
 from mutabot.report.terminal.campaign import print_results, print_summary
 from mutabot.report.terminal.console import make_console, mark_of, plain, short_place
 from mutabot.report.terminal.listing import print_plan
@@ -345,6 +345,12 @@ def test_texts_of_programs_cannot_play_with_the_terminal() -> None:
 
 
 def test_a_long_path_keeps_its_end() -> None:
-    assert short_place("src/a.py", 3) == "src/a.py:3"
-    assert short_place("packages/robot/src/robot/cell/mission.py", 12) == "…/cell/mission.py:12"
-    assert short_place("a_very_long_name_of_a_single_file.py", 1) == "a_very_long_name_of_a_single_file.py:1"
+    long = "a_very_long_name_of_a_single_file.py"
+    places = {
+        ("src/a.py", 3): "src/a.py:3",
+        ("packages/robot/src/robot/cell/mission.py", 12): "…/cell/mission.py:12",
+        (long, 1): f"{long}:1",
+        ("world", 0): "world",
+    }
+    for (file, line), told in places.items():
+        assert short_place(Span(file, line, 0, line, 4, "run")) == told

@@ -115,57 +115,24 @@ WRITTEN = frozenset(
 )
 #: kinds that are read from the robot
 READ = frozenset(
-    {
-        Kind.POSITION,
-        Kind.ORIENTATION,
-        Kind.ANGLE,
-        Kind.DISTANCE,
-        Kind.LABEL,
-        Kind.FLAG,
-        *WHOLE,
-        *HEADER,
-        *PLAIN,
-    }
-)
-#: kinds whose values are numbers on a scale, with a unit
-MEASURED = frozenset(
-    {
-        Kind.TRANSLATION,
-        Kind.ROTATION,
-        Kind.DURATION,
-        Kind.POSITION,
-        Kind.ORIENTATION,
-        Kind.ANGLE,
-        Kind.DISTANCE,
-        *WHOLE,
-        *PLAIN,
-    }
-)
-#: what each kind measures; kinds that are missing carry no unit
+    {Kind.POSITION, Kind.ORIENTATION, Kind.ANGLE, Kind.DISTANCE, Kind.LABEL, Kind.FLAG}
+    | WHOLE | HEADER | PLAIN
+)  # fmt: skip
+#: what each kind measures; kinds that are missing carry no unit. Plain ones measure what they are called by,
+#: along an axis or about it
 DIMENSIONS: dict[Kind, frozenset[Dimension]] = {
-    Kind.TRANSLATION: frozenset({Dimension.LENGTH}),
-    Kind.ROTATION: frozenset({Dimension.ANGLE}),
+    **dict.fromkeys((Kind.TRANSLATION, Kind.POSITION, Kind.DISTANCE), frozenset({Dimension.LENGTH})),
+    **dict.fromkeys((Kind.ROTATION, Kind.ORIENTATION, Kind.ANGLE), frozenset({Dimension.ANGLE})),
+    **dict.fromkeys((Kind.ROTATION_VECTOR, Kind.EULER), frozenset({Dimension.ANGLE})),
     Kind.OPENING: frozenset({Dimension.RATIO, Dimension.LENGTH}),
     Kind.DURATION: frozenset({Dimension.TIME}),
-    Kind.POSITION: frozenset({Dimension.LENGTH}),
-    Kind.ORIENTATION: frozenset({Dimension.ANGLE}),
-    Kind.ANGLE: frozenset({Dimension.ANGLE}),
-    Kind.DISTANCE: frozenset({Dimension.LENGTH}),
-    Kind.ROTATION_VECTOR: frozenset({Dimension.ANGLE}),
-    Kind.EULER: frozenset({Dimension.ANGLE}),
-    Kind.SPEED: frozenset({Dimension.SPEED, Dimension.ANGULAR_SPEED}),
-    Kind.ACCELERATION: frozenset({Dimension.ACCELERATION, Dimension.ANGULAR_ACCELERATION}),
-    Kind.JERK: frozenset({Dimension.JERK, Dimension.ANGULAR_JERK}),
-    Kind.FORCE: frozenset({Dimension.FORCE}),
-    Kind.TORQUE: frozenset({Dimension.TORQUE}),
-    Kind.MASS: frozenset({Dimension.MASS}),
-    Kind.TEMPERATURE: frozenset({Dimension.TEMPERATURE}),
-    Kind.VOLTAGE: frozenset({Dimension.VOLTAGE}),
-    Kind.CURRENT: frozenset({Dimension.CURRENT}),
-    Kind.PRESSURE: frozenset({Dimension.PRESSURE}),
-    Kind.FREQUENCY: frozenset({Dimension.FREQUENCY}),
-    Kind.RATIO: frozenset({Dimension.RATIO}),
+    **{
+        kind: frozenset(one for one in Dimension if one.removeprefix("angular ") == kind)
+        for kind in PLAIN - {Kind.COUNT, Kind.NUMBER}
+    },
 }
+#: kinds whose values are numbers on a scale, with a unit
+MEASURED = frozenset(DIMENSIONS.keys() - {Kind.OPENING} | WHOLE | PLAIN)
 #: the reading that tells where a written kind is now
 READING_OF: dict[Kind, Kind] = {Kind.TRANSLATION: Kind.POSITION, Kind.ROTATION: Kind.ORIENTATION}
 
@@ -362,11 +329,6 @@ def value_text(value: Any, digits: int = 4) -> str:
     if isinstance(value, list | tuple):
         return "(" + ", ".join(value_text(item, digits) for item in value) + ")"
     return str(value)
-
-
-def same_values(one: Mapping[str, Value], other: Mapping[str, Value]) -> bool:
-    """Whether two sets of values are equal, vectors and arrays included."""
-    return one.keys() == other.keys() and all(same(one[name], other[name]) for name in one)
 
 
 def same(one: Value, other: Value) -> bool:

@@ -6,28 +6,25 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
-from random import Random
 from typing import ClassVar
 
 from mutabot.families import CATALOGUE
-from mutabot.model import Call, Kind, Middleware, Mode, NotToldError, Operation, Path, Pattern, Quantity
+from mutabot.model import Call, Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
 from mutabot.model.values.quantity import Value
 from mutabot.model.values.rotation import Quaternion, from_euler, inverse, product
 from mutabot.model.values.units import convert
 from mutabot.operators.examples import MOVE_TO, changed, unchanged
 from mutabot.operators.numbers import is_number, like, map_numbers
-from mutabot.operators.operator import Context, Example, Need, Operator, Subject, Unchanged, quantity_of
+from mutabot.operators.operator import Context, Example, Need, Subject, Unchanged, quantity_of
 from mutabot.operators.studies import FRAMES
 from mutabot.operators.value import (
     NOT_GIVEN,
     Exchange,
     ValueOperator,
     ValuesOperator,
-    checked,
     given,
     is_alike,
     label,
-    on_call,
 )
 
 _BASE, _TOOL = "base", "tool"
@@ -133,7 +130,7 @@ class LeftHanded(ValuesOperator):
                 if is_place and quantity.axis == "y" and any(map(_turns, side)):
                     yield replace(whole, quantity=quantity)
 
-    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         name = context.quantity.name
         found = {name: map_numbers(given(values, name), _negative)}
         for one in context.subject.side:
@@ -168,7 +165,7 @@ def _mirrored(quantity: Quantity, value: Value) -> Value | None:
     return map_numbers(value, lambda _: next(parts) + 0.0)  # no −0
 
 
-class BaseForTool(Operator):
+class BaseForTool(ValuesOperator):
     """A relative move in the base's frame goes along the tool's axes, and one in the tool's along the
     base's.
     """
@@ -205,21 +202,15 @@ class BaseForTool(Operator):
         if whole.current is not None and moved:
             yield replace(whole, quantity=moved[0])
 
-    def middleware(self, subject: Subject, random: Random) -> Middleware:
-        moved = _moved(subject)
-
-        async def turned(call: Call) -> Call:
-            before = {one.name: call.values.get(one.name) for one in moved}
-            if not all(is_number(value) for value in before.values()):
-                raise Unchanged(NOT_GIVEN)
-            try:
-                tool = await _orientation(call, moved[0])
-            except NotToldError:
-                raise Unchanged("nothing tells how the tool is turned") from None
-            after = _turned(before, tool if moved[0].frame == _BASE else inverse(tool))
-            return replace(call, values={**call.values, **checked(moved, before, after)})
-
-        return on_call(turned)
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        before = {one.name: values.get(one.name) for one in _moved(context.subject)}
+        if not all(is_number(value) for value in before.values()):
+            raise Unchanged(NOT_GIVEN)
+        try:
+            tool = await _orientation(context.call)
+        except NotToldError:
+            raise Unchanged("nothing tells how the tool is turned") from None
+        return _turned(before, tool if context.quantity.frame == _BASE else inverse(tool))
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         frame = quantity_of(subject).frame
@@ -241,7 +232,7 @@ def _moved(subject: Subject) -> list[Quantity]:
     return []
 
 
-async def _orientation(call: Call, moved: Quantity) -> Quaternion:
+async def _orientation(call: Call) -> Quaternion:
     """How the tool is turned in the base's frame, by its three angles."""
     asked = (Quantity(f"theta_{axis}", Path(), Kind.ROTATION, axis, "deg", _BASE, Mode.TO) for axis in _AXES)
     return from_euler([convert(await call.current(one), "deg", "rad") for one in asked], _ORDER)

@@ -35,10 +35,10 @@ class _Setting(FreeValueOperator):
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
         return quantity.kind is Kind.SETTING and quantity.name == self.setting
 
-    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         if self.setting not in values:  # a middleware need not have all that others have
             raise Unchanged("its middleware has no such setting, or chooses it itself")
-        return super().changes(values, context)
+        return await super().changes(values, context)
 
 
 class WrongName(_Setting):
@@ -233,10 +233,10 @@ class UseDefault(FreeValueOperator):
             raise Unchanged(_IS_DEFAULT)
         return default
 
-    def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
         if DEFAULT.name not in context.call.values:
             raise Unchanged(_NO_DEFAULT)
-        return super().changes(values, context)
+        return await super().changes(values, context)
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         one, other = quantity_of(subject).texts(before, after)

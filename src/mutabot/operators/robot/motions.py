@@ -3,27 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from random import Random
 from typing import ClassVar
 
-from mutabot.model import Call, Kind, Middleware, Mode, NotToldError, Operation, Path, Pattern, Quantity
-from mutabot.model.values.direction import EITHER, has_direction
+from mutabot.model import Kind, Mode, NotToldError, Operation, Path, Pattern, Quantity
 from mutabot.model.values.quantity import READING_OF, Value
 from mutabot.operators.examples import MOVE_BY, MOVE_TO, changed, unchanged, writing
 from mutabot.operators.numbers import is_number, map_numbers
-from mutabot.operators.operator import (
-    Context,
-    Example,
-    Need,
-    Operator,
-    Published,
-    Subject,
-    Unchanged,
-    quantity_of,
-)
-from mutabot.operators.value import NOT_GIVEN, NOT_TOLD, ValueOperator, checked, label, on_call, the_other_way
+from mutabot.operators.operator import Context, Example, Need, Published, Subject, Unchanged, quantity_of
+from mutabot.operators.value import NOT_GIVEN, NOT_TOLD, ValueOperator, ValuesOperator, label, the_other_way
 
 _PATH = Path.parse("message.pose.x", rooted=True)
 _GOAL = Quantity("pose.x", _PATH, Kind.TRANSLATION, "x", "m", mode=Mode.TO, relative=True)
@@ -51,6 +40,9 @@ _X = MOVE_TO.arguments[0]
 _BY = replace(MOVE_BY, current="robot:Arm.tool_pose")
 _TO = replace(MOVE_TO, arguments=(_X,), current="robot:Arm.tool_pose")
 _NEAR = replace(_TO, arguments=(replace(_X, range=(0.0, 0.6)),))
+#: kinds that may be a motion with a direction, or only its magnitude
+_EITHER = frozenset({Kind.SPEED, Kind.RATIO})
+_COMPONENTS = frozenset({"x", "y", "z"})
 
 
 class Reverse(ValueOperator):
@@ -108,15 +100,15 @@ class Reverse(ValueOperator):
     def needs_of(self, subject: Subject) -> frozenset[Need]:
         quantity = quantity_of(subject)
         found = {Need.PLACE} if quantity.relative else set()
-        if quantity.kind in EITHER and has_direction(quantity) is None:
+        if quantity.kind in _EITHER and has_direction(quantity) is None:
             found.add(Need.SIGN)
         return frozenset(found)
 
-    def middleware(self, subject: Subject, random: Random) -> Middleware:
-        quantity = quantity_of(subject)
-        if not quantity.relative:
-            return super().middleware(subject, random)
-        return _by_place(quantity, lambda value, here: _within_turn(quantity, 2.0 * here - value))
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        if not context.quantity.relative:
+            return await super().changes(values, context)
+        value, here = await _value_and_place(values, context)
+        return {context.quantity.name: _within_turn(context.quantity, 2.0 * here - value)}
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         quantity = quantity_of(subject)
@@ -125,7 +117,7 @@ class Reverse(ValueOperator):
         return f"{label(quantity)} {quantity.text(before)} → as far to the other side of where it is"
 
     def fits(self, quantity: Quantity, whole: Subject) -> bool:
-        if quantity.kind in EITHER:
+        if quantity.kind in _EITHER:
             return has_direction(quantity) is not False
         return quantity.kind in (Kind.TRANSLATION, Kind.ROTATION) or quantity.is_whole
 
@@ -136,7 +128,7 @@ class Reverse(ValueOperator):
         return map_numbers(value, lambda number: _within_turn(quantity, -number))
 
 
-class ByTo(Operator):
+class ByTo(ValuesOperator):
     """A relative amount is taken for an absolute target, and the other way round."""
 
     name = "by-to"
@@ -167,11 +159,13 @@ class ByTo(Operator):
         moved = whole.written if whole.current is not None else ()
         return [replace(whole, quantity=quantity) for quantity in moved if quantity.kind in READING_OF]
 
-    def middleware(self, subject: Subject, random: Random) -> Middleware:
-        quantity = quantity_of(subject)
+    async def changes(self, values: Mapping[str, Value], context: Context) -> Mapping[str, Value]:
+        quantity = context.quantity
+        value, here = await _value_and_place(values, context)
         # the relative move that is hidden in an absolute target is that target less the place
-        sign = -1.0 if quantity.mode is Mode.BY or quantity.relative else 1.0
-        return _by_place(quantity, lambda value, here: value + sign * here)
+        return {
+            quantity.name: value - here if quantity.mode is Mode.BY or quantity.relative else value + here
+        }
 
     def describe(self, subject: Subject, before: Value | None, after: Value | None) -> str:
         quantity = quantity_of(subject)
@@ -182,23 +176,17 @@ class ByTo(Operator):
         return f"{label(quantity)} {was} {amount} → {becomes} {amount}"
 
 
-def _by_place(quantity: Quantity, change: Callable[[float, float], float]) -> Middleware:
-    """A mutant at work that asks where the robot is; ``change`` is given the value and the place."""
-
-    async def moved(call: Call) -> Call:
-        value = call.values.get(quantity.name)
-        if value is None or not is_number(value):
-            raise Unchanged(NOT_GIVEN)
-        if quantity.mode is Mode.BY and value == 0:
-            raise Unchanged("the amount is zero")
-        try:
-            after = change(value, await call.current(quantity))
-        except NotToldError:
-            raise Unchanged(NOT_TOLD) from None
-        checked([quantity], call.values, {quantity.name: after})
-        return call.with_value(quantity, after)
-
-    return on_call(moved)
+async def _value_and_place(values: Mapping[str, Value], context: Context) -> tuple[float, float]:
+    """The value of the call, and where the robot is. Raises Unchanged."""
+    quantity, value = context.quantity, values.get(context.quantity.name)
+    if value is None or not is_number(value):
+        raise Unchanged(NOT_GIVEN)
+    if quantity.mode is Mode.BY and value == 0:
+        raise Unchanged("the amount is zero")
+    try:
+        return value, await context.call.current(quantity)
+    except NotToldError:
+        raise Unchanged(NOT_TOLD) from None
 
 
 def _within_turn(quantity: Quantity, angle: float) -> float:
@@ -211,3 +199,25 @@ def _within_turn(quantity: Quantity, angle: float) -> float:
         return angle
     wrapped = angle + (turn if angle < low else -turn)
     return int(wrapped) if isinstance(angle, int) and wrapped.is_integer() else wrapped
+
+
+def has_direction(quantity: Quantity) -> bool | None:
+    """Whether negative values of a speed or ratio make sense; None if the vocabulary does not say.
+
+    What the vocabulary allows decides first. Otherwise, a component along an axis, the speed of a joint and
+    a vector have a direction. A number of its own may be the speed of a motor or a speed limit.
+    """
+    if quantity.values is not None:
+        return any(value < 0 for value in quantity.values)
+    limits = quantity.range or quantity.clip
+    if limits is not None:
+        return limits[0] < 0
+    return True if quantity.axis is not None or _is_part_of_vector(quantity.path) else None
+
+
+def _is_part_of_vector(path: Path) -> bool:
+    """Whether a path leads to a component of a vector, such as ``linear.x``, or to a slice of one."""
+    if not path.steps:
+        return path.root in _COMPONENTS
+    last = path.steps[-1]
+    return last.bounds is not None or last.attribute in _COMPONENTS or last.item in _COMPONENTS

@@ -10,9 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from mutabot.model.named import Form
-from mutabot.proposal.guess import Guess, Setting, Table, guess_argument, guess_reading
+from mutabot.proposal.guess import Guess, Setting, Table, guess_argument, guess_elements, guess_reading
 from mutabot.proposal.named.seen import Part, Use
-from mutabot.proposal.sequences import guess_elements
 
 Meant = dict[str, Guess]
 

@@ -14,7 +14,7 @@ def make(material: Material) -> str:
     file = io.StringIO(newline="")
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(column.name for column in COLUMNS)
-    writer.writerows(rows(material.campaign.results))
+    writer.writerows(rows(material.campaign))
     return file.getvalue()
 
 

@@ -32,8 +32,8 @@ def _lines(material: Material) -> Iterator[str]:
             hidden += 1
     told = [f"{hidden} more survivors are not shown here; `mutabot results` lists them"] if hidden else []
     if not material.campaign.is_complete:
-        results = material.campaign.results
-        told.append(f"the campaign is not complete ({results.state}): {results.done} of {results.planned} "
+        campaign = material.campaign
+        told.append(f"the campaign is not complete ({campaign.state}): {campaign.done} of {campaign.planned} "
                     "outcomes are known")  # fmt: skip
     if told:
         yield f"::notice title=mutabot::{_data('; '.join(told))}"

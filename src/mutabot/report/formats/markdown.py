@@ -28,25 +28,25 @@ def make(material: Material) -> str:
 
 
 def _lines(material: Material) -> Iterator[str]:
-    results = material.campaign.results
-    graded = f"{' and' if results.mutants else ''} {results.ladders} ladders" if results.ladders else ""
-    mutants = f" {len(results.mutants)} mutants" if results.mutants or not graded else ""
-    yield f"## Mutation testing:{mutants}{graded} × {results.rounds} rounds"
+    campaign = material.campaign
+    graded = f"{' and' if campaign.mutants else ''} {campaign.ladders} ladders" if campaign.ladders else ""
+    mutants = f" {len(campaign.mutants)} mutants" if campaign.mutants or not graded else ""
+    yield f"## Mutation testing:{mutants}{graded} × {campaign.rounds} rounds"
     yield ""
-    if not material.campaign.is_complete or results.done < results.planned:
-        known = f"{results.done} of {results.planned} outcomes are known"
-        yield f"> **This campaign is not complete** ({escaped(results.state)}): {known}."
+    if not campaign.is_complete or campaign.done < campaign.planned:
+        known = f"{campaign.done} of {campaign.planned} outcomes are known"
+        yield f"> **This campaign is not complete** ({escaped(campaign.state)}): {known}."
         yield ""
-    if not results.groups and results.ladders:
+    if not campaign.groups and campaign.ladders:
         yield "Graded mutants alone, which have no score."
         yield ""
-    elif not results.groups:
-        is_early = not material.campaign.is_complete
+    elif not campaign.groups:
+        is_early = not campaign.is_complete
         yield "No mutants are planned yet." if is_early else "No mutants were planned."
     else:
-        yield from _scores(results.groups)
-    if results.confirmation is not None:
-        yield f"{results.confirmation.text}."
+        yield from _scores(campaign.groups)
+    if campaign.confirmation is not None:
+        yield f"{campaign.confirmation.text}."
         yield ""
     if material.changes is not None:
         yield from change_lines(material.changes, material.path)
@@ -54,7 +54,7 @@ def _lines(material: Material) -> Iterator[str]:
     yield from _thresholds(material)
     yield from _unjudged(material)
     yield from _left_out(material)
-    yield from _flaky(results.flaky.tests)
+    yield from _flaky(campaign.flaky.tests)
 
 
 def _scores(groups: Sequence[Group]) -> Iterator[str]:
@@ -83,7 +83,7 @@ def _percent(share: float | None, interval: Interval | None) -> str:
 def _survivors(material: Material) -> Iterator[str]:
     survivors = material.campaign.survivors
     if not survivors:
-        if material.campaign.results.all.total.valid:
+        if material.campaign.all.total.valid:
             yield "### No survivors" if material.campaign.is_complete else "### No survivors so far"
             yield ""
         return
@@ -161,7 +161,7 @@ def _unjudged(material: Material) -> Iterator[str]:
 
 
 def _left_out(material: Material) -> Iterator[str]:
-    left_out = material.campaign.results.left_out
+    left_out = material.campaign.left_out
     if left_out:
         reasons = Counter(item.reason for item in left_out).most_common()
         told = "; ".join(f"{count} × {escaped(reason)}" for reason, count in reasons)

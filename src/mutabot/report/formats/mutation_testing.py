@@ -56,13 +56,13 @@ def _framework(meta: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _config(material: Material) -> dict[str, Any]:
-    results = material.campaign.results
+    campaign = material.campaign
     return {
-        **{key: results.meta.get(key) for key in ("families", "rounds", "seed", "engine", "order")},
-        "state": results.state,
-        "outcomes": {"known": results.done, "planned": results.planned},
+        **{key: campaign.meta.get(key) for key in ("families", "rounds", "seed", "engine", "order")},
+        "state": campaign.state,
+        "outcomes": {"known": campaign.done, "planned": campaign.planned},
         "scores": material.scores(),
-        "leftOut": dict(Counter(item.reason for item in results.left_out)),
+        "leftOut": dict(Counter(item.reason for item in campaign.left_out)),
     }
 
 

@@ -69,12 +69,12 @@ def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
 
 
 def _invocation(material: Material) -> dict[str, Any]:
-    results = material.campaign.results
-    is_complete = material.campaign.is_complete
-    told = f"{results.state}: {results.done} of {results.planned} outcomes are known"
+    campaign = material.campaign
+    is_complete = campaign.is_complete
+    told = f"{campaign.state}: {campaign.done} of {campaign.planned} outcomes are known"
     notes = [] if is_complete else [{"level": "warning", "message": {"text": _message(told)}}]
-    if results.confirmation is not None:
-        notes.append({"level": "note", "message": {"text": _message(f"{results.confirmation.text}.")}})
+    if campaign.confirmation is not None:
+        notes.append({"level": "note", "message": {"text": _message(f"{campaign.confirmation.text}.")}})
     return {"executionSuccessful": is_complete, "toolExecutionNotifications": notes}
 
 

@@ -11,21 +11,15 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from mutabot.analysis.chance import false_kills, false_survivors
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.score import Group, Score
-from mutabot.analysis.statistics import Interval
+from mutabot.analysis.results import MutantResult, unlooked
 from mutabot.analysis.stored import StoredCampaign, StoredEvidence, killers
 from mutabot.analysis.suggested import Suggestions
 from mutabot.analysis.thresholds.words import line_of
-from mutabot.analysis.unlooked import unlooked
-from mutabot.border.codec import to_data
 from mutabot.errors import UsageError
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
-from mutabot.journal.records import Verification
 from mutabot.model import By
-from mutabot.report.as_json import facts, finite
+from mutabot.report.as_json import drawing_data, facts, finite, group_data, repeats_data, verification_data
 from mutabot.report.format import place_of, utf16
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.terminal.suggested import check_on_page
@@ -46,12 +40,12 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
     Args:
         name: what the project is called.
     """
-    results, rows = campaign.results, Rows(campaign)
+    rows = Rows(campaign)
     return {
         "name": name,
-        **facts(results, "state attempt done planned rounds"),
-        "meta": {key: results.meta[key] for key in _META if key in results.meta},
-        "groups": [_group(one) for one in results.groups],
+        **facts(campaign, "state attempt done planned rounds"),
+        "meta": {key: campaign.meta[key] for key in _META if key in campaign.meta},
+        "groups": [group_data(one) for one in campaign.groups],
         "operators": dict(campaign.operators),
         "files": rows.files,
         "tests": rows.tests,
@@ -60,54 +54,25 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
         "columns": rows.columns,
         "mutants": rows.rows,
         "unlooked": [
-            [*one.places[:3], one.operation, one.quantity, one.text] for one in unlooked(results.mutants)
+            [*one.places[:3], one.operation, one.quantity, one.text] for one in unlooked(campaign.mutants)
         ],
         "ladders": [
             [f"{one.place} {one.name}", line_of(one)] for one in campaign.thresholds.ladders[:_LADDERS]
         ],
         "leftOut": _left_out(campaign),
-        "flaky": results.flaky.tests,
-        "controls": [[one.test_file, one.control, one.ok, one.detail] for one in results.controls],
-        "verification": _verification(results.verification),
-        "repeats": {
-            "repeats": to_data(results.repeats),
-            "falseKills": _chance(false_kills(results.repeats)),
-            "falseSurvivors": _chance(false_survivors(results.repeats)),
-        },
-        "confirmed": results.confirmation.text if results.confirmation is not None else None,
-        "drawing": facts(results.drawing, "sample selected") if results.drawing is not None else None,
+        "flaky": campaign.flaky.tests,
+        "controls": [facts(one, "test_file control ok detail") for one in campaign.controls],
+        "verification": verification_data(campaign.verification),
+        "repeats": repeats_data(campaign.repeats),
+        "confirmed": campaign.confirmation.text if campaign.confirmation is not None else None,
+        "drawing": drawing_data(campaign.drawing),
     }
-
-
-def _group(group: Group) -> dict[str, Any]:
-    scores, total = group.scores, group.scores.total
-    return {
-        **facts(group, "family role mutants population"),
-        "score": scores.mean,
-        "check": scores.mean_check,
-        "interval": _ends(scores.interval),
-        "checkInterval": _ends(scores.check_interval),
-        "sampleInterval": _ends(scores.sample_interval),
-        "killed": total.killed,
-        "valid": total.valid,
-        "byCheck": total.by_check,
-        "counts": [[verdict.value, count] for verdict, count in total.counts.items()],
-        "rounds": [_score(one) for one in scores.rounds],
-    }
-
-
-def _score(score: Score) -> list[Any]:
-    return [score.score, score.check_score, score.killed, score.valid]
-
-
-def _ends(interval: Interval | None) -> list[float] | None:
-    return [interval.low, interval.high] if interval is not None else None
 
 
 def _baseline(campaign: StoredCampaign, tests: list[str]) -> list[list[Any]]:
     """Per test: its outcomes on the original that occurred, and its simulated seconds."""
     found: dict[str, list[Any]] = {name: [[], None] for name in tests}
-    for one in campaign.results.tests:
+    for one in campaign.baseline:
         ends, seconds = found[one.test.test]
         if one.test.outcome not in ends:
             ends.append(one.test.outcome)
@@ -116,23 +81,12 @@ def _baseline(campaign: StoredCampaign, tests: list[str]) -> list[list[Any]]:
 
 
 def _left_out(campaign: StoredCampaign) -> list[list[Any]]:
-    left_out = campaign.results.left_out
+    left_out = campaign.left_out
     reasons = Counter(one.reason for one in left_out)
     return [
         [reason, count, [[one.id, one.description] for one in left_out if one.reason == reason][:_ITEMS]]
         for reason, count in reasons.most_common()
     ]
-
-
-def _verification(found: Verification | None) -> dict[str, Any] | None:
-    if found is None:
-        return None
-    told = [[one.number, one.round, one.first, one.second] for one in found.disagreements]
-    return {"checked": found.checked, "wanted": found.wanted, "disagreements": told}
-
-
-def _chance(found: Any) -> list[float] | None:
-    return [found.expected, found.low, found.high, found.known] if found is not None else None
 
 
 class Rows:
@@ -148,7 +102,6 @@ class Rows:
 
     def __init__(self, campaign: StoredCampaign) -> None:
         self._campaign = campaign
-        self.files: list[str] = []
         self.tests = campaign.tests
         self._tests = {name: number for number, name in enumerate(self.tests)}
         self._files: dict[str, int] = {}
@@ -157,6 +110,7 @@ class Rows:
         made = [self._row(one) for one in campaign.mutants]
         self.columns = [*made[0]] if made else []
         self.rows = [[*one.values()] for one in made]
+        self.files = [*self._files]
 
     def _row(self, result: MutantResult) -> dict[str, Any]:
         mutant, rate, status = result.mutant, result.kill_rate, status_of(result)
@@ -165,7 +119,7 @@ class Rows:
         return {
             "number": mutant.number,
             "id": mutant.id,
-            "file": self._file(span.file),
+            "file": self._files.setdefault(span.file, len(self._files)),
             "line": place.line,
             "column": place.column,
             "endLine": place.end_line,
@@ -186,12 +140,6 @@ class Rows:
             "earlier": result.earlier or result.outdated,
             "drawn": _drawn(result) if result.mutant.operator in self._campaign.draws else None,
         }
-
-    def _file(self, file: str) -> int:
-        if file not in self._files:
-            self._files[file] = len(self.files)
-            self.files.append(file)
-        return self._files[file]
 
     def _site(self, result: MutantResult) -> int:
         """The number of the site, and the tests that reach it."""

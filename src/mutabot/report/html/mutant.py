@@ -5,7 +5,6 @@ Tracks have fewer points: what a straight line in time keeps within half a milli
 
 from __future__ import annotations
 
-from array import array
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,11 +16,11 @@ from mutabot.analysis.divergence import change_text, worst_of
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.stored import StoredEvidence
 from mutabot.border.codec import to_data
-from mutabot.evidence.recording import Block, Kind, Moment, Recording, Told, Track
+from mutabot.evidence.recording import Kind, Recording, Told, Track
 from mutabot.model import Looked, Outcome
 from mutabot.model.values.quantity import value_text
-from mutabot.report.as_json import facts
-from mutabot.report.texts import rounds_text
+from mutabot.report.as_json import facts, interval_data
+from mutabot.report.texts import mapped, rounds_text
 
 #: what one step of the whole numbers is, and by how many steps a line may miss: m; quaternions without unit
 _LENGTH, _TURN = 1e-4, 1e-3
@@ -155,14 +154,10 @@ def _same_until(
     until = 0.0
     for count, (one, other) in enumerate(zip(times, usual_times, strict=False)):
         here = slice(count * width, (count + 1) * width)
-        if one != other or _bytes(track.values[here]) != _bytes(usual.values[here]):
+        if one != other or track.values[here].tobytes() != usual.values[here].tobytes():
             break
         until = one
     return until
-
-
-def _bytes(values: array[float]) -> bytes:
-    return values.tobytes()
 
 
 def _differences(numbers: Sequence[int]) -> list[int]:
@@ -178,7 +173,6 @@ _CHECKS = 40
 def mutant_page(result: MutantResult) -> dict[str, Any]:
     """All but what was recorded."""
     mutant = result.mutant
-    interval = result.kill_rate.interval
     quantity = result.quantity
     change = next(filter(None, (change_text(mutant, one, quantity) for one in result.outcomes)), None)
     return {
@@ -187,7 +181,7 @@ def mutant_page(result: MutantResult) -> dict[str, Any]:
         "places": [{"place": mutant.site.place, "function": mutant.site.span.function}],
         "pattern": mutant.pattern_name,
         "meaning": _meaning_words(result),
-        "interval": [interval.low, interval.high] if interval is not None else None,
+        "interval": interval_data(result.kill_rate.interval),
         "roundsText": rounds_text(result),
         "change": change,
         "rounds": [_round(one) for one in result.rounds],
@@ -270,20 +264,18 @@ class Recorded:
     evidence: StoredEvidence
     clean: Callable[[str], str]
     originals: dict[tuple[int, str], Any] = field(default_factory=dict)
-    _numbers: dict[tuple[int, str], int] = field(default_factory=dict)
 
     def of(self, result: MutantResult) -> Iterator[dict[str, Any]]:
         """What was recorded of a mutant, the round and test that went farthest from the original first."""
         for round, test in self._places(result):
-            pair = self.evidence.pair(result.mutant.id, round, test)
-            if pair.mutant is None:
-                continue
-            yield {
-                "round": round,
-                "test": self.clean(test),
-                "original": self._original(round, test, pair.original),
-                **self._data(pair.mutant, pair.original),
-            }
+            original, mutant = mapped(self.evidence.pair(result.mutant.id, round, test), self.clean)
+            if mutant is not None:
+                yield {
+                    "round": round,
+                    "test": self.clean(test),
+                    "original": self._original(round, test, original),
+                    **_data(mutant, original),
+                }
 
     def count(self, result: MutantResult) -> int:
         """How many recordings there are of a mutant."""
@@ -302,69 +294,45 @@ class Recorded:
         if recording is None:
             return None
         key = (round, test)
-        if key not in self._numbers:
-            self._numbers[key] = len(self._numbers)
-            self.originals[key] = {"round": round, "test": self.clean(test), **self._data(recording, None)}
-        return self._numbers[key]
+        if key not in self.originals:
+            self.originals[key] = {"round": round, "test": self.clean(test), **_data(recording, None)}
+        return [*self.originals].index(key)
 
-    def _data(self, recording: Recording, usual: Recording | None) -> dict[str, Any]:
-        others: Mapping[str, Any] = usual.tracks if usual is not None else {}
-        times = usual.times if usual is not None else ()
-        tracks = (
-            thinned(track, recording.times, others.get(name), times)
-            for name, track in recording.tracks.items()
-        )
-        calls = _shared(recording.calls, usual.calls) if usual is not None else 0
-        return {
-            "tracks": [
-                {**one, "name": self.clean(one["name"]), "unit": self.clean(one["unit"])}
-                for one in tracks
-                if one
-            ],
-            "callsFrom": calls,
-            "calls": [self._call(one) for one in recording.calls[calls:]],
-            "moments": [self._moment(one) for one in recording.moments],
-            "blocks": [self._block(one) for one in recording.blocks],
-            "end": recording.times[-1] if recording.times else None,
-            "fault": recording.fault,
-            "faultyCall": recording.faulty_call,
-            "simulated": recording.is_simulated,
-            "problems": [self.clean(one) for one in recording.problems],
-        }
 
-    def _call(self, call: Told) -> list[Any]:
-        return [
-            call.began,
-            call.ended,
-            self.clean(call.operation),
-            self.clean(call.place),
-            self.clean(call.pattern) if call.pattern is not None else None,
-            self._values(call.written),
-            self._values(call.read),
-            call.role,
-        ]
+def _data(recording: Recording, usual: Recording | None) -> dict[str, Any]:
+    others: Mapping[str, Any] = usual.tracks if usual is not None else {}
+    times = usual.times if usual is not None else ()
+    tracks = (
+        thinned(track, recording.times, others.get(name), times) for name, track in recording.tracks.items()
+    )
+    calls = _shared(recording.calls, usual.calls) if usual is not None else 0
+    return {
+        "tracks": [one for one in tracks if one],
+        "callsFrom": calls,
+        "calls": [_call(one) for one in recording.calls[calls:]],
+        "moments": [[one.time, one.what, one.text] for one in recording.moments],
+        "blocks": [[one.name, one.centre, one.size, one.colour] for one in recording.blocks],
+        "end": recording.times[-1] if recording.times else None,
+        "fault": recording.fault,
+        "faultyCall": recording.faulty_call,
+        "simulated": recording.is_simulated,
+        "problems": recording.problems,
+    }
 
-    def _values(self, values: Mapping[str, Any]) -> list[list[Any]]:
-        return [[self.clean(name), self._value(value)] for name, value in values.items()]
 
-    def _value(self, value: Any) -> Any:
-        if value is None or isinstance(value, bool | int | float):
-            return value
-        text = self.clean(value if isinstance(value, str) else value_text(value))
-        return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
+def _call(call: Told) -> list[Any]:
+    sides = ([[name, _short(value)] for name, value in side.items()] for side in (call.written, call.read))
+    return [call.began, call.ended, call.operation, call.place, call.pattern, *sides, call.role]
 
-    def _moment(self, moment: Moment) -> list[Any]:
-        return [moment.time, moment.what, self.clean(moment.text)]
 
-    def _block(self, block: Block) -> list[Any]:
-        return [self.clean(block.name), block.centre, block.size, block.colour]
+def _short(value: Any) -> Any:
+    if value is None or isinstance(value, bool | int | float):
+        return value
+    text = value if isinstance(value, str) else value_text(value)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
 
 
 def _shared(calls: Sequence[Told], usual: Sequence[Told]) -> int:
     """How many calls both begin with."""
-    count = 0
-    for one, other in zip(calls, usual, strict=False):
-        if one != other:
-            break
-        count += 1
-    return count
+    pairs = enumerate(zip(calls, usual, strict=False))
+    return next((count for count, (one, other) in pairs if one != other), min(len(calls), len(usual)))

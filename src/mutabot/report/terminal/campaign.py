@@ -13,7 +13,7 @@ from rich.text import Text
 
 from mutabot.analysis.divergence import first_line
 from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.score import Group, KillRate, RoundScores
+from mutabot.analysis.score import Group, RoundScores, Score
 from mutabot.analysis.statistics import Interval
 from mutabot.model import LeftOut, Outcome, Verdict
 from mutabot.report.terminal.console import (
@@ -98,7 +98,7 @@ def _circumstances(results: Results) -> str:
     started = meta.get("started")
     if isinstance(started, int | float):
         parts.append(f"started {datetime.fromtimestamp(started).astimezone():%Y-%m-%d %H:%M}")
-    tests = {one.test.test for one in results.tests}
+    tests = {one.test.test for one in results.baseline}
     if tests:
         parts.append(f"baseline of {plural(len(tests), 'test')}")
     return " · ".join(parts)
@@ -156,7 +156,7 @@ def _row(outcomes: Sequence[Outcome | None], many: bool) -> Text:
     return Text(" ").join(parts)
 
 
-def _kill_rate(rate: KillRate, *, narrow: bool) -> Text:
+def _kill_rate(rate: Score, *, narrow: bool) -> Text:
     """``3/5`` and its interval, on a line each where there is little room."""
     interval = between(rate.interval) if rate.interval is not None else ""
     # spaces that do not break are not cut off at the end of a cell either
@@ -168,8 +168,7 @@ def _kill_rate(rate: KillRate, *, narrow: bool) -> Text:
 
 
 def _place(result: MutantResult) -> str:
-    span = result.mutant.site.span
-    return short_place(span.file, span.line)
+    return short_place(result.mutant.site.span)
 
 
 def round_tables(results: Results, width: int) -> Iterator[Table]:
@@ -272,7 +271,11 @@ def survivor_lines(results: Results, width: int, *, at_most: int | None = None) 
     for result in survivors[:at_most]:
         rate = result.kill_rate
         let_through = f"{rate.valid - rate.killed} of {rate.valid}"
-        facts = (_place(result), result.mutant.operator, f"{let_through} rounds" if narrow else let_through)
+        facts = (
+            _place(result),
+            result.mutant.operator,
+            f"{let_through} rounds" if narrow else let_through,
+        )
         add_row(table, result.mutant.number, facts, result.why, narrow=narrow)
     yield table
     if at_most is not None and len(survivors) > at_most:

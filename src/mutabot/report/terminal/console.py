@@ -15,7 +15,7 @@ from rich.text import Text
 
 from mutabot.analysis.statistics import Interval
 from mutabot.frozen import frozen
-from mutabot.model import By, Outcome, Verdict
+from mutabot.model import By, Outcome, Span, Verdict
 
 _ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07]*\x07|.)")
 _CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
@@ -79,9 +79,9 @@ def make_mutant_table(facts: Sequence[str], text: str, *, narrow: bool) -> Table
     return table
 
 
-def short_place(file: str, line: int, *, width: int = 24) -> str:
+def short_place(span: Span, width: int = 24) -> str:
     """``file:line``; a long path loses its first folders. What stands in no line has line 0."""
-    place = f"{file}:{line}" if line else file
+    place = span.place
     if len(place) <= width:
         return place
     parts = place.split("/")

@@ -27,7 +27,7 @@ def print_plan(
     for mutant in shown:
         site = mutant.site
         quantity = "/".join(part for part in (mutant.pattern_name, mutant.quantity) if part) or "–"
-        place = short_place(site.span.file, site.span.line)
+        place = short_place(site.span)
         text = f"{mutant.description}\n{mutant.id}" if everything else mutant.description
         facts = (site.role.value, place, mutant.operator, quantity)
         add_row(table, mutant.number, facts, text, narrow=narrow)

@@ -13,11 +13,11 @@ from rich.table import Table
 from rich.text import Text
 
 from mutabot.analysis.divergence import change_text, worst_of
-from mutabot.analysis.results import MutantResult, Results
-from mutabot.analysis.score import KillRate
-from mutabot.analysis.stored import Pair, StoredEvidence
+from mutabot.analysis.results import MutantResult, Results, unlooked
+from mutabot.analysis.score import Score
+from mutabot.analysis.stored import StoredEvidence
 from mutabot.analysis.suggested import Suggestions
-from mutabot.analysis.unlooked import unlooked
+from mutabot.evidence.recording import Recording
 from mutabot.evidence.story import Entry, Row, amount, around, timeline
 from mutabot.journal.records import Replayed
 from mutabot.model import Check, Diverged, Kind, Looked, Mutant, Outcome, Quantity, Span
@@ -42,7 +42,7 @@ def happened_parts(result: MutantResult, evidence: StoredEvidence | None) -> Ite
     if diverged.apart:
         yield Padding(_apart_table(diverged.apart), (0, 0, 0, 4), expand=False)
     if evidence is not None:
-        yield from _timeline_parts(evidence.pair(result.mutant.id, number, diverged.test))
+        yield from _timeline_parts(*evidence.pair(result.mutant.id, number, diverged.test))
 
 
 def _sentences(diverged: Diverged) -> Iterator[str]:
@@ -70,11 +70,11 @@ def _apart_table(apart: Sequence[Apart]) -> Table:
     return table
 
 
-def _timeline_parts(pair: Pair) -> Iterator[RenderableType]:
-    if pair.original is None or pair.mutant is None:
+def _timeline_parts(original: Recording | None, mutant: Recording | None) -> Iterator[RenderableType]:
+    if original is None or mutant is None:
         yield Padding(Text("no recording is left of it: `mutabot run` with more room"), (0, 0, 0, 2))
         return
-    rows, before, after = around(timeline(pair.original, pair.mutant))
+    rows, before, after = around(timeline(original, mutant))
     if not rows:
         return
     yield heading("Timeline")
@@ -244,10 +244,10 @@ def _place_text(mutant: Mutant) -> str:
     return f"{mutant.site.place} in {function}" if function else mutant.site.place
 
 
-def _interval_text(rate: KillRate) -> str:
+def _interval_text(rate: Score) -> str:
     if rate.interval is None:
         return ""
-    return f": {percent(rate.rate)}, 95 % interval {between(rate.interval)}"
+    return f": {percent(rate.score)}, 95 % interval {between(rate.interval)}"
 
 
 def _quantity_text(name: str | None, quantity: Quantity | None) -> str:

@@ -73,7 +73,7 @@ const mutabot = (() => {
   }
 
   const percent = (share, digits = 1) => share === null || share === undefined ? "–" : `${(100 * share).toFixed(digits)} %`;
-  const between = (ends) => ends ? `${Math.round(100 * ends[0])}–${Math.round(100 * ends[1])} %` : "";
+  const between = (ends) => ends ? `${Math.round(100 * ends.low)}–${Math.round(100 * ends.high)} %` : "";
   const count = (number, one, many) => `${number.toLocaleString("en")} ${number === 1 ? one : many || `${one}s`}`;
   /** A number in at most so many digits that count, as people write it. */
   function number(value, digits = 4) {

@@ -34,7 +34,7 @@
     const complete = campaign.state === "complete" && campaign.done >= campaign.planned;
     const facts = [typeof meta.seconds === "number" && `took ${duration(meta.seconds)}`,
       meta.families && `families ${meta.families.join(", ")}`, count(campaign.tests.length, "test"),
-      campaign.drawing && `a sample of ${campaign.drawing.sample} of ${count(campaign.drawing.selected, "mutant")}`];
+      campaign.drawing && `a sample of ${campaign.drawing.size} of ${count(campaign.drawing.selected, "mutant")}`];
     return [
       h("p", { class: "lead" }, complete ? "complete · " : "", facts.filter(Boolean).join(" · ")),
       complete || isUnderWay(campaign) ? null : h("p", { class: "notice" }, h("strong", null, `This campaign is not complete (${campaign.state}): `),
@@ -63,9 +63,9 @@
   function group(one) {
     return h("tr", null,
       h("th", { scope: "row" }, h("a", { href: address(["mutants"], { family: one.family, role: one.role }) }, `${one.family} · ${one.role}`)),
-      h("td", { class: "n big" }, percent(one.score), h("small", null, one.interval ? between(one.interval) : one.score === null ? "nothing valid" : "no interval")),
+      h("td", { class: "n big" }, percent(one.score), h("small", null, between(one.interval) || (one.score === null ? "nothing valid" : "no interval"))),
       h("td", null, dots(one)),
-      h("td", { class: "n" }, percent(one.check), h("small", null, between(one.checkInterval))),
+      h("td", { class: "n" }, percent(one.check_score), h("small", null, between(one.check_interval))),
       h("td", null, bar(one)),
       h("td", { class: "n" }, one.mutants, one.population ? h("small", null, `drawn of ${one.population}`) : null));
   }
@@ -73,15 +73,15 @@
   /** The score's interval, its rounds and the check score on a scale from 0 to 100 %. */
   function dots(one) {
     const x = (share) => 4 + 192 * share;
-    const rounds = one.rounds.filter((round) => round[0] !== null);
-    const told = rounds.map((round, index) => `round ${index + 1} ${percent(round[0])}`).join(", ");
-    return svg("svg", { class: "dots", viewBox: "0 0 200 34", role: "img", "aria-label": `Score ${percent(one.score)}${one.interval ? `, 95 % interval ${between(one.interval)}` : ""}; ${told}; check score ${percent(one.check)}` },
+    const rounds = one.rounds.filter((round) => round.score !== null);
+    const told = rounds.map((round, index) => `round ${index + 1} ${percent(round.score)}`).join(", ");
+    return svg("svg", { class: "dots", viewBox: "0 0 200 34", role: "img", "aria-label": `Score ${percent(one.score)}${one.interval ? `, 95 % interval ${between(one.interval)}` : ""}; ${told}; check score ${percent(one.check_score)}` },
       svg("line", { class: "axis", x1: x(0), x2: x(1), y1: 22, y2: 22 }),
       [0, 0.25, 0.5, 0.75, 1].map((share) => svg("line", { class: "axis", x1: x(share), x2: x(share), y1: 20, y2: 24 })),
       [0, 0.5, 1].map((share) => svg("text", { x: x(share), y: 33, "text-anchor": share === 0 ? "start" : share === 1 ? "end" : "middle" }, 100 * share)),
-      one.interval ? svg("rect", { class: "interval", x: x(one.interval[0]), width: Math.max(1, x(one.interval[1]) - x(one.interval[0])), y: 8, height: 6, rx: 1 }) : null,
-      rounds.map((round) => svg("line", { class: "round", x1: x(round[0]), x2: x(round[0]), y1: 5, y2: 17 })),
-      one.check !== null ? svg("circle", { class: "check", cx: x(one.check), cy: 11, r: 3.6 }) : null,
+      one.interval ? svg("rect", { class: "interval", x: x(one.interval.low), width: Math.max(1, x(one.interval.high) - x(one.interval.low)), y: 8, height: 6, rx: 1 }) : null,
+      rounds.map((round) => svg("line", { class: "round", x1: x(round.score), x2: x(round.score), y1: 5, y2: 17 })),
+      one.check_score !== null ? svg("circle", { class: "check", cx: x(one.check_score), cy: 11, r: 3.6 }) : null,
       one.score !== null ? svg("circle", { class: "mean", cx: x(one.score), cy: 11, r: 4 }) : null);
   }
 
@@ -89,10 +89,9 @@
     ["uncovered", "N", "not covered"], ["refused", "R", "refused"], ["invalid", "I", "invalid"], ["idle", "=", "no effect"], ["unstable", "U", "unstable"], ["error", "E", "error"]];
   const NAMES = { timeout: "timeout", survived: "survived", uncovered: "not covered", refused: "refused", invalid: "invalid", idle: "no effect", unstable: "unstable", error: "error" };
   function bar(one) {
-    const counts = Object.fromEntries(one.counts);
-    const killed = counts.killed || 0;
+    const { counts, by_check: byCheck } = one;
     const parts = KINDS.map(([kind, letter, words]) => [kind, letter, words,
-      kind === "check" ? one.byCheck : kind === "exception" ? killed - one.byCheck : counts[NAMES[kind]] || 0]).filter((part) => part[3]);
+      kind === "check" ? byCheck : kind === "exception" ? counts.killed - byCheck : counts[NAMES[kind]]]).filter((part) => part[3]);
     const total = parts.reduce((sum, part) => sum + part[3], 0) || 1;
     const strip = h("div", { class: "strip", "aria-hidden": "true" });
     for (const [kind, , , found] of parts) {
@@ -165,10 +164,10 @@
 
   function trust(campaign) {
     const lines = [];
-    const wrong = campaign.controls.filter((one) => !one[2]);
+    const wrong = campaign.controls.filter((one) => !one.ok);
     if (campaign.controls.length) {
       lines.push(wrong.length
-        ? h("li", { class: "bad" }, `${count(wrong.length, "control")} ended wrongly: `, wrong.map((one) => `${one[1]} for ${one[0]}, ${one[3]}`).join("; "))
+        ? h("li", { class: "bad" }, `${count(wrong.length, "control")} ended wrongly: `, wrong.map((one) => `${one.control} for ${one.test_file}, ${one.detail}`).join("; "))
         : h("li", null, `${count(campaign.controls.length, "control")} ended as they must: one that changes nothing survives, one that breaks everything dies.`));
     }
     if (campaign.flaky.length) lines.push(h("li", { class: "bad" }, `${count(campaign.flaky.length, "test")} cannot be relied on:`, h("ul", null, campaign.flaky.map((one) => h("li", null, one)))));
@@ -177,11 +176,12 @@
     if (verified) {
       lines.push(verified.disagreements.length
         ? h("li", { class: "bad" }, `${verified.disagreements.length} of ${verified.checked} outcomes came out otherwise in a fresh process:`,
-          h("ul", null, verified.disagreements.map(([many, round, first, second]) => h("li", null, h("a", { href: address(["mutant", String(many)]) }, `mutant ${many}`), `, round ${round + 1}: ${first}; afresh ${second}`))))
+          h("ul", null, verified.disagreements.map(({ number: many, round, first, second }) => h("li", null, h("a", { href: address(["mutant", String(many)]) }, `mutant ${many}`), `, round ${round}: ${first}; afresh ${second}`))))
         : h("li", null, `${count(verified.checked, "outcome")} were run again in fresh processes, and came out the same.`));
     }
-    for (const [name, found] of [["kills", campaign.repeats.falseKills], ["survivors", campaign.repeats.falseSurvivors]]) {
-      if (found) lines.push(h("li", null, `False ${name}, by repeats: ${number(found[0], 2)} expected among ${found[3]} (95 % interval ${number(found[1], 2)} to ${number(found[2], 2)}).`));
+    for (const name of ["kills", "survivors"]) {
+      const found = campaign.repeats[`false_${name}`];
+      if (found) lines.push(h("li", null, `False ${name}, by repeats: ${number(found.expected, 2)} expected among ${found.known} (95 % interval ${number(found.low, 2)} to ${number(found.high, 2)}).`));
     }
     if (!lines.length) return "";
     return h("section", { "aria-labelledby": "trust" }, h("h2", { id: "trust" }, "Can it be trusted?"), h("ul", { class: "plain" }, lines));
