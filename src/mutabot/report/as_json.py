@@ -137,10 +137,13 @@ def score_data(score: Score) -> dict[str, Any]:
 
 
 def group_data(group: Group) -> dict[str, Any]:
-    """The scores of a family and role: the mean, the counts of all rounds together, and each round."""
-    scores = group.scores
+    """The scores of a family and role."""
+    return {**facts(group, "family role mutants population"), **scores_data(group.scores)}
+
+
+def scores_data(scores: RoundScores) -> dict[str, Any]:
+    """Scores over the rounds: the mean, the counts of all rounds together, and each round."""
     return {
-        **facts(group, "family role mutants population"),
         **score_data(scores.total),
         "score": scores.mean,
         "check_score": scores.mean_check,
