@@ -18,6 +18,8 @@ from .event_loops import go_on_running, own_event_loops, running_loop
 from .private_files import PrivateFiles, is_below, private_folders
 
 _CHUNK = 1 << 16
+#: bytes up to which a copy of a deleted file stays in memory, which is quicker
+_SMALL = 1 << 20
 #: where forks have their folders, in that of the process
 _FORKS = "forks"
 #: device, inode, position and flags of an open file: descriptors that agree in them share one opening
@@ -154,11 +156,13 @@ def _opened_again(descriptor: int, status: os.stat_result, position: int, flags:
 def _copy(descriptor: int) -> int:
     """A private copy of a file, at the same position."""
     position = os.lseek(descriptor, 0, os.SEEK_CUR)
-    with tempfile.TemporaryFile(buffering=0) as file:
-        offset = 0
-        while chunk := os.pread(descriptor, _CHUNK, offset):
-            file.write(chunk)
-            offset += len(chunk)
-        copied = os.dup(file.fileno())
+    if os.fstat(descriptor).st_size <= _SMALL:
+        copied = os.memfd_create("copy")
+    else:
+        with tempfile.TemporaryFile(buffering=0) as file:
+            copied = os.dup(file.fileno())
+    offset = 0
+    while chunk := os.pread(descriptor, _CHUNK, offset):
+        offset += os.pwrite(copied, chunk, offset)
     os.lseek(copied, position, os.SEEK_SET)
     return copied

@@ -20,8 +20,9 @@ from dataclasses import dataclass, field
 _CLONE_NEWNS, _CLONE_NEWUSER = 0x00020000, 0x10000000
 _MS_BIND, _MS_REC, _MS_PRIVATE, _MNT_DETACH = 4096, 16384, 1 << 18, 2
 _SHARED_MEMORY = "/dev/shm"
-#: the layers of a process lie in its own folder
-_LAYERS, _UPPER = "files", "upper"
+#: the layers of a process lie in its own folder; of folders in memory, and of those that hardly anybody
+#: writes to, in a file system in memory that ends with the process, since to make them on a disk takes longer
+_LAYERS, _IN_MEMORY, _UPPER = "files", "memory", "upper"
 #: attributes that an overlay gives to a file of its upper layer, and that hold for no copy of it
 _OF_THE_LAYER = (".overlay.origin", ".overlay.uuid", ".overlay.impure", ".overlay.nlink")
 
@@ -49,6 +50,7 @@ class PrivateFiles:
     home: str
     shared: str
     _own: str = ""
+    _is_privileged: bool = False
     _covered: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -61,7 +63,7 @@ class PrivateFiles:
         it is done.
         """
         try:
-            _enter_namespace()
+            self._is_privileged = _enter_namespace()
             _mount("none", "/", None, _MS_REC | _MS_PRIVATE)
             self._lay()
         except OSError as error:
@@ -79,12 +81,14 @@ class PrivateFiles:
 
         Raises OSError if that is not possible.
         """
-        place, layers = os.getcwd(), os.path.join(self._own, _LAYERS)
-        for number in os.listdir(layers):
-            copied, upper = os.path.join(folder, _LAYERS, number), os.path.join(layers, number, _UPPER)
-            os.makedirs(copied)
-            if os.listdir(upper):
-                copy_tree(upper, os.path.join(copied, _UPPER))
+        place = os.getcwd()
+        for layers in (os.path.join(self._own, name) for name in (_LAYERS, _IN_MEMORY)):
+            for number in os.listdir(layers) if os.path.isdir(layers) else ():
+                upper = os.path.join(layers, number, _UPPER)
+                if os.listdir(upper):
+                    copied = os.path.join(folder, _LAYERS, number)
+                    os.makedirs(copied)
+                    copy_tree(upper, os.path.join(copied, _UPPER))
         if ctypes.CDLL(None, use_errno=True).unshare(_CLONE_NEWNS) != 0:
             raise _last_error("this system allows no private mounts")
         self._own = folder
@@ -96,14 +100,18 @@ class PrivateFiles:
     def _lay(self) -> None:
         """Lay an overlay over each private folder."""
         folders = [folder for folder in private_folders(self.root) if not is_below(folder, self.shared)]
+        below = _mounts_below(folders, self.shared)
+        numbers = [n for n, folder in enumerate(folders) if not _is_part(folder, folders, below)]
         beside = os.path.dirname(self.home)
+        in_memory = self._has_memory()
         with _opened([*folders, self.shared, beside, self.home, self._own]) as opened:
             *lowers, common, others, home, own = opened
-            below = _mounts_below(folders, self.shared)
             with _opened(below) as kept:
                 again = [*zip(below, kept, strict=True), (self.shared, common)]
-                for number, (folder, lower) in enumerate(zip(folders, lowers, strict=True)):
-                    _lay_over(folder, lower, own, number)
+                for number in numbers:
+                    folder, lower = folders[number], lowers[number]
+                    is_memory = in_memory and folder == os.path.realpath(_SHARED_MEMORY)
+                    _lay_over(folder, lower, _layers(own, number, in_memory=is_memory))
                     self._covered.append(folder)
                     # what is mounted in it comes back before the next folder, which may lie in such a one
                     for inner, descriptor in again:
@@ -111,10 +119,23 @@ class PrivateFiles:
                             _mount(_path(descriptor), inner, None, _MS_BIND | _MS_REC)
                             self._covered.append(inner)
             if beside != self.shared:
-                _lay_over(beside, others, own, len(folders))
+                _lay_over(beside, others, _layers(own, len(folders), in_memory=in_memory))
                 self._covered.append(beside)
                 _mount(_path(home), self.home, None, _MS_BIND | _MS_REC)
                 self._covered.append(self.home)
+
+    def _has_memory(self) -> bool:
+        """Mount a file system in memory in the process's own folder, if that can hold layers."""
+        if not self._is_privileged:  # many kernels keep no attributes there for ordinary users
+            return False
+        folder = os.path.join(self._own, _IN_MEMORY)
+        os.makedirs(folder, exist_ok=True)
+        try:
+            _mount("tmpfs", folder, "mode=700", 0, kind="tmpfs")
+        except OSError:
+            return False
+        self._covered.append(folder)
+        return True
 
     def _uncover(self) -> None:
         """Take back what was laid over these folders, the last first."""
@@ -184,11 +205,12 @@ def _copy_status(source: str, target: str, status: os.stat_result) -> None:
     os.utime(target, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
-def _enter_namespace() -> None:
+def _enter_namespace() -> bool:
+    """Enter a mount namespace; True if that needed no user namespace."""
     user, group = os.geteuid(), os.getegid()
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.unshare(_CLONE_NEWNS) == 0:
-        return
+        return True
     if libc.unshare(_CLONE_NEWNS | _CLONE_NEWUSER) != 0:
         raise _last_error("this system allows no private mounts")
     for name, text in (
@@ -198,11 +220,27 @@ def _enter_namespace() -> None:
     ):
         with open(f"/proc/self/{name}", "w", encoding="ascii") as file:
             file.write(text)
+    return False
 
 
-def _lay_over(folder: str, lower: int, own: int, number: int) -> None:
-    """Cover a folder by an overlay whose upper layer lies in the process's own folder."""
-    layers = f"{_path(own)}/{_LAYERS}/{number}"
+def _is_part(folder: str, folders: list[str], mounted: list[str]) -> bool:
+    """Whether the overlay over one of the other folders covers this one: no file system lies in between."""
+    between = [point for point in mounted if is_below(folder, point)]
+    return any(
+        is_below(folder, other) and not any(point != other and is_below(point, other) for point in between)
+        for other in folders
+        if other != folder
+    )
+
+
+def _layers(own: int, number: int, *, in_memory: bool) -> str:
+    """Where the layers over a folder lie; what was copied from the parent lies on the disk."""
+    on_disk = f"{_path(own)}/{_LAYERS}/{number}"
+    return f"{_path(own)}/{_IN_MEMORY}/{number}" if in_memory and not os.path.isdir(on_disk) else on_disk
+
+
+def _lay_over(folder: str, lower: int, layers: str) -> None:
+    """Cover a folder by an overlay with these layers."""
     for name in (_UPPER, "work"):
         os.makedirs(f"{layers}/{name}", exist_ok=True)
     status = os.fstat(lower)
