@@ -68,6 +68,74 @@ def test_the_project_temporary_files_and_shared_memory_are_private(tmp_path: Pat
     assert inner.index(temporary) < inner.index(str(tmp_path.resolve()))  # the outer folder is covered first
 
 
+SHARED = """
+import os, pathlib, sys
+from mutabot.inside.fork.private_files import PrivateFiles
+
+root, home = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[1]) / ".mutabot/work/home"
+memory = pathlib.Path("/dev/shm", f"mutabot-{os.getpid()}")
+files = PrivateFiles(str(root), str(home), str(root / ".mutabot"))
+reason = files.make()
+if reason is not None:
+    print("not here:", reason)
+    raise SystemExit
+memory.mkdir()
+(memory / "pose").write_text("parent")
+(home / "forks/1/1").mkdir(parents=True)
+pid = os.fork()
+if pid == 0:
+    files = files.go_on_apart(str(home / "forks/1"))
+    seen = (memory / "pose").read_text()
+    (memory / "pose").write_text("child")
+    inner = os.fork()
+    if inner == 0:
+        files.go_on_apart(str(home / "forks/1/1"))
+        (home / "seen").write_text(seen + " " + (memory / "pose").read_text())
+        (memory / "pose").unlink()
+        os._exit(0)
+    assert os.waitpid(inner, 0)[1] == 0
+    os._exit((memory / "pose").read_text() != "child")
+assert os.waitpid(pid, 0)[1] == 0
+print((home / "seen").read_text(), (memory / "pose").read_text(), memory)
+"""
+
+
+def test_forks_of_forks_go_on_with_copies_of_what_is_in_shared_memory(project: Path) -> None:
+    command = [sys.executable, "-c", SHARED, str(project)]
+    done = subprocess.run(command, check=True, capture_output=True, text=True, timeout=60)
+    if done.stdout.startswith("not here"):
+        pytest.skip(done.stdout)
+    *seen, memory = done.stdout.split()
+    assert seen == ["parent", "child", "parent"]
+    assert not Path(memory).exists()
+
+
+RENAMED = """
+import os, pathlib, sys, tempfile
+from mutabot.inside.fork.private_files import PrivateFiles
+
+root = pathlib.Path(sys.argv[1])
+reason = PrivateFiles(str(root), str(root / ".mutabot/work/home"), str(root / ".mutabot")).make()
+if reason is not None:
+    print("not here:", reason)
+    raise SystemExit
+file, path = tempfile.mkstemp(dir=tempfile.gettempdir())
+os.rename(path, root / "report.txt")
+print("renamed")
+"""
+
+
+def test_files_move_between_temporary_ones_and_a_project_among_them(project: Path) -> None:
+    if not str(project.resolve()).startswith(str(Path(tempfile.gettempdir()).resolve())):
+        pytest.skip("the project of this test lies elsewhere")
+    command = [sys.executable, "-c", RENAMED, str(project)]
+    done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=60)
+    if done.stdout.startswith("not here"):
+        pytest.skip(done.stdout)
+    assert (done.stdout.strip(), done.stderr) == ("renamed", "")
+    assert (project / "report.txt").read_text() == "original"
+
+
 FORKED = """
 import os, pathlib, shutil, sys
 from mutabot.inside.fork.private_files import PrivateFiles
