@@ -118,6 +118,7 @@ def portable(campaign: StoredCampaign) -> StoredCampaign:
         controls=mapped(campaign.controls, clean),
         flaky=mapped(campaign.flaky, clean),
         attempt=mapped(campaign.attempt, clean),
+        verification=mapped(campaign.verification, clean),
         baseline=tuple(
             replace(one, test=replace(one.test, test=clean(one.test.test))) for one in campaign.baseline
         ),

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from analysis import samples
-from mutabot.journal.records import Reaching
+from mutabot.journal.records import Disagreement, Reaching, Verification
 from mutabot.report.texts import portable
 from report.material import HOSTILE, stored, with_text
 
@@ -35,3 +35,15 @@ def test_what_is_fit_already_is_left_alone(tmp_path: Path) -> None:
     assert made.draws == {"noise"}
     assert (made.mutants, made.scores, made.sources) == (campaign.mutants, campaign.scores, campaign.sources)
     assert "root" not in made.meta
+
+
+def test_what_came_out_otherwise_afresh_tells_nothing_of_the_machine(tmp_path: Path) -> None:
+    campaign = stored(tmp_path)
+    mutant = campaign.mutants[0].mutant
+    root = campaign.meta["root"]
+    other = Disagreement(mutant.id, 1, 0, "survived", f"killed: FileNotFoundError: '{root}/arm.urdf'")
+    found = portable(replace(campaign, verification=Verification(1, 1, (other,)))).verification
+    assert found is not None
+    assert found.disagreements[0].mutant == mutant.id
+    assert str(root) not in found.disagreements[0].second
+    assert "arm.urdf" in found.disagreements[0].second

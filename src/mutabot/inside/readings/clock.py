@@ -160,11 +160,6 @@ class ProgramTime:
     meter: Callable[[], Meter | None]
     instances: Instances
 
-    @property
-    def can_wait(self) -> bool:
-        """Whether something lets time pass."""
-        return self.vocabulary.wait is not None
-
     def now(self) -> float:
         """Simulated seconds since the test's first tick, 0 before. Raises LookupError without a clock."""
         meter = self.meter()

@@ -33,15 +33,13 @@ class Delivery:
     parts: tuple[tuple[float, Any], ...] = ()
 
 
-def deliver(
-    handler: Handler, message: Any, callback: Callable[[Any], Any], where: Where, instance: Any = None
-) -> Any:
+def deliver(handler: Handler, message: Any, callback: Callable[[Any], Any], where: Where) -> Any:
     """Call the program's callback with a message, or with whatever the handler makes of it.
 
     Returns what the callback returns: a coroutine if it is a coroutine function. A message that is lost calls
     nothing and returns None; one that is late calls it from ``where.means.later``.
     """
-    received = handler(lambda: message, instance, (), {}, where)
+    received = handler(lambda: message, None, (), {}, where)
     if not isinstance(received, Delivery):
         return callback(received)
     returned = []
@@ -55,7 +53,7 @@ def deliver(
     return returned[-1] if returned else None
 
 
-def wait_for(handler: Handler, wait: Callable[[], Any], where: Where, instance: Any = None) -> Any:
+def wait_for(handler: Handler, wait: Callable[[], Any], where: Where) -> Any:
     """What a program receives that waits for one message; ``wait`` waits for the next and returns it.
 
     A message that is lost is waited past, so ``wait`` may be called again: it keeps the time-out of the
@@ -64,7 +62,7 @@ def wait_for(handler: Handler, wait: Callable[[], Any], where: Where, instance: 
     """
     where = replace(where, means=replace(_means(where), once=True))
     while True:
-        received = handler(wait, instance, (), {}, where)
+        received = handler(wait, None, (), {}, where)
         if not isinstance(received, Delivery):
             return received
         for late, part in received.parts:
