@@ -185,3 +185,16 @@ def test_lines_go_where_the_same_text_goes() -> None:
     assert Lines(old, changed).moved("mission.py:8") is None
     farther = {name.replace("mission", "errand"): text for name, text in FILES.items()}
     assert Lines(old, project_of(farther)).moved("mission.py:8") is None
+
+
+def test_which_names_a_star_imports_concerns_everybody() -> None:
+    star = edited("test_it.py", "import pytest\n", "import pytest\n        from mission import *\n")
+    names = {**star, "mission.py": "__all__ = ['left']\n" + dedent(star["mission.py"])}
+    fewer = {**star, "mission.py": "__all__ = []\n" + dedent(star["mission.py"])}
+    assert project_of(names).around != project_of(fewer).around
+    assert project_of(star).around != project_of(fewer).around
+
+
+def test_names_that_no_star_imports_concern_nobody() -> None:
+    names = {**FILES, "mission.py": "__all__ = ['left']\n" + dedent(FILES["mission.py"])}
+    assert project_of(names).around == project_of(FILES).around

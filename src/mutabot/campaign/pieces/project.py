@@ -88,6 +88,15 @@ class Project:
         first = {PurePosixPath(file).parts[0].removesuffix(".py") for file in self.texts}
         hiding = sorted(first & sys.stdlib_module_names)
         found = {**present, "packages that are imported": ", ".join(sorted(outside - {""}))}
+        starred = {
+            file
+            for module in self.modules.values()
+            for star in module.stars
+            for file in self._files_of(module.file, star)
+        }
+        for piece in self.pieces:  # nobody mentions it, and it decides what a star imports
+            if piece.name == "__all__" and piece.file in starred:
+                found[f"__all__ of {piece.file}"] = f"#{self.digest(piece)}"
         if hiding:
             found["files that hide modules of Python"] = ", ".join(hiding)
         loud = [piece for piece in self.pieces if piece.kind is Kind.MODULE]
