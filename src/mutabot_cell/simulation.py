@@ -78,7 +78,8 @@ class Simulation:
             step(cell_model, data)
         self._ticks += 1
         # one number tells of all: not below the limit also if a value is NaN
-        if not (self._speeds.dot(self._speeds) < _ABSURD_SPEED**2 and math.isfinite(self._places.sum())):
+        speeds, places = self._speeds, self._places
+        if not (speeds.dot(speeds) < _ABSURD_SPEED**2 and math.isfinite(places.dot(places))):
             self._check_speeds()
         for check in self.after_tick:
             check()

@@ -100,6 +100,7 @@ class Session:
     _lately: dict[str, Mapping[str, Value]] = field(default_factory=dict)
     _telling: list[Door] = field(default_factory=list)
     _time: ProgramTime = field(init=False)
+    _main_thread: int | None = field(default_factory=lambda: threading.main_thread().ident)
     _sees_itself: set[Handler] = field(default_factory=set)
 
     def __post_init__(self) -> None:
@@ -333,7 +334,7 @@ class Session:
 
     def _aside(self) -> Aside:
         """What is done in this context is none of the program's doing."""
-        is_main = threading.current_thread() is threading.main_thread()
+        is_main = threading.get_ident() == self._main_thread  # at every step of a simulator
         return Aside(self.returns if is_main else None)
 
     def _look_again(self) -> None:
