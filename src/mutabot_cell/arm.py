@@ -23,6 +23,7 @@ EXTERNAL_TORQUE_LIMIT = (20.0, 20.0, 20.0, 20.0, 6.0, 6.0, 6.0)
 FOLLOWING_ERROR_LIMIT = 0.03
 """Distance between setpoint and joint that stops the arm, rad."""
 
+_LOWEST_TORQUE_LIMIT = min(EXTERNAL_TORQUE_LIMIT)
 _RELAXING_TICKS = 20
 _SETTLED = 0.001
 _SETTLING_TICKS = 50
@@ -203,13 +204,15 @@ class Arm:
         """Protective stop: the check that the arm's controller makes at every tick."""
         if self._stop is not None:
             return
-        external = self._external
-        # seven numbers: plain Python is quicker than numpy here, and this runs at every tick
+        external, error = self._external, self._following_error()
+        # this runs at every tick, and nearly always the lengths are below the lowest limits of their parts
+        if external.dot(external) <= _LOWEST_TORQUE_LIMIT**2 and error.dot(error) <= FOLLOWING_ERROR_LIMIT**2:
+            self._pressed_ticks = 0
+            return
         pressed = any(map(operator.gt, map(abs, external.tolist()), EXTERNAL_TORQUE_LIMIT))
         self._pressed_ticks = self._pressed_ticks + 1 if pressed else 0
         if pressed and self._pressed_ticks == 1:
             self._first_contact = strongest_contact(self._simulation)
-        error = self._following_error()
         lagging = max(map(abs, error.tolist())) > FOLLOWING_ERROR_LIMIT
         if self._pressed_ticks < 2 and not lagging:
             return

@@ -33,6 +33,7 @@ _MOST_KNOTS = 512
 _RETRIED_KNOTS = 64
 _LARGEST_KNOT_STEP = 0.5
 _REACH_CHECKS = 41
+_NO_TURN = 1e-9
 _ITERATIONS = 40
 _POSTURE_COST = 1e-3
 _ORIENTATION_COST = 0.3
@@ -156,6 +157,10 @@ class Kinematics:
     @staticmethod
     def _check_reach(line: Line) -> None:
         """Refuse a line on which the wrist would be further from the shoulder than the arm is long."""
+        if line.angle < _NO_TURN:  # the wrist goes straight, so it is farthest at one of the ends
+            ends = (wrist_distance(line.position_at(part), line.rotation) for part in (0.0, 1.0))
+            if max(ends) <= REACH:
+                return
         fractions = np.linspace(0.0, 1.0, _REACH_CHECKS).tolist()
         distances = [wrist_distance(line.position_at(part), line.rotation_at(part)) for part in fractions]
         farthest = max(distances)
