@@ -83,6 +83,23 @@ def test_options_settings_markers_fixtures_and_hooks_of_plugins_are_accepted_and
     assert not list(tmp_path.glob(".coverage*"))
 
 
+@pytest.mark.parametrize("engine", ["branch", REPLAY])
+@pytest.mark.parametrize("place", ["addopts", "pytest_args"])
+def test_a_suite_without_a_cache_may_take_warnings_for_errors(
+    tmp_path: Path, engine: str, place: str
+) -> None:
+    without = {"addopts": "", "pytest_args": "", place: "-p no:cacheprovider"}
+    more = {
+        "pytest.ini": f"[pytest]\naddopts = {without['addopts']} --strict-config\nfilterwarnings = error\n"
+    }
+    words = ["-o", "pythonpath=.", *without["pytest_args"].split()]
+    configuration = f'program = ["mission.py"]\nvocabulary = ["robot.toml"]\npytest_args = {words}\n'
+    outcomes = run(
+        write_project(tmp_path, MISSION, TESTS, configuration=configuration, more=more), engine=engine
+    )
+    assert is_killed_by_the_test(outcomes[SKIP])
+
+
 @WITH_PLUGINS
 def test_options_may_come_from_the_environment_and_name_plugins_of_the_project(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
