@@ -61,7 +61,7 @@ class Facts:
         """Read configuration, vocabularies, and what the judge must know beside them."""
         own = folder / "mutabot.toml"
         settings = _toml(own) if own.exists() else _toml(folder / "pyproject.toml")["tool"]["mutabot"]
-        files = [folder / name for name in settings["vocabulary"]]
+        files = [folder / name for name in settings.get("vocabulary", ())]
         files = [file if file.is_file() else _shipped(file.name) for file in files]
         hints = folder / "judge.toml"
         hints = hints if hints.exists() else EXAMPLES / f"{folder.name}.toml"

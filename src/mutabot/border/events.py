@@ -241,12 +241,14 @@ class BranchEnd:
         end: what the test ended like.
         sites: the sites that the trace refers to.
         shared: simulated seconds it inherited from the trunk, or None without a clock.
+        is_early: whether it was forked before any test.
     """
 
     mutant: str
     end: TestEnd
     sites: tuple[SiteSeen, ...] = ()
     shared: float | None = None
+    is_early: bool = False
 
 
 @frozen
@@ -256,10 +258,12 @@ class BranchFinished:
     Attributes:
         mutants: ids of the mutants it was.
         exit_code: its exit code, by which the suite says how it has ended; its parent's word.
+        errors: what could not be collected.
     """
 
     mutants: tuple[str, ...]
     exit_code: int = 0
+    errors: tuple[str, ...] = ()
 
 
 @frozen
@@ -268,7 +272,7 @@ class BranchDied:
 
     Attributes:
         mutant: id of the mutant it was.
-        test: the test it was in.
+        test: the test it was in; empty before any.
         exit_code: its exit code, negative for a signal.
         overdue: which wall-clock limit it exceeded, in words, or None.
         hindered, is_starved: as in ``Result``.
@@ -306,7 +310,10 @@ class ForkEnded:
 
 @frozen
 class Unbranched:
-    """It was not safe to fork at the first hit, in this test: these mutants need a process of their own."""
+    """It was not safe to fork at the first hit, in this test: these mutants need a process of their own.
+
+    The test is empty before any.
+    """
 
     test: str
     mutants: tuple[str, ...]

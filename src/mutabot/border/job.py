@@ -77,6 +77,7 @@ class Branching:
         gate: descriptor that can be read while mutants may begin, filled in likewise; None: always.
         walls: wall-clock seconds that a branch may take for a test, by test.
         wall: the same for tests that are missing there.
+        startup: the same until its first test begins.
         choices: of mutants that are alternatives in the program text: which, by id.
         every_test: whether a branch goes on after a test that decided about its mutant.
         at_start: test to ids of mutants that are branched before it begins, if they were not before: they may
@@ -89,6 +90,7 @@ class Branching:
     gate: int | None = None
     walls: Mapping[str, float] = field(default_factory=dict)
     wall: float = 600.0
+    startup: float = 600.0
     choices: Mapping[str, tuple[Choice, ...]] = field(default_factory=dict)
     every_test: bool = False
     serial: bool = False

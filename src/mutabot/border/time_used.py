@@ -39,6 +39,13 @@ class Account:
 Accounts = Mapping[int, Account] | None
 
 
+def overdue(seconds: float, test: str | None) -> str:
+    """Which limit of wall clock a process has exceeded, in words; without a ``test``, before it began one."""
+    if test:
+        return f"no end after {seconds:.0f} s of wall clock"
+    return f"no test begun or finished within {seconds:.0f} s"
+
+
 def accounts_of(processes: Iterable[int]) -> Accounts:
     """The accounts of all tasks of these processes, of those that are there."""
     if not _are_kept():

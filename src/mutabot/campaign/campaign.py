@@ -43,7 +43,7 @@ class Campaign:
     executor: Executor
     progress: Progress
     evidence: Evidence | None = None
-    proven: set[tuple[str, tuple[str, str, int]]] = field(default_factory=set)
+    proven: set[tuple[str, tuple[str, str, bool, int]]] = field(default_factory=set)
     is_short: bool = False
     again: list[Outcome] = field(default_factory=list)
     sources: Sources = field(init=False)

@@ -49,7 +49,7 @@ def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginMa
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
-def pytest_load_initial_conftests() -> Generator[None, Any, Any]:
+def pytest_load_initial_conftests(early_config: pytest.Config) -> Generator[None, Any, Any]:
     """Before any of the user's code is imported: wake up if there is a job."""
     global _conductor, _plain_round  # noqa: PLW0603  # pytest knows this module, not an object of ours
     if JOB_VARIABLE in os.environ and _conductor is None:
@@ -58,6 +58,7 @@ def pytest_load_initial_conftests() -> Generator[None, Any, Any]:
         from mutabot.inside.suite.conductor import Conductor  # noqa: PLC0415  # a sleeping plugin costs nothing
 
         _conductor = Conductor.from_files(job, int(pipe))
+        _conductor.running.branch.config = early_config
     elif _conductor is None and os.environ.get(ROUND_VARIABLE):
         from mutabot.inside.suite.plain_round import PlainRound  # noqa: PLC0415  # see above
 

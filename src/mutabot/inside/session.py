@@ -282,6 +282,8 @@ class Session:
         """Run the original from now on, and fork a branch for every mutant of the trunk's."""
         self.passing.trunk = trunk
         trunk.is_moment = self._is_moment
+        if self.text is not None:
+            self.text.watch(trunk.fork_at_place, trunk.places())
 
     def become(self, bunch: Bunch) -> None:
         """In a branch that was just forked: be its mutants."""

@@ -198,7 +198,7 @@ def _kept(note: Any) -> Any:
 #: operations and simulated seconds that a test may use beyond its multiple of the baseline
 SPARE_OPERATIONS, SPARE_SIMULATED = 200, 10.0
 #: why a mutant needs a process of its own from the start
-EARLY, IN_PLACE = "acts while the program is imported", "is in place from the start of each test"
+IN_PLACE = "is in place from the start of each test"
 
 
 @frozen
@@ -242,7 +242,7 @@ class Baseline(Original):
         remarks: what is to be known about the vocabulary.
         known: see ``Job.known``.
         early: places that are reached before any test begins, while the program or a test file is imported:
-            a mutant there needs a process of its own.
+            a mutant there acts in all tests.
         unread: whether nobody uses what the calls of a place return.
         shares_files: whether runs see each other's files.
     """
@@ -306,8 +306,6 @@ class Baseline(Original):
 
     def why_apart(self, mutant: Mutant) -> str | None:
         """Why a mutant needs a process of its own from the start, whatever its tests; None if it does not."""
-        if self.is_early(mutant):
-            return EARLY
         return IN_PLACE if self.faults.in_process(mutant) else None
 
     def take_in(self, planned: Mapping[str, Planned]) -> None:

@@ -30,6 +30,8 @@ from .fresh import REPLAY, run_of, task
 from .judge import judge
 
 IDENTITY, FATAL = Identity.name, Fatal.name
+#: what a control is run for that is forked before any test
+IMPORT = "the program's imports"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +55,9 @@ class Control:
     subject: str
 
     @property
-    def way(self) -> tuple[str, str, int]:
+    def way(self) -> tuple[str, str, bool, int]:
         """What it proves of an engine, wherever it acts."""
-        return self.name, self.provider, self.round
+        return self.name, self.provider, self.subject == IMPORT, self.round
 
     @property
     def mutant(self) -> Mutant:
@@ -121,26 +123,30 @@ def controls_of(baseline: Baseline, mutants: Iterable[Mutant], *, forked: bool =
 
     What raises while the program is imported says little about what is reached in a test: that comes last.
     Only a test that passes on the original must fail by the fatal one; one that may fail need not.
-    ``forked``: those for processes that are forked at the place.
+    ``forked``: those for processes that are forked at the place; what is forked before any test has an
+    identity of its own.
     """
     mutants = [one for one in mutants if not forked or baseline.why_apart(one) is None]
     planned = {Place.of(mutant) for mutant in mutants}
     always = set(range(len(baseline.tests))) if any(one.ladder for one in mutants) else set()
-    chosen: dict[tuple[str, int], tuple[tuple[bool, float], Place, str]] = {}
+    chosen: dict[tuple[tuple[str, bool], int], tuple[tuple[bool, float], Place, str]] = {}
     for (round, place), tests in baseline.reaching.items():
         passing = [test for test in tests if baseline.ends[round, test].outcome == "passed"]
         if not passing or place not in planned or (forked and _has_processes(baseline, round, tests)):
             continue
-        cost = (place in baseline.early, min(baseline.ends[round, test].wall for test in passing))
-        key = (baseline.faults.provider_at(place), round)
+        is_early = place in baseline.early
+        cost = (is_early, min(baseline.ends[round, test].wall for test in passing))
+        key = ((baseline.faults.provider_at(place), forked and is_early), round)
         if key not in chosen or cost < chosen[key][0]:
             chosen[key] = (cost, place, passing[0])
     first = {way: min(round for other, round in chosen if other == way) for way, _ in chosen}
     return [
-        Control(name, place, way, round, baseline.suite(round), test.partition("::")[0])
+        Control(
+            name, place, way[0], round, baseline.suite(round), IMPORT if way[1] else test.partition("::")[0]
+        )
         for (way, round), (_, place, test) in chosen.items()
         if round == first[way] or round in always
-        for name in (IDENTITY, FATAL)
+        for name in ((IDENTITY,) if way[1] and (way[0], False) in first else (IDENTITY, FATAL))
     ]
 
 

@@ -142,9 +142,14 @@ def task(
         instrumentation=baseline.faults.instrumentation([mutant], active=True),
         faults=baseline.faults.in_process(mutant),
     )
-    least = request.configuration.timeout_seconds
-    startup = max(least, WALL_FACTOR * baseline.startup)
+    least, startup = request.configuration.timeout_seconds, startup_limit(campaign)
     return Task((mutant, round), job, walls, least, startup, alone=baseline.is_exclusive(round))
+
+
+def startup_limit(campaign: Campaign) -> float:
+    """Seconds of wall clock that a mutant may take until its first test begins."""
+    least = campaign.request.configuration.timeout_seconds
+    return max(least, WALL_FACTOR * campaign.baseline.startup)
 
 
 def wall_limit(campaign: Campaign, round: int, test: str) -> float:

@@ -32,7 +32,7 @@ from mutabot.model import Instrumentation, Mutant, Outcome
 from mutabot.model.mutant import Place
 
 from .engine import Remainder, Trial
-from .fresh import not_run, wall_limit, without_tests
+from .fresh import not_run, startup_limit, wall_limit, without_tests
 from .judge import Death, Run, judged, not_judged, refuse_others
 
 #: seconds without any word from a trunk, beyond what its tests and branches may take
@@ -118,7 +118,7 @@ class _Branch:
         ends, observations: its tests that have ended.
         death: set if its branch died.
         exit_code: how it ended, if it went to the end of the session.
-        forked: number of the test in which it was forked, as far as it has told.
+        forked: number of the test in which it was forked, as far as it has told; -1: before any.
         shared: simulated seconds it inherited in that test.
     """
 
@@ -131,7 +131,8 @@ class _Branch:
     shared: float | None = None
 
     def take(self, line: BranchEnd, number: int) -> None:
-        self.forked = number if self.forked is None else self.forked
+        if self.forked is None:
+            self.forked = -1 if line.is_early else number
         self.ends[line.end.test] = line.end
         if line.shared is not None:
             self.shared = (self.shared or 0.0) + line.shared
@@ -210,6 +211,7 @@ class _Trunk:
             mutants=mutants,
             walls=walls,
             wall=longest,
+            startup=startup_limit(self._campaign),
             choices={mutant: found for mutant, found in choices.items() if found},
             every_test=request.every_test,
             serial=baseline.is_exclusive(round),
@@ -230,8 +232,13 @@ class _Trunk:
             instrumentation=text,
         )
         self._left_out = {mutant.id: job.left_out(mutant.id) for mutant in mutants}
-        patience = 2.0 * sum(walls.values()) + _PATIENCE  # it waits for branches that go to the end
-        return Task(key, job, {}, patience, patience, is_trunk=True, may_share=True, alone=branching.serial)
+        patience = (
+            2.0 * sum(walls.values()) + branching.startup + _PATIENCE
+        )  # it waits for branches that go to the end
+        may_share = not any(map(baseline.is_early, mutants))  # else it forks while it imports the program
+        return Task(
+            key, job, {}, patience, patience, is_trunk=True, may_share=may_share, alone=branching.serial
+        )
 
     def _at_start(self) -> dict[str, tuple[str, ...]]:
         """Mutants by the tests that reach them and have processes below them."""
@@ -271,6 +278,8 @@ class _Trunk:
             case BranchFinished():
                 for mutant in self._open.keys() & set(line.mutants):
                     self._open[mutant].exit_code = line.exit_code
+                    if line.errors:
+                        self._open[mutant].death = Death("; ".join(line.errors))
                     yield from self._settle(mutant)
             case Unbranched():
                 self._left.reasons.setdefault(line.test, line.reason)
@@ -315,9 +324,10 @@ class _Trunk:
 
     def _branch_died(self, line: BranchDied) -> Iterator[Outcome]:
         code = line.exit_code
+        during = f" during {line.test}" if line.test else ""
         self._open[line.mutant].death = Death(
-            text=f"{line.overdue or how_ended(code)} during {line.test}",
-            test=line.test,
+            text=f"{line.overdue or how_ended(code)}{during}",
+            test=line.test or None,
             signal=-code if code < 0 and line.overdue is None else None,
             overdue=line.overdue is not None,
             acted=line.acted,
@@ -357,13 +367,13 @@ class _Trunk:
         if not is_over and (not is_decided or self._campaign.request.every_test):
             return
         died_in = branch.death.test if branch.death is not None else None
-        forked = branch.forked if branch.forked is not None else self._numbers.get(died_in or "", 0)
+        forked = branch.forked if branch.forked is not None else self._numbers.get(died_in or "", -1)
         # a survivor is compared with the original in all tests: those that the trunk runs after the fork, too
         last = forked if is_decided or branch.death is not None else len(self._tests) - 1
         if last >= len(self._own_ends):
             self._waiting.setdefault(last, set()).add(mutant)
             return
-        before = {end.test: end for end in self._own_ends[:forked]}
+        before = {end.test: end for end in self._own_ends[: max(0, forked)]}
         yield from self._judged(branch, {**before, **branch.ends})
 
     def _settle_undiverged(self, mutant: str) -> Iterator[Outcome]:

@@ -17,7 +17,7 @@ from types import TracebackType
 from mutabot.border import stack
 from mutabot.border.events import Acted, Event, TestEnd, TestStart, Untrusted
 from mutabot.border.fold import Children, acted_in
-from mutabot.border.time_used import MOST, TimeUsed
+from mutabot.border.time_used import MOST, TimeUsed, overdue
 from mutabot.errors import JournalError
 
 from .forkserver import LOOKS, Copy, ForkServer
@@ -353,11 +353,9 @@ class _Worker:
         """Its time is up: end the process group."""
         self.result.hindered = self._used.hindrance([self.pid])
         self.result.is_starved = time.monotonic() >= self._used.began + MOST * self._limit
-        if self.result.running is not None:
-            limit = self.task.deadlines.get(self.result.running, self.task.deadline)
-            self.result.overdue = f"no end after {limit:.0f} s of wall clock"
-        else:
-            self.result.overdue = f"no test begun or finished within {self.task.startup:.0f} s"
+        test = self.result.running
+        limit = self.task.startup if test is None else self.task.deadlines.get(test, self.task.deadline)
+        self.result.overdue = overdue(limit, test)
         self.result.where = stack.ask(
             self._process.tests, str(self._home.folder / stack.FILE), self.task.job.root
         )

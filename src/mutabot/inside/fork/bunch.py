@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 from mutabot.model import Choice, Mutant
 
-#: a mutant's place on the board: how its branch ended, and which test it is in
-_CELL = struct.Struct("=BxxxI")
+#: a mutant's place on the board: how its branch ended, and which test it is in, -1 before any
+_CELL = struct.Struct("=Bxxxi")
 
 
 class Board:
@@ -25,7 +25,7 @@ class Board:
         self._memory = mmap.mmap(-1, max(1, len(self._places)) * _CELL.size)
 
     def begin(self, mutant: str, test: int) -> None:
-        """A branch of it is about to begin, in this test by its number in the session."""
+        """A branch of it is about to begin, in this test by its number in the session; -1 before any."""
         self._write(mutant, 0, test)
 
     def note(self, mutant: str, code: int) -> None:

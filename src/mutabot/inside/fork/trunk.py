@@ -18,7 +18,7 @@ from typing import Any, Protocol
 
 from mutabot.border.events import BranchDied, ForkEnded, TokensHeld, Unbranched, Undiverged
 from mutabot.border.job import Branching
-from mutabot.border.time_used import MOST, TimeUsed
+from mutabot.border.time_used import MOST, TimeUsed, overdue
 from mutabot.inside.event_file import EventFile
 from mutabot.inside.watchdogs import alarm_held
 from mutabot.model import Call, Mutant, Span
@@ -45,6 +45,7 @@ _LEAST = 0.2
 #: where a mutant is branched: a site with its operation and pattern, or a place of the program text
 Key = tuple[Span, str, str | None] | int
 _NODES = "its nodes would meet those of other mutants"
+_STARTED = "processes of the program were started before any test"
 
 
 @dataclass(slots=True)
@@ -114,6 +115,7 @@ class Trunk:
         branch: what every branch does.
         where_is: tells where a process is, in words, or None.
         has_nodes: whether nodes below a fork would meet those below others.
+        has_started: whether processes of the program were started, which have run it as the original.
         is_moment: whether a mutant acts at a call, given the call's number among those of its site in the
             running test.
     """
@@ -125,6 +127,7 @@ class Trunk:
     branch: Branch
     where_is: Callable[[int], str | None] = lambda _: None
     has_nodes: bool = False
+    has_started: Callable[[], bool] = lambda: False
     is_moment: Callable[[Mutant, int], bool] = lambda mutant, number: True
     _tokens: Tokens = field(init=False)
     _board: Board = field(init=False)
@@ -133,7 +136,7 @@ class Trunk:
     _children: dict[int, Child] = field(default_factory=dict)
     _known: frozenset[tuple[int, str]] = frozenset()
     _test: str = ""
-    _number: int = 0
+    _number: int = -1
     _pid: int = field(default_factory=os.getpid)
     _forking: bool = False
     _copied: bool = False
@@ -243,7 +246,8 @@ class Trunk:
     def _may_fork(self, mutants: Sequence[str]) -> bool:
         """Whether forking is safe; if not, it is told that these mutants are not branched here."""
         own = (child.pid for child in self._children.values())
-        reason = self.apart.reason() or why_not(own, self._known)
+        is_late = self._number < 0 and self.has_started()
+        reason = _STARTED if is_late else self.apart.reason() or why_not(own, self._known)
         if reason is not None:
             self.pipe.send(Unbranched(self._test, tuple(mutants), reason))
         return reason is None
@@ -301,11 +305,16 @@ class Trunk:
         return max(self._wall(mutant) for mutant in mutants) * len(mutants)
 
     def _wall(self, mutant: str) -> float:
-        return self.branching.walls.get(self._test_of(mutant), self.branching.wall)
+        test = self._test_of(mutant)
+        return self.branching.walls.get(test, self.branching.wall) if test else self.branching.startup
 
     def _test_of(self, mutant: str) -> str:
-        """The test that its branch was in when it was last heard of; the last one while the session ends."""
-        return self.tests[min(self._board.test(mutant), len(self.tests) - 1)]
+        """The test that its branch was in when it was last heard of; the last one while the session ends.
+
+        Empty before any test.
+        """
+        number = self._board.test(mutant)
+        return self.tests[min(number, len(self.tests) - 1)] if number >= 0 else ""
 
     def _tests_of(self, mutants: Sequence[str]) -> tuple[int, ...]:
         return tuple(self._board.test(mutant) for mutant in mutants)
@@ -423,9 +432,9 @@ class Trunk:
         _, status = os.waitpid(child.pid, 0)
         os.close(child.pidfd)
         code = os.waitstatus_to_exitcode(status)
-        overdue = f"no end after {child.limit:.0f} s of wall clock" if child.overdue else None
+        limit = overdue(child.limit, self._test_of(child.mutants[0])) if child.overdue else None
         self._tell_end(
-            child.fork, child.mutants, code, overdue=overdue,
+            child.fork, child.mutants, code, overdue=limit,
             where=child.where, hindered=child.hindered, is_starved=child.is_starved,
         )  # fmt: skip
 

@@ -79,6 +79,11 @@ class Members:
             one.forget()
         return end if self.doubt is None else replace(end, failure=end.failure or self.doubt)
 
+    def have_begun(self) -> bool:
+        """Whether there has been any until now."""
+        self._take_all()
+        return bool(self._children.records)
+
     @property
     def doubt(self) -> str | None:
         """Why what members told cannot be relied on, or None."""

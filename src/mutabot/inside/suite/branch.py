@@ -35,13 +35,15 @@ class BranchOfSession:
         start_clocks: lets what the test takes count from now on.
 
     Attributes:
-        item: the running test.
+        config: pytest's configuration; None until it reads the first of the user's code.
+        errors: what could not be collected.
         members: the processes below a branch; None if it has started none.
         left_out: the tests that it does not run.
     """
 
     def __init__(self, session: Session, start_clocks: Callable[[], None]) -> None:
-        self.item: pytest.Item | None = None
+        self.config: pytest.Config | None = None
+        self.errors: list[str] = []
         self.members: Members | None = None
         self.left_out = LeftOut()
         self._session = session
@@ -49,7 +51,7 @@ class BranchOfSession:
         self._trunk = 0
         self._bunch: Bunch | None = None
         self._shared: float | None = None
-        self._hears = self._has_acted = False
+        self._hears = self._has_acted = self._is_early = False
 
     def expect(self) -> None:
         """This process is a trunk from now on."""
@@ -67,15 +69,16 @@ class BranchOfSession:
         meter = self._session.meter
         self._shared = meter.simulated if meter is not None else None
         gc.freeze()  # what is never looked at stays shared with the trunk
-        if self.item is not None:
+        if self.config is not None:
             # nobody reads a branch's traceback, and to lay one out takes longer than most branches
-            self.item.config.option.tbstyle = "value"
+            self.config.option.tbstyle = "value"
 
     def become(self, bunch: Bunch, folder: str) -> None:
         """Go on from here as these mutants; ``folder`` is this process's own."""
+        self._is_early = self._is_early or not self._session.test
         self._bunch, self._trunk, self._folder = bunch, os.getpid(), folder  # from which others may part
         self.left_out.become(self._session.job, [mutant.id for mutant in bunch.mutants])
-        cache = getattr(self.item.config, "cache", None) if self.item is not None else None
+        cache = getattr(self.config, "cache", None)
         if cache is not None:  # what one process keeps there, others must not find
             cache._cachedir = Path(folder, "cache")
         if not self._hears:
@@ -107,7 +110,8 @@ class BranchOfSession:
         """The session is over: what its exit code is, the parent will tell."""
         if self._bunch is not None:
             self._bunch.next_test()
-            self._session.pipe.send(BranchFinished(tuple(self._bunch.end(FINISHED))))
+            mutants = tuple(self._bunch.end(FINISHED))
+            self._session.pipe.send(BranchFinished(mutants, errors=tuple(self.errors)))
 
     def give_up(self, mutants: Sequence[str], reason: str) -> None:
         """Leave its mutants to a process of their own."""
@@ -122,9 +126,10 @@ class BranchOfSession:
         if end.outcome == classify.FAILED:  # only survivors are compared with the original
             end = replace(end, trace=(), returned=(), moments=())
         each = 1 / len(mutants)  # they share what it took
-        end = replace(end, wall=(end.wall - bunch.waited) * each, cpu=end.cpu * each)
+        end = replace(end, wall=max(0.0, end.wall - bunch.waited) * each, cpu=end.cpu * each)
         for number, mutant in enumerate(mutants):  # the first one was simulated, for all of them
-            self._session.pipe.send(BranchEnd(mutant, end, sites, end.simulated if number else self._shared))
+            shared = end.simulated if number else self._shared
+            self._session.pipe.send(BranchEnd(mutant, end, sites, shared, self._is_early))
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         """The program of a branch is about to start a process, which is to be the mutant as well."""

@@ -69,7 +69,7 @@ class Conductor:
         self.running = Running(self.session, self.locator)
         self._server = server
         self._collected: tuple[str, ...] = ()
-        self._errors: list[str] = []
+        self._errors = self.running.branch.errors
         self._not_private: str | None = None
         self._files: PrivateFiles | None = None
 
@@ -150,7 +150,11 @@ class Conductor:
         def where_is(pid: int) -> str | None:
             return stack.ask(pid, file, self.job.root)
 
-        trunk = Trunk(branching, self.job.tests or (), pipe, apart, branch, where_is, has_nodes)
+        members = self.running.members
+        assert members is not None
+        trunk = Trunk(
+            branching, self.job.tests or (), pipe, apart, branch, where_is, has_nodes, members.have_begun
+        )
         self.session.grow(trunk)
 
     def look_at_checks(self) -> None:
@@ -212,6 +216,7 @@ class Conductor:
             return
         below = (f"{node}::", f"{node}/") if node not in ("", ".") else ("",)
         tests = [test for test in self.job.tests or () if test.startswith(below)]
+        branch = self.running.branch
         for test in tests[:1] if self.job.stop_at_kill else tests:
             file = os.path.join(self.job.root, test.partition("::")[0])
             ending = classify(error, "collect", file, self.locator, self.job.vocabulary, evidence)
@@ -221,7 +226,10 @@ class Conductor:
                 invalid=evidence.invalid or is_no_program(evidence, ending),
                 hits=evidence.hits, acted=evidence.acted, example=evidence.example,
             )  # fmt: skip
-            self.session.pipe.send(end)
+            if branch.is_one:
+                branch.end_test(end)
+            else:
+                self.session.pipe.send(end)
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """Note what could not be collected."""

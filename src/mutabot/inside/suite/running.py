@@ -87,7 +87,6 @@ class Running:
             self.session.pipe.send(limit)
         job = self.session.job
         seeds.seed_all(seeds.derive(job.seed, job.round, node_id(item)))
-        self.branch.item = item
         if self.session.trunk is not None:
             self.session.trunk.begin_test(node_id(item))
         self.addresses.start_test()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -79,8 +80,14 @@ class SessionText:
             return
         self.hook.alternatives.start()
         if branch is not None:
-            self.hook.alternatives.on_place = branch
-            self.hook.alternatives.watch(live)
+            self.watch(branch, live)
+
+    def watch(
+        self, branch: Callable[[int, Sequence[frozenset[int]]], None], live: Mapping[int, frozenset[int]]
+    ) -> None:
+        """In a trunk: tell ``branch`` a place and which of its ``live`` alternatives are about to differ."""
+        self.hook.alternatives.on_place = branch
+        self.hook.alternatives.watch(live)
 
     def end_test(self) -> None:
         """The test is over."""
@@ -111,8 +118,9 @@ class SessionText:
 
     @property
     def hits(self) -> Mapping[int, int]:
-        """Evaluations in the running test of each place that was on."""
-        return self.hook.alternatives.hits
+        """Evaluations of each place that was on, in the running test and before any."""
+        early = {place: hits for place, (hits, _) in self._early.items()}
+        return Counter(early) + Counter(self.hook.alternatives.hits)
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
@@ -142,7 +150,7 @@ class SessionText:
         alternatives = self.hook.alternatives
         if self.hook.sightings is not None:
             self._tell_reached()
-        self._early = {place: self._count(place) for place in alternatives.active}
+        self._early = {place: self._count(place) for place in alternatives.hits}
         self._early_example = next(iter(alternatives.examples.values()), None)
 
     def _tell_reached(self) -> None:

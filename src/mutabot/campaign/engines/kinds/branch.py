@@ -1,7 +1,6 @@
 """Branch: the suite runs once as the original, and forks where a mutant differs; the fork goes on as that.
 
-Mutants that are hit where it is not safe to fork are left to the next engine, as are those that act before
-any test.
+Mutants that are hit where it is not safe to fork are left to the next engine.
 """
 
 from __future__ import annotations
@@ -10,7 +9,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from mutabot.campaign.baseline.baseline import EARLY
 from mutabot.campaign.baseline.taking import REPETITIONS
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.engines.controls import Control, controls_of, end_of
@@ -102,10 +100,10 @@ def _tell(campaign: Campaign, left: Remainder) -> None:
         tests.setdefault(reason, []).append(test)
     for reason, (first, *others) in tests.items():
         more = f" and {len(others)} more" if others else ""
-        progress.note(f"no branches in {first}{more}: {reason}; mutants there run in processes of their own")
+        where = f"in {first}{more}" if first else "while the program is imported"
+        progress.note(f"no branches {where}: {reason}; mutants there run in processes of their own")
     for why, number in Counter(left.why_apart.values()).items():
-        what = "mutants act while the program is imported" if why == EARLY else f"mutants: each {why}"
-        progress.note(f"{number} {what}: each runs in a process of its own")
+        progress.note(f"{number} mutants: each {why}, in a process of its own")
     for note in left.notes:
         progress.note(note)
 

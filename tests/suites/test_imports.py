@@ -1,0 +1,278 @@
+"""Mutants that act while the program is imported: what is forked there ends as plain pytest does.
+
+Each suite imports the program in another way; plain pytest on an edited copy is the judge of both engines.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from mutabot.campaign.run import run_campaign
+from mutabot.model import Outcome
+from tests.campaign.project import Quiet, outcomes, request_for
+
+from .agreement import compare
+
+CONFIGURATION = 'program = ["program"]\ntests = ["tests"]\nfamilies = ["classical"]\ntimeout_seconds = 5\n'
+TABLE = """
+    import re
+
+    LIMIT = 3 + 1
+    WORD = re.compile("a" + "b*", re.I)
+    SIZES = {name: number * 2 for number, name in enumerate(["small", "big"])}
+    COUNT = sum(SIZES.values()) - 0
+
+    def scaled(factor):
+        def decorate(function):
+            return lambda value: function(value) * factor
+        return decorate
+
+    @scaled(1 + 1)
+    def area(value, offset=0 + 0):
+        return value + offset
+"""
+TESTS = """
+    from program import table
+
+    def test_it_is_there():
+        assert table.WORD
+
+    def test_words():
+        assert table.WORD.fullmatch("ABB")
+
+    def test_area():
+        assert table.area(2) == 4
+
+    def test_limit():
+        assert table.LIMIT > 3
+"""
+#: what there is beside an empty ``program/__init__.py``
+SUITES: dict[str, dict[str, str]] = {
+    "test files import it": {"program/table.py": TABLE, "tests/test_table.py": TESTS},
+    "conftest.py imports it, and the session has a state": {
+        "program/table.py": TABLE,
+        "tests/conftest.py": """
+            import pytest
+            from program import table
+
+            SEEN = [table.LIMIT]
+
+            def pytest_configure(config):
+                SEEN.append(config.rootpath.name)
+
+            def pytest_sessionfinish(session):
+                if SEEN[0] > 4:
+                    session.exitstatus = 1
+
+            @pytest.fixture(scope="session")
+            def sizes():
+                return dict(table.SIZES)
+        """,
+        "tests/test_table.py": """
+            def test_sizes(sizes):
+                assert sizes["big"] == 2
+
+            def test_small(sizes):
+                assert sizes["small"] < 2
+        """,
+    },
+    "it cannot be imported": {
+        "program/table.py": """
+            LIMIT = 4 - 1
+            assert LIMIT > 0, "no limit"
+            NAMES = ("one", "two", "three")[:LIMIT]
+            LAST = NAMES[LIMIT - 1]
+        """,
+        "tests/test_a.py": "def test_nothing():\n    pass\n",
+        "tests/test_table.py": """
+            from program.table import LAST, NAMES
+
+            def test_names():
+                assert LAST in NAMES
+        """,
+    },
+    "conftest.py cannot import it": {
+        "program/table.py": "LIMIT = 4 - 1\nLAST = [1, 2, 3][LIMIT - 1]\n",
+        "tests/conftest.py": "from program import table\n",
+        "tests/test_table.py": "def test_nothing():\n    pass\n",
+    },
+    "its tests do without it if need be": {
+        "program/table.py": "LIMIT = 4 - 1\nif LIMIT != 3:\n    raise ValueError(LIMIT)\n",
+        "tests/test_table.py": """
+            try:
+                from program.table import LIMIT
+            except ValueError:
+                LIMIT = 3
+
+            def test_limit():
+                assert LIMIT == 3
+        """,
+    },
+    "it leaves, or never returns": {
+        "program/table.py": """
+            import os
+            import sys
+
+            LEFT = 3 - 2
+            if LEFT > 1:
+                os._exit(7)
+            MORE = LEFT + 1
+            if MORE < 2:
+                sys.exit("none left")
+            while MORE != 2:
+                pass
+        """,
+        "tests/test_table.py": "from program.table import MORE\n\ndef test_more():\n    assert MORE\n",
+    },
+    "its values are parameters of tests": {
+        "program/table.py": "LIMIT = 2 + 1\nNAMES = ['a', 'b', 'c', 'd'][:LIMIT]\n",
+        "tests/test_table.py": """
+            import pytest
+            from program.table import LIMIT, NAMES
+
+            @pytest.mark.parametrize("number", range(3))
+            def test_number(number):
+                assert number < LIMIT
+
+            def test_names():
+                assert NAMES[0] == "a"
+        """,
+    },
+    "tests import it, and again": {
+        "program/table.py": TABLE,
+        "program/late.py": "from program import table\n\nBOUND = table.LIMIT * 2\n",
+        "tests/test_late.py": """
+            import importlib
+            import sys
+
+            def test_nothing_yet():
+                assert "program.late" not in sys.modules
+
+            def test_late():
+                from program import late
+                assert late.BOUND >= 8
+
+            def test_reloaded():
+                from program import late, table
+                importlib.reload(table)
+                importlib.reload(late)
+                assert late.BOUND <= 8
+
+            def test_afresh():
+                for name in [name for name in sys.modules if name.startswith("program")]:
+                    del sys.modules[name]
+                from program import table
+                assert table.area(1) == 2
+        """,
+    },
+    "processes import it as well": {
+        "program/table.py": "LIMIT = 3 + 1\nBOUND = LIMIT * 2\n\nif __name__ == '__main__':\n    print(BOUND)\n",
+        "tests/test_table.py": """
+            import subprocess
+            import sys
+            from program import table
+
+            def said():
+                command = [sys.executable, "-m", "program.table"]
+                return int(subprocess.run(command, capture_output=True, check=True, text=True).stdout)
+
+            def test_limit():
+                assert table.LIMIT < 5
+
+            def test_process():
+                assert said() == table.BOUND
+
+            def test_bound():
+                assert said() > 6
+        """,
+    },
+    "a process has imported it before the tests do": {
+        "program/table.py": "LIMIT = 3 + 1\nBOUND = LIMIT * 2\n\nif __name__ == '__main__':\n    print(BOUND)\n",
+        "tests/conftest.py": """
+            import subprocess
+            import sys
+
+            COMMAND = [sys.executable, "-m", "program.table"]
+            SAID = int(subprocess.run(COMMAND, capture_output=True, check=True, text=True).stdout)
+
+            from program import table
+
+            def pytest_report_header():
+                return f"{SAID} {table.BOUND}"
+        """,
+        "tests/test_table.py": """
+            from tests.conftest import SAID
+
+            def test_said():
+                assert SAID == 8
+        """,
+        "tests/__init__.py": "",
+    },
+    "it runs a thread while it is imported": {
+        "program/table.py": """
+            import threading
+            import time
+
+            WAIT = 3 - 2
+            threading.Thread(target=time.sleep, args=(60,), daemon=True).start()
+            LIMIT = 3 + WAIT
+        """,
+        "tests/test_table.py": "from program import table\n\ndef test_limit():\n    assert table.LIMIT == 4\n",
+    },
+    "tests look at warnings, arguments and the environment": {
+        "program/table.py": """
+            import warnings
+
+            LIMIT = 3 + 1
+            if LIMIT > 4:
+                warnings.warn("too much", DeprecationWarning)
+        """,
+        "pytest.ini": "[pytest]\npythonpath = .\nfilterwarnings = error\n",
+        "tests/test_table.py": """
+            import os
+            import sys
+            from program import table
+
+            def test_arguments():
+                assert "PYTEST_CURRENT_TEST" in os.environ and len(sys.argv) > table.LIMIT - 5
+
+            def test_files(tmp_path):
+                (tmp_path / "one").write_text(str(table.LIMIT))
+                assert (tmp_path / "one").read_text() == "4"
+        """,
+    },
+}
+#: suites in which nothing can be forked before the tests, and why
+UNSAFE = {
+    "a process has imported it before the tests do": "processes of the program were started before any test",
+    "it runs a thread while it is imported": "1 more thread, such as Thread-1 (sleep)",
+}
+
+
+def project(folder: Path, files: dict[str, str]) -> Path:
+    more = {
+        "program/__init__.py": "",
+        "mutabot.toml": CONFIGURATION,
+        "pytest.ini": "[pytest]\npythonpath = .\n",
+    }
+    for name, text in {**more, **files}.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(dedent(text), encoding="utf-8")
+    return folder
+
+
+def run(folder: Path, engine: str) -> tuple[dict[str, Outcome], list[str]]:
+    quiet = Quiet()
+    request = request_for(folder, engine=engine, families=("classical",), fresh=True)
+    return {one.mutant: one for one in outcomes(run_campaign(request, quiet))}, quiet.lines
+
+
+@pytest.mark.parametrize("suite", SUITES)
+def test_every_verdict_is_that_of_plain_pytest(tmp_path: Path, suite: str) -> None:
+    found = compare(project(tmp_path / "imports", SUITES[suite]), families=("classical",), limit=8.0)
+    assert found.disagreements == []
+    assert {one.plain.state for one in found.compared} >= {"fails"}
