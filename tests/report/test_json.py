@@ -16,7 +16,7 @@ from mutabot.analysis.results import read_results
 from mutabot.journal.journal import Journal
 from mutabot.model import Diverged, Outcome, Verdict
 from mutabot.model.outcome import Apart, Near
-from mutabot.report.as_json import dumps, results_data
+from mutabot.report.document import document, dumps
 from mutabot.report.terminal.listing import plan_data
 
 SECOND_LOOK: dict[str, Any] = {
@@ -69,7 +69,7 @@ NARROWED = {
 
 def data(path: Path, **changes: Any) -> Any:
     with Journal.open(samples.write_journal(path / "journal.sqlite", **changes)) as journal:
-        return json.loads(dumps(results_data(read_results(journal))))
+        return json.loads(dumps(document(read_results(journal))))
 
 
 def test_a_mutant_has_everything_a_machine_needs(tmp_path: Path) -> None:
@@ -153,7 +153,7 @@ def test_numbers_that_json_cannot_hold_become_null(tmp_path: Path) -> None:
     odd = Outcome(samples.SKIP.id, 0, Verdict.SURVIVED, example=(math.nan, math.inf), distance=math.inf)
     path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=(odd,))
     with Journal.open(path) as journal:
-        text = dumps(results_data(read_results(journal)))
+        text = dumps(document(read_results(journal)))
     assert json.loads(text, parse_constant=pytest.fail)
 
 

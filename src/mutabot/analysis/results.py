@@ -162,6 +162,11 @@ class Results:
         return tuple(self.meta.get(ALTERED) or ())
 
     @property
+    def is_complete(self) -> bool:
+        """Whether the campaign ran to its end."""
+        return self.state == "complete"
+
+    @property
     def everything(self) -> tuple[MutantResult, ...]:
         """All mutants, graded ones included, by number."""
         if not self.graded:

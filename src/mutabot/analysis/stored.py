@@ -78,8 +78,8 @@ class Changes:
     changed: tuple[Ends, ...]
     same: int
     unknown: tuple[Ends, ...]
-    gone: tuple[MutantResult, ...]
-    added: tuple[MutantResult, ...]
+    gone: tuple[Ends, ...]
+    added: tuple[Ends, ...]
     scores: Mapping[tuple[str, str], tuple[Group | None, Group | None]]
     old_state: str
     new_state: str
@@ -101,8 +101,8 @@ def changes(old: Results, new: Results) -> Changes:
         changed=tuple(changed),
         same=len(both) - len(changed),
         unknown=tuple(pair for pair in lost if not _is_judged(pair.new)),
-        gone=tuple(one for one in _asked_for(new, old.mutants) if one.mutant.id not in after),
-        added=tuple(one for one in _asked_for(old, new.mutants) if one.mutant.id not in before),
+        gone=tuple(Ends(one, None) for one in _asked_for(new, old.mutants) if one.mutant.id not in after),
+        added=tuple(Ends(None, one) for one in _asked_for(old, new.mutants) if one.mutant.id not in before),
         scores=_scores(old.groups, new.groups),
         old_state=old.state,
         new_state=new.state,
@@ -335,11 +335,6 @@ class StoredCampaign(Results):
     operators: Mapping[str, str] = field(default_factory=dict)
     reaching: Reaching = field(default_factory=Reaching)
     draws: frozenset[str] = frozenset()
-
-    @property
-    def is_complete(self) -> bool:
-        """Whether the campaign ran to its end."""
-        return self.state == "complete"
 
     @property
     def tests(self) -> list[str]:

@@ -19,7 +19,7 @@ from mutabot.border.codec import to_data
 from mutabot.evidence.recording import Kind, Recording, Told, Track
 from mutabot.model import Looked, Outcome
 from mutabot.model.values.quantity import value_text
-from mutabot.report.as_json import facts, interval_data
+from mutabot.report.document import data_of
 from mutabot.report.texts import mapped, rounds_text
 
 #: what one step of the whole numbers is, and by how many steps a line may miss: m; quaternions without unit
@@ -181,7 +181,7 @@ def mutant_page(result: MutantResult) -> dict[str, Any]:
         "places": [{"place": mutant.site.place, "function": mutant.site.span.function}],
         "pattern": mutant.pattern_name,
         "meaning": _meaning_words(result),
-        "interval": interval_data(result.kill_rate.interval),
+        "interval": data_of(result.kill_rate.interval),
         "roundsText": rounds_text(result),
         "change": change,
         "rounds": [_round(one) for one in result.rounds],
@@ -207,12 +207,12 @@ def _round(outcome: Outcome | None) -> dict[str, Any] | None:
     if outcome is None:
         return None
     known = {
-        **facts(outcome, "test exception message place hits acted"),
+        **data_of.facts(outcome, "test exception message place hits acted"),
         "away": [[why, count] for why, count in outcome.away.items()],
         "example": [_value(one) for one in outcome.example] if outcome.example is not None else None,
-        **facts(outcome, "tests wall simulated divergence gaps"),
+        **data_of.facts(outcome, "tests wall simulated divergence gaps"),
         "compared": outcome.compared.text if outcome.compared is not None else None,
-        **facts(outcome, "indistinguishable engine repeats stuck beside"),
+        **data_of.facts(outcome, "indistinguishable engine repeats stuck beside"),
         "unconfirmed": outcome.confirmed is False or None,
         "kills": [[one.test, one.by.value, one.message] for one in outcome.kills[1:]],
         "diverged": [_told(to_data(one)) for one in outcome.diverged],

@@ -11,44 +11,8 @@ from rich.text import Text
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
-from mutabot.border.codec import to_data
-from mutabot.report.as_json import facts
 
 from .console import heading, plain, plural
-
-
-def suggested_data(found: Suggestions) -> dict[str, Any]:
-    """As docs/json.md tells it; rounds are counted from 1."""
-    return {
-        "rounds": found.rounds,
-        "seeds": found.seeds,
-        "suggestions": [_suggestion_data(one, found) for one in found.suggestions],
-        "diff": found.diff,
-        "unsolved": [
-            {"mutant": _mutant_data(one.mutant, found), "reason": one.reason, "never": one.never}
-            for one in found.unsolved
-        ],
-        "dropped": [facts(one, "test statement reason") for one in found.dropped],
-    }
-
-
-def _suggestion_data(one: Suggestion, found: Suggestions) -> dict[str, Any]:
-    return {
-        **to_data(one),
-        "kills": [
-            {"mutant": _mutant_data(mutant, found), "rounds": [round + 1 for round in rounds]}
-            for mutant, rounds in one.kills.items()
-        ],
-    }
-
-
-def _mutant_data(mutant: str, found: Suggestions) -> dict[str, Any]:
-    return {
-        "id": mutant,
-        "number": found.numbers.get(mutant),
-        "description": found.descriptions.get(mutant, ""),
-    }
-
 
 #: dropped checks that are shown
 _DROPPED = 5
