@@ -16,21 +16,10 @@ from mutabot.analysis.results import MutantResult, Results
 from mutabot.analysis.score import Group, RoundScores, Score
 from mutabot.analysis.stored import Changes, Ends
 from mutabot.analysis.suggested import Suggestion, Suggestions
-from mutabot.analysis.thresholds.ladders import Better, Ladder, LadderRound, Step, Violation
-from mutabot.analysis.thresholds.thresholds import Compared, Comparison, Floor, Thresholds
+from mutabot.analysis.thresholds import ladders, thresholds
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.extensions import brought
-from mutabot.journal.records import (
-    PLAIN,
-    BaselineTest,
-    ControlEnd,
-    Disagreement,
-    Drawing,
-    Repeats,
-    Replayed,
-    ShardOf,
-    Verification,
-)
+from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Figure
 from mutabot.report.texts import status_of
@@ -60,7 +49,7 @@ def document(results: Results) -> dict[str, Any]:
     return {
         "format": FORMAT,
         **data_of.facts(results, "state finished=is_complete attempt"),
-        "meta": {key: value for key, value in results.meta.items() if key in PLAIN},
+        "meta": {key: value for key, value in results.meta.items() if key in records.PLAIN},
         **data_of.facts(
             results,
             "rounds=all.rounds# groups mutants graded left_out controls baseline sample=drawing since budget "
@@ -70,7 +59,7 @@ def document(results: Results) -> dict[str, Any]:
     }
 
 
-def replayed(mutant: Mutant, rounds: Iterable[Replayed]) -> dict[str, Any]:
+def replayed(mutant: Mutant, rounds: Iterable[records.Replayed]) -> dict[str, Any]:
     """One mutant that was run again, beside its outcomes in the journal."""
     return {**data_of.facts(mutant, "id number"), "rounds": data_of(list(rounds))}
 
@@ -85,14 +74,14 @@ def _mutant(result: MutantResult) -> dict[str, Any]:
     return data if result.is_survivor else data | {"distance": None, "worst": None}
 
 
-def _replayed(one: Replayed) -> dict[str, Any]:
+def _replayed(one: records.Replayed) -> dict[str, Any]:
     none = {"round": one.round + 1, "verdict": None}
     return data_of.facts(one, "round=round+1 agrees journal=first replay=second") | (
         {"journal": none} if one.first is None else {}
     )
 
 
-def _repeats(repeats: Repeats) -> dict[str, Any]:
+def _repeats(repeats: records.Repeats) -> dict[str, Any]:
     found = {"false_kills": false_kills(repeats), "false_survivors": false_survivors(repeats)}
     return {**data_of.facts(repeats, "doubted others certain survivors"), **data_of(found)}
 
@@ -132,7 +121,7 @@ def _mean(group: Group | None) -> dict[str, Any] | None:
     return data_of.facts(group, "mutants score=scores.mean check_score=scores.mean_check")
 
 
-def _ladder(ladder: Ladder) -> dict[str, Any]:
+def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
     known = "none_up_to? half_from all_from refused_from median share_shown"
     data = data_of.facts(
         ladder,
@@ -153,7 +142,7 @@ def _ladder(ladder: Ladder) -> dict[str, Any]:
     }
 
 
-def _ladder_round(one: LadderRound) -> dict[str, Any]:
+def _ladder_round(one: ladders.LadderRound) -> dict[str, Any]:
     return {
         **data_of.facts(
             one,
@@ -166,12 +155,12 @@ def _ladder_round(one: LadderRound) -> dict[str, Any]:
     }
 
 
-def _thresholds(found: Thresholds) -> dict[str, Any]:
+def _thresholds(found: thresholds.Thresholds) -> dict[str, Any]:
     line = "state rounds ladders=all floors runs exhaustive controls false_alarms most_violated"
     return {"format": FORMAT, **data_of.facts(found, line)}
 
 
-def _floor(one: Floor) -> dict[str, Any]:
+def _floor(one: thresholds.Floor) -> dict[str, Any]:
     return {
         **data_of.facts(one, "up=up.id down=down.id unit=up.unit blind half_width"),
         "bias": [
@@ -182,7 +171,7 @@ def _floor(one: Floor) -> dict[str, Any]:
     }
 
 
-def _comparison(found: Comparison) -> dict[str, Any]:
+def _comparison(found: thresholds.Comparison) -> dict[str, Any]:
     data = data_of.facts(found, "why_no_words? mean improved=has_improved ladders gone added")
     if found.mean is not None:
         data["mean"] = data_of.facts(found.mean, "steps=mean low high level")
@@ -230,28 +219,28 @@ data_of = Encoder(
         "sample_check_interval rounds#",
         Group: "family role mutants population *scores",
         LeftOut: "id description reason",
-        ControlEnd: "test_file control ok detail",
-        BaselineTest: "test=test.test round=round+1 repetition=repetition+1 outcome=test.outcome "
+        records.ControlEnd: "test_file control ok detail",
+        records.BaselineTest: "test=test.test round=round+1 repetition=repetition+1 outcome=test.outcome "
         "wall=test.wall simulated=test.simulated",
-        Drawing: "size=sample selected",
-        Verification: "wanted checked agreed disagreements",
-        Disagreement: "id=mutant number round=round+1 first second",
-        Repeats: _repeats,
+        records.Drawing: "size=sample selected",
+        records.Verification: "wanted checked agreed disagreements",
+        records.Disagreement: "id=mutant number round=round+1 first second",
+        records.Repeats: _repeats,
         Estimate: "expected low high level known unknown",
         Confirmed: "outcomes refused confirmed wrong left most level text",
-        ShardOf: "number of mutants",
-        Replayed: _replayed,
+        records.ShardOf: "number of mutants",
+        records.Replayed: _replayed,
         Changes: _changes,
         Ends: _ends,
-        Thresholds: _thresholds,
-        Ladder: _ladder,
-        LadderRound: _ladder_round,
-        Step: "magnitude number noticed valid interval by refused unknown",
-        Violation: "round=round+1 noticed missed",
-        Better: "round=round+1 magnitude text",
-        Floor: _floor,
-        Comparison: _comparison,
-        Compared: "id=new.id change steps old new",
+        thresholds.Thresholds: _thresholds,
+        ladders.Ladder: _ladder,
+        ladders.LadderRound: _ladder_round,
+        ladders.Step: "magnitude number noticed valid interval by refused unknown",
+        ladders.Violation: "round=round+1 noticed missed",
+        ladders.Better: "round=round+1 magnitude text",
+        thresholds.Floor: _floor,
+        thresholds.Comparison: _comparison,
+        thresholds.Compared: "id=new.id change steps old new",
         Suggestions: _suggestions,
     }
 )

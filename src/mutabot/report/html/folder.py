@@ -110,27 +110,21 @@ class Rows:
         self.files = [*self._files]
 
     def _row(self, result: MutantResult) -> dict[str, Any]:
-        mutant, rate, status = result.mutant, result.kill_rate, status_of(result)
-        span = mutant.site.span
+        span, status = result.mutant.site.span, status_of(result)
         place = place_of(span, self._campaign.source(span.file), utf16)
         return {
-            "number": mutant.number,
-            "id": mutant.id,
+            **data_of.facts(result, "number=mutant.number id=mutant.id"),
             "file": self._files.setdefault(span.file, len(self._files)),
-            "line": place.line,
-            "column": place.column,
-            "endLine": place.end_line,
-            "endColumn": place.end_column,
-            "function": span.function,
-            **data_of.facts(mutant, "operation quantity"),
-            "unit": result.quantity.unit if result.quantity is not None else None,
-            **data_of.facts(mutant, "operator variant family"),
-            "role": mutant.site.role.value,
-            "description": mutant.description,
+            **data_of.facts(place, "line column endLine=end_line endColumn=end_column"),
+            **data_of.facts(
+                result,
+                "function=mutant.site.span.function operation=mutant.operation quantity=mutant.quantity "
+                "unit=quantity.unit operator=mutant.operator variant=mutant.variant family=mutant.family "
+                "role=mutant.site.role description=mutant.description killed=kill_rate.killed "
+                "valid=kill_rate.valid worst indistinguishable",
+            ),
             "ends": "".join(mark_of(one).letter for one in result.rounds),
             "status": status.value if status is not None else "not run",
-            **data_of.facts(rate, "killed valid"),
-            **data_of.facts(result, "worst indistinguishable"),
             "why": why_alone(result),
             "site": self._site(result),
             "kills": self._kills(result),
