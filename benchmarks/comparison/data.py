@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from mutabot.report.as_json import FORMAT, drawing_data, interval_data, scores_data
+from mutabot.report.document import FORMAT, data_of
 
 from .ends import end_of
 from .families import Family, FamilyComparison, Share
@@ -23,7 +23,7 @@ def comparison_data(comparison: FamilyComparison) -> dict[str, Any]:
         "state": comparison.state,
         "finished": comparison.state == "complete",
         "meta": {key: comparison.meta.get(key) for key in _META},
-        "sample": drawing_data(comparison.drawing),
+        "sample": data_of(comparison.drawing),
         "families": [_family(family) for family in comparison.families],
         "together": _redundancy(comparison.redundancy),
         "mutants": _mutants(comparison),
@@ -48,8 +48,8 @@ def _family(family: Family) -> dict[str, Any]:
         },
         "ends": {end.value: _share(share) for end, share in family.ends.items()},
         "weaknesses": {name: _share(share) for name, share in family.weaknesses.items()},
-        "scores": scores_data(family.scores),
-        "without_oracle": scores_data(family.without_oracle) if family.without_oracle is not None else None,
+        "scores": data_of(family.scores),
+        "without_oracle": data_of(family.without_oracle) if family.without_oracle is not None else None,
         "valid": _share(family.valid),
         "reached": _share(family.reached),
         "trivial": _share(family.trivial),
@@ -76,7 +76,7 @@ def _share(share: Share) -> dict[str, Any]:
         "of": share.of,
         "unknown": share.unknown,
         "share": share.share,
-        "interval": interval_data(share.interval),
+        "interval": data_of(share.interval),
     }
 
 

@@ -26,7 +26,7 @@ from mutabot.cli.request import request_of
 from mutabot.families import GRADED
 from mutabot.journal.files import HOME
 from mutabot.journal.reader import JournalReader
-from mutabot.report.as_json import dumps
+from mutabot.report.document import dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.progress import make_progress
 from mutabot.settings.families import known_families

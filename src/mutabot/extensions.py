@@ -74,6 +74,8 @@ class Extension:
         tables: subclasses of ``mutabot.settings.table.Table``, by the table's name in the configuration.
         commands: sub-commands: functions that typer makes a command of (see ``mutabot.cli.commands``).
         formats: a ``mutabot.report.format.Format`` each, by its name.
+        sections: functions of ``mutabot.analysis.results.Results`` that make a section of the results
+            document each, of plain data, by its name.
         faults: subclasses of ``mutabot.faults.FaultProvider``, by the providers' names.
     """
 
@@ -89,6 +91,7 @@ class Extension:
     tables: Mapping[str, str] = field(default_factory=dict)
     commands: Mapping[str, Described] = field(default_factory=dict)
     formats: Mapping[str, str] = field(default_factory=dict)
+    sections: Mapping[str, str] = field(default_factory=dict)
     faults: Mapping[str, str] = field(default_factory=dict)
 
 

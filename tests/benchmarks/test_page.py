@@ -17,7 +17,7 @@ from comparison.claims import CLAIMS, Stance, decide, difference, difference_tex
 from comparison.data import comparison_data
 from comparison.families import WEAKNESSES, compare_families
 from mutabot.analysis.statistics import wilson
-from mutabot.report.as_json import dumps
+from mutabot.report.document import dumps
 
 from . import campaigns
 

@@ -18,6 +18,8 @@ NOT_FOR_LOOKING = (
     "mutabot.operators", "mutabot.proposal", "mutabot.settings", "mutabot.vocabulary", "libcst", "numpy",
     "scipy", "tomllib", "wrapt",
 )  # fmt: skip
+#: what says what a package brings, which may be a section of the results
+DECLARING = {"mutabot_source", "mutabot_source.extension"}
 CODE = """
 import sys
 from mutabot.cli.app import main
@@ -52,7 +54,8 @@ def test_a_report_loads_nothing_that_runs_a_campaign_and_no_other_format(tmp_pat
 
 def assert_light(loaded: str) -> None:
     assert "mutabot.analysis.results" in loaded.split()
-    assert [name for name in loaded.split() if name.startswith(NOT_FOR_LOOKING)] == []
+    heavy = {name for name in loaded.split() if name.startswith(NOT_FOR_LOOKING)}
+    assert heavy <= DECLARING
 
 
 def test_thresholds_load_nothing_that_runs_a_campaign(tmp_path: Path) -> None:

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import jsonschema
 import pytest
 
+from mutabot.analysis.results import read_results
 from mutabot.campaign.request import Request
 from mutabot.campaign.run import run_campaign
 from mutabot.cli.app import main
 from mutabot.journal.journal import Journal
 from mutabot.model import Outcome
+from mutabot.report.document import document, dumps
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 from pages import blocks
@@ -132,6 +136,11 @@ def test_the_same_program_as_a_script_in_a_process_of_its_own_ends_alike(project
     assert len(ends) > len(few)
     expected = {mutant.removeprefix("link."): end for mutant, end in EXPECTED.items()}
     assert ends == {mutant: expected[mutant] for mutant in ends}
+
+
+def test_its_results_keep_the_published_schema(journal: Journal) -> None:
+    schema = json.loads((EXAMPLE.parents[1] / "docs" / "results.schema.json").read_text(encoding="utf-8"))
+    jsonschema.validate(json.loads(dumps(document(read_results(journal)))), schema)
 
 
 def test_amounts_outside_the_robots_range_are_left_out(journal: Journal) -> None:

@@ -11,7 +11,7 @@ from typing import Any
 from analysis import samples
 from mutabot.analysis.results import find_mutant
 from mutabot.model import Verdict
-from mutabot.report.as_json import results_data
+from mutabot.report.document import document
 from mutabot.report.html.folder import campaign_data
 from mutabot.report.html.mutant import mutant_page
 from mutabot.report.terminal.campaign import print_results
@@ -49,7 +49,7 @@ def test_what_was_not_confirmed_is_told_in_all_of_them(tmp_path: Path) -> None:
     assert notice == {"level": "note", "message": {"text": f"{TEXT}."}}
     assert campaign_data(found, "cell")["confirmed"] == TEXT
     assert "'unconfirmed': True" in str(mutant_page(survivor))
-    data = results_data(found)
+    data = document(found)
     assert data["confirmation"]["text"] == TEXT
     assert data["confirmation"]["left"] == len(SURVIVORS)
     assert [one["rounds"][0]["confirmed"] for one in data["mutants"] if one["id"] == survivor.mutant.id] == [
@@ -61,4 +61,4 @@ def test_nothing_is_told_where_all_were_run_with_the_whole_suite(tmp_path: Path)
     found = campaign(tmp_path)
     texts = *on_terminal(found, 1), made("markdown", found), made("sarif", found)
     assert not any("confirmed" in text for text in texts)
-    assert results_data(found)["confirmation"] is None
+    assert document(found)["confirmation"] is None

@@ -9,14 +9,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import pytest
 
 from analysis import samples
-from mutabot.analysis.results import read_results
+from mutabot.analysis.results import Results, read_results
+from mutabot.extensions import Part
 from mutabot.journal.journal import Journal
 from mutabot.model import Diverged, Outcome, Verdict
 from mutabot.model.outcome import Apart, Near
-from mutabot.report.as_json import dumps, results_data
+from mutabot.report.document import document, dumps
 from mutabot.report.terminal.listing import plan_data
 
 SECOND_LOOK: dict[str, Any] = {
@@ -47,6 +49,7 @@ DRAWING = {
     }
 }
 DOCUMENT = Path(__file__).parents[2] / "docs" / "json.md"
+SCHEMA = json.loads(DOCUMENT.with_name("results.schema.json").read_text(encoding="utf-8"))
 
 
 DIVERGED = (
@@ -69,7 +72,7 @@ NARROWED = {
 
 def data(path: Path, **changes: Any) -> Any:
     with Journal.open(samples.write_journal(path / "journal.sqlite", **changes)) as journal:
-        return json.loads(dumps(results_data(read_results(journal))))
+        return json.loads(dumps(document(read_results(journal))))
 
 
 def test_a_mutant_has_everything_a_machine_needs(tmp_path: Path) -> None:
@@ -153,7 +156,7 @@ def test_numbers_that_json_cannot_hold_become_null(tmp_path: Path) -> None:
     odd = Outcome(samples.SKIP.id, 0, Verdict.SURVIVED, example=(math.nan, math.inf), distance=math.inf)
     path = samples.write_journal(tmp_path / "journal.sqlite", outcomes=(odd,))
     with Journal.open(path) as journal:
-        text = dumps(results_data(read_results(journal)))
+        text = dumps(document(read_results(journal)))
     assert json.loads(text, parse_constant=pytest.fail)
 
 
@@ -164,36 +167,56 @@ def test_the_plan_has_the_same_keys_for_a_mutant(tmp_path: Path) -> None:
     assert planned["left_out"][0]["reason"] == "it is always 0"
 
 
-def test_every_key_is_documented_and_no_other(tmp_path: Path) -> None:
-    documented = set(re.findall(r"^\| `(\w+)` \|", DOCUMENT.read_text(encoding="utf-8"), re.MULTILINE))
+def full(path: Path) -> Any:
+    """A document with all that one may hold."""
     outcomes = tuple(
         replace(one, diverged=DIVERGED, confirmed=False) if one.verdict is Verdict.SURVIVED else one
         for one in samples.OUTCOMES
     )
-    found = data(tmp_path, outcomes=outcomes, **SECOND_LOOK, **DRAWING, **NARROWED)
-    assert not {"since", "budget"} & found["meta"].keys()
-    outcomes = [one for mutant in found["mutants"] for one in mutant["rounds"]]
-    all_looked = [looked for one in outcomes for looked in one.get("looked", ())]
-    diverged = [one for outcome in outcomes for one in outcome.get("diverged", ())]
     shard = {"number": 2, "of": 8, "mutants": [1]}
-    parts = [data(tmp_path / "shard", shard=shard)["shard"]]
-    assert parts == [shard]
-    parts += [found, *found["mutants"], *found["groups"], *found["rounds"], *found["left_out"]]
-    parts += [
-        *found["controls"],
-        found["sample"],
-        found["verification"],
-        *found["verification"]["disagreements"],
-        found["repeats"],
-        found["confirmation"],
-        found["repeats"]["doubted"],
-        found["repeats"]["false_kills"],
-        *found["baseline"],
-        found["since"],
-        found["budget"],
-        *outcomes,
-        *(one for looked in all_looked for one in (looked, *looked["checks"])),
-        *(one for found in diverged for one in (found, *found["apart"], *found["near"])),
-        *(one["compared"] for one in outcomes if one.get("compared")),
-    ]
-    assert {key for part in parts for key in part} == documented
+    return data(path, outcomes=outcomes, shard=shard, **SECOND_LOOK, **DRAWING, **NARROWED)
+
+
+def test_a_document_keeps_the_published_schema(tmp_path: Path) -> None:
+    found = full(tmp_path)
+    jsonschema.validate(found, SCHEMA)
+    empty = {key for key, value in found.items() if value in (None, [], {})}
+    assert empty <= {"attempt", "graded", "set_aside", "altered", "sections"}
+    assert not {"since", "budget"} & found["meta"].keys()
+
+
+@pytest.mark.parametrize("part", ["rounds", "groups", "mutants", "left_out", "controls", "baseline"])
+def test_the_schema_refuses_what_it_does_not_name_and_misses_what_is_gone(tmp_path: Path, part: str) -> None:
+    found = data(tmp_path)
+    first = found[part][0]
+    for changed in ({**first, "another": 1}, dict([*first.items()][1:])):
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate({**found, part: [changed]}, SCHEMA)
+
+
+def keys(schema: Any) -> set[str]:
+    """The keys of all objects that a schema knows, but for the numbers per verdict."""
+    if isinstance(schema, list):
+        return set().union(*map(keys, schema))
+    if not isinstance(schema, dict):
+        return set()
+    own = set(schema.get("properties", {}))
+    return (own if own != {*Verdict} else set()).union(*map(keys, schema.values()))
+
+
+def test_every_key_is_documented_and_no_other() -> None:
+    text = DOCUMENT.read_text(encoding="utf-8")
+    rows = set(re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE))
+    assert rows <= keys(SCHEMA) <= set(re.findall(r"`(\w+)`", text))
+
+
+def test_a_package_adds_a_section(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = Part("sizes", "report.test_json:sizes", "another")
+    monkeypatch.setattr("mutabot.report.document.brought", lambda kind: {"sizes": own})
+    found = data(tmp_path)
+    assert found["sections"] == {"sizes": {"mutants": len(samples.MUTANTS), "rounds": 2}}
+    jsonschema.validate(found, SCHEMA)
+
+
+def sizes(results: Results) -> dict[str, int]:
+    return {"mutants": len(results.mutants), "rounds": results.rounds}

@@ -18,7 +18,7 @@ from mutabot.campaign.run import plan_only, run_campaign
 from mutabot.errors import MutabotError
 from mutabot.inside.seeds import derive
 from mutabot.journal.journal import Journal
-from mutabot.report.as_json import mutant_data, results_data
+from mutabot.report.document import data_of, document
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 
@@ -319,7 +319,7 @@ def request_for(
 def campaign(request: Request) -> dict[str, Any]:
     """A whole campaign, as the JSON of ``mutabot results``."""
     with Journal.open(run_campaign(request, Silent())) as journal:
-        data = results_data(read_results(journal))
+        data = document(read_results(journal))
     # of a ladder the search runs some magnitudes; reports hold them apart, the judge does not
     ran = [one for one in data["graded"] if all(end.get("verdict") for end in one["rounds"])]
     return {**data, "mutants": [*data["mutants"], *ran]}
@@ -328,7 +328,7 @@ def campaign(request: Request) -> dict[str, Any]:
 def chosen(request: Request, only: Mapping[str, int]) -> list[str]:
     """Ids of the mutants to run, drawn by a fixed seed."""
     by_family: dict[str, list[str]] = {}
-    for mutant in map(mutant_data, plan_only(request, Silent())[0]):
+    for mutant in map(data_of, plan_only(request, Silent())[0]):
         by_family.setdefault(mutant["family"], []).append(mutant["id"])
     draw = random.Random(1)
     return [

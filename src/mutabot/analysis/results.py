@@ -36,7 +36,7 @@ from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
 
 from .chance import Confirmed
-from .divergence import explain, quantity_of, worst_of
+from .divergence import change_text, explain, quantity_of, worst_of
 from .score import Group, RoundScores, Score, groups_of
 
 #: mutants that are named where a text fits several
@@ -87,6 +87,13 @@ class MutantResult:
     def worst(self) -> float:
         """How far its survivors were from the original at the worst moment, in multiples of the tolerance."""
         return max(map(worst_of, self.survived), default=0.0)
+
+    @property
+    def change(self) -> str | None:
+        """What it changed when it first acted, in words; None if that is not known."""
+        return next(
+            filter(None, (change_text(self.mutant, one, self.quantity) for one in self.outcomes)), None
+        )
 
     @property
     def improvement(self) -> str:
@@ -160,6 +167,11 @@ class Results:
     def altered(self) -> tuple[str, ...]:
         """What something else changed in the journal while the campaign ran, and was restored, in words."""
         return tuple(self.meta.get(ALTERED) or ())
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the campaign ran to its end."""
+        return self.state == "complete"
 
     @property
     def everything(self) -> tuple[MutantResult, ...]:

@@ -35,6 +35,11 @@ class Score:
         return cls(Counter(one.verdict for one in outcomes), sum(map(_is_found, outcomes)))
 
     @property
+    def of_each(self) -> dict[Verdict, int]:
+        """Outcomes per verdict, also of those that did not occur."""
+        return {verdict: self.counts.get(verdict, 0) for verdict in Verdict}
+
+    @property
     def valid(self) -> int:
         """The denominator."""
         return sum(count for verdict, count in self.counts.items() if verdict.is_valid)

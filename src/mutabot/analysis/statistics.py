@@ -85,12 +85,9 @@ def crossed(table: Sequence[Sequence[float | None]]) -> Interval | None:
     cells = _Cells.of(table)
     if cells is None:
         return None
-    mutants, of_mutants, of_rounds = cells.mutants, cells.variance_of_mutants(), cells.mean_square_of_rounds()
-    excess = max(0.0, of_rounds - cells.variance_of_cells())
-    variance = of_mutants + excess
-    spread = of_mutants**2 / (mutants - 1) + (of_rounds**2 / (len(cells.rounds) - 1) if excess else 0.0)
+    variance, freedom = cells.variance(cells.variance_of_mutants())
     independent = cells.smoothed * (1 - cells.smoothed) / variance
-    independent *= (_NORMAL / student(max(1.0, variance**2 / spread))) ** 2
+    independent *= (_NORMAL / student(freedom)) ** 2
     return _wilson(cells.score, min(independent, cells.count))
 
 
@@ -162,11 +159,8 @@ def mean_of(table: Sequence[Sequence[float | None]]) -> Mean | None:
         return None
     rows = cells.mutants
     of_rows = rows / (rows - 1) * math.fsum(cells.influence(row) ** 2 for row in cells.rows)
-    of_rounds = cells.mean_square_of_rounds()
-    excess = max(0.0, of_rounds - cells.variance_of_cells())
-    variance = of_rows + excess
-    spread = of_rows**2 / (rows - 1) + (of_rounds**2 / (len(cells.rounds) - 1) if excess else 0.0)
-    half = student(max(1.0, variance**2 / spread)) * math.sqrt(variance) if spread else 0.0
+    variance, freedom = cells.variance(of_rows)
+    half = student(freedom) * math.sqrt(variance) if variance else 0.0
     return Mean(cells.score, cells.score - half, cells.score + half)
 
 
@@ -233,6 +227,15 @@ class _Cells:
         squares += _IMAGINED * (smoothed**2 + (1 - smoothed) ** 2)
         size = mutants + 2 * _IMAGINED
         return squares / (size * (size - 1))
+
+    def variance(self, of_mutants: float) -> tuple[float, float]:
+        """V of ``crossed`` with its degrees of freedom, where that of mutants alone is this."""
+        of_rounds = self.mean_square_of_rounds()
+        excess = max(0.0, of_rounds - self.variance_of_cells())
+        variance = of_mutants + excess
+        spread = of_mutants**2 / (self.mutants - 1)
+        spread += of_rounds**2 / (len(self.rounds) - 1) if excess else 0.0
+        return variance, max(1.0, variance**2 / spread) if spread else math.inf
 
     def mean_square_of_rounds(self) -> float:
         """MSr / MR: that of the score if only the rounds were drawn anew."""

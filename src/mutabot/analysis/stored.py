@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -27,8 +27,9 @@ from mutabot.journal.files import find_journal
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.recordings import ORIGINAL, Recordings
 from mutabot.journal.records import DRAWS, OPERATORS, REACHING, Reaching
-from mutabot.model import By, Mutant, Outcome
+from mutabot.model import By, Mutant, Outcome, Quantity
 
+from .facts import Encoder
 from .results import MutantResult, Results, find_mutant, read_results
 from .score import Group
 
@@ -78,8 +79,8 @@ class Changes:
     changed: tuple[Ends, ...]
     same: int
     unknown: tuple[Ends, ...]
-    gone: tuple[MutantResult, ...]
-    added: tuple[MutantResult, ...]
+    gone: tuple[Ends, ...]
+    added: tuple[Ends, ...]
     scores: Mapping[tuple[str, str], tuple[Group | None, Group | None]]
     old_state: str
     new_state: str
@@ -101,8 +102,8 @@ def changes(old: Results, new: Results) -> Changes:
         changed=tuple(changed),
         same=len(both) - len(changed),
         unknown=tuple(pair for pair in lost if not _is_judged(pair.new)),
-        gone=tuple(one for one in _asked_for(new, old.mutants) if one.mutant.id not in after),
-        added=tuple(one for one in _asked_for(old, new.mutants) if one.mutant.id not in before),
+        gone=tuple(Ends(one, None) for one in _asked_for(new, old.mutants) if one.mutant.id not in after),
+        added=tuple(Ends(None, one) for one in _asked_for(old, new.mutants) if one.mutant.id not in before),
         scores=_scores(old.groups, new.groups),
         old_state=old.state,
         new_state=new.state,
@@ -194,28 +195,65 @@ class StoredEvidence:
 Cell = str | int | float | bool | None
 
 
+#: the types of columns; of those that are not named here it is a text
+_KINDS: Mapping[type, str] = {
+    int: "number round line column hits acted tests commands repeats",
+    float: "wall_s cpu_s simulated_s distance way magnitude",
+    bool: "valid killed indistinguishable confirmed",
+}
+_LINE = (
+    "mutant=mutant.id number=mutant.number round=outcome.round+1 family=mutant.family role=mutant.site.role "
+    "operator=mutant.operator variant=mutant.variant file=mutant.site.span.file line=mutant.site.span.line "
+    "column=mutant.site.span.column+1 function=mutant.site.span.function call=mutant.site.text "
+    "operation=mutant.operation? quantity=mutant.quantity unit=quantity.unit description=mutant.description "
+    "verdict=outcome.verdict by=outcome.by valid=outcome.verdict.is_valid killed=outcome.verdict.is_killed "
+    "test=outcome.test exception=outcome.exception message=outcome.message place=outcome.place "
+    "hits=outcome.hits acted=outcome.acted before after tests=outcome.tests wall_s=outcome.wall "
+    "cpu_s=outcome.cpu simulated_s=outcome.simulated distance=outcome.distance way=outcome.way "
+    "indistinguishable=outcome.indistinguishable divergence commands=outcome.commands engine=outcome.engine "
+    "repeats=outcome.repeats confirmed=outcome.confirmed magnitude=mutant.magnitude "
+    "magnitude_unit=mutant.unit direction=mutant.direction?"
+)
+#: the columns of the table by their stable names, in the order of files; one with a unit ends in it
+COLUMNS: Mapping[str, type] = {
+    name: next((kind for kind, names in _KINDS.items() if name in names.split()), str)
+    for name in (word.partition("=")[0] for word in _LINE.split())
+}
+_FACTS = Encoder({})
+
+
 @frozen
-class Column:
-    """A column of the table.
+class _Row:
+    """A row: a mutant's outcome."""
 
-    Attributes:
-        name: its stable name; one with a unit ends in it.
-        kind: type of its cells.
-        meaning: what it says, in a line.
-        of: the cell for a mutant's outcome.
-    """
+    mutant: Mutant
+    quantity: Quantity | None
+    outcome: Outcome
 
-    name: str
-    kind: type
-    meaning: str
-    of: Callable[[MutantResult, Outcome], Any]
+    @property
+    def before(self) -> Any:
+        return self._example[0]
+
+    @property
+    def after(self) -> Any:
+        return self._example[1]
+
+    @property
+    def _example(self) -> tuple[Any, ...]:
+        found = self.outcome.example
+        return found if found is not None and len(found) == 2 else (None, None)
+
+    @property
+    def divergence(self) -> str | None:
+        return next(iter(self.outcome.divergence), None)
 
 
 def rows(results: Results) -> Iterator[tuple[Cell, ...]]:
     """The cells of all outcomes, in the order of ``COLUMNS``: by mutant, then by round."""
     for result in results.everything:
         for outcome in result.outcomes:
-            yield tuple(_cell(column, result, outcome) for column in COLUMNS)
+            cells = _FACTS.facts(_Row(result.mutant, result.quantity, outcome), _LINE)
+            yield tuple(_cell(COLUMNS[name], found) for name, found in cells.items())
 
 
 def frame_of(results: Results) -> pandas.DataFrame:
@@ -227,8 +265,8 @@ def frame_of(results: Results) -> pandas.DataFrame:
     cells = list(zip(*rows(results), strict=True)) or [() for _ in COLUMNS]
     return pandas.DataFrame(
         {
-            column.name: pandas.array(list(those), dtype=_DTYPES[column.kind])
-            for column, those in zip(COLUMNS, cells, strict=True)
+            name: pandas.array(list(those), dtype=_DTYPES[kind])
+            for (name, kind), those in zip(COLUMNS.items(), cells, strict=True)
         }
     )
 
@@ -239,84 +277,15 @@ def missing(library: str, wanted: str) -> UsageError:
     return UsageError(f"{wanted} needs {library}, which is not installed: {install}")
 
 
-def _cell(column: Column, result: MutantResult, outcome: Outcome) -> Cell:
-    found = column.of(result, outcome)
+def _cell(kind: type, found: Any) -> Cell:
     if found is None or (isinstance(found, float) and not math.isfinite(found)):
         return None
-    made: Cell = column.kind(found)
+    made: Cell = kind(found)
     return made
 
 
 #: names of pandas's types that can be missing
 _DTYPES = {str: "string", int: "Int64", float: "Float64", bool: "boolean"}
-
-
-def _unit(result: MutantResult) -> str | None:
-    return result.quantity.unit if result.quantity is not None else None
-
-
-def _example(index: int) -> Callable[[MutantResult, Outcome], Any]:
-    def cell(_: MutantResult, outcome: Outcome) -> Any:
-        pair = outcome.example
-        return pair[index] if pair is not None and len(pair) == 2 else None
-
-    return cell
-
-
-#: in this order they stand in files
-COLUMNS: tuple[Column, ...] = (
-    Column("mutant", str, "stable id of the mutant", lambda m, o: m.mutant.id),
-    Column("number", int, "its number in this campaign", lambda m, o: m.mutant.number),
-    Column("round", int, "the round, from 1", lambda m, o: o.round + 1),
-    Column("family", str, "family of its operator", lambda m, o: m.mutant.family),
-    Column("role", str, "`program` or `oracle`", lambda m, o: m.mutant.site.role.value),
-    Column("operator", str, "its operator", lambda m, o: m.mutant.operator),
-    Column("variant", str, "which of several mutants of the operator here", lambda m, o: m.mutant.variant),
-    Column("file", str, "file, relative to the project", lambda m, o: m.mutant.site.span.file),
-    Column("line", int, "line of the call, from 1", lambda m, o: m.mutant.site.span.line),
-    Column("column", int, "column, from 1, in UTF-8 bytes", lambda m, o: m.mutant.site.span.column + 1),
-    Column("function", str, "enclosing function", lambda m, o: m.mutant.site.span.function),
-    Column("call", str, "the callee or text as written", lambda m, o: m.mutant.site.text),
-    Column("operation", str, "the operation of the vocabulary", lambda m, o: m.mutant.operation or None),
-    Column("quantity", str, "the quantity that is changed", lambda m, o: m.mutant.quantity),
-    Column("unit", str, "unit of `before` and `after`", lambda m, o: _unit(m)),
-    Column("description", str, "what the mutant does", lambda m, o: m.mutant.description),
-    Column("verdict", str, "see [verdicts](verdicts.md)", lambda m, o: o.verdict.value),
-    Column("by", str, "`check` or `exception`, for a kill", lambda m, o: o.by.value if o.by else None),
-    Column(
-        "valid", bool, "whether it stands in the denominator of the score", lambda m, o: o.verdict.is_valid
-    ),
-    Column("killed", bool, "whether it stands in the numerator", lambda m, o: o.verdict.is_killed),
-    Column("test", str, "the test that ended otherwise", lambda m, o: o.test),
-    Column("exception", str, "type of its exception, as `module:Name`", lambda m, o: o.exception),
-    Column(
-        "message", str, "first lines of its text, or why the verdict is what it is", lambda m, o: o.message
-    ),
-    Column("place", str, "`file:line` where it was noticed", lambda m, o: o.place),
-    Column("hits", int, "calls at the mutant's site", lambda m, o: o.hits),
-    Column("acted", int, "hits at which it changed something", lambda m, o: o.acted),
-    Column("before", str, "value at the first of these, as text", _example(0)),
-    Column("after", str, "the value in its place, as text", _example(1)),
-    Column("tests", int, "number of tests run", lambda m, o: o.tests),
-    Column("wall_s", float, "seconds from the start of the process to its end", lambda m, o: o.wall),
-    Column("cpu_s", float, "processor seconds of the tests", lambda m, o: o.cpu),
-    Column("simulated_s", float, "simulated seconds of the tests", lambda m, o: o.simulated),
-    Column(
-        "distance", float, "greatest difference of a probe at the end, in tolerances", lambda m, o: o.distance
-    ),
-    Column("way", float, "greatest difference of a probe along the way, in tolerances", lambda m, o: o.way),
-    Column("indistinguishable", bool, "whether nothing differed", lambda m, o: o.indistinguishable),
-    Column("divergence", str, "what ended otherwise, the worst", lambda m, o: next(iter(o.divergence), None)),
-    Column("commands", int, "commands before the deciding test ended", lambda m, o: o.commands),
-    Column("engine", str, "engine that ran it", lambda m, o: o.engine),
-    Column("repeats", int, "how often it was run once more, and ended the same", lambda m, o: o.repeats),
-    Column("confirmed", bool, "whether the whole suite says so, too", lambda m, o: o.confirmed),
-    Column("magnitude", float, "of a graded mutant: how big its fault is", lambda m, o: m.mutant.magnitude),
-    Column("magnitude_unit", str, "unit of `magnitude`", lambda m, o: m.mutant.unit),
-    Column(
-        "direction", str, "of a graded mutant: `+`, `-` or nothing", lambda m, o: m.mutant.direction or None
-    ),
-)
 
 
 @frozen
@@ -335,11 +304,6 @@ class StoredCampaign(Results):
     operators: Mapping[str, str] = field(default_factory=dict)
     reaching: Reaching = field(default_factory=Reaching)
     draws: frozenset[str] = frozenset()
-
-    @property
-    def is_complete(self) -> bool:
-        """Whether the campaign ran to its end."""
-        return self.state == "complete"
 
     @property
     def tests(self) -> list[str]:

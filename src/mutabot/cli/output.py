@@ -36,9 +36,9 @@ def tell(lines: Iterable[str]) -> None:
 
 def print_json(data: Any) -> None:
     """Print data as JSON, as docs/json.md tells it."""
-    from mutabot.report.as_json import dumps
+    from mutabot.report.document import data_of, dumps
 
-    echo(dumps(data))
+    echo(dumps(data_of(data)))
 
 
 def progress_shown() -> Bar | Lines:
@@ -63,9 +63,9 @@ def show_results(
 
     found = results_at(path, earlier=earlier)
     if json:
-        from mutabot.report.as_json import results_data
+        from mutabot.report.document import document
 
-        print_json(results_data(found))
+        print_json(document(found))
     elif summary:
         print_summary(make_console(), found)
     else:

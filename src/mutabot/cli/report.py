@@ -72,7 +72,7 @@ def report(
     It reads the journal alone, also that of a campaign that was interrupted or still runs.
     """
     from mutabot.analysis.stored import open as open_campaign
-    from mutabot.report.changes import changes_data, print_changes
+    from mutabot.report.changes import print_changes
     from mutabot.report.format import Material
     from mutabot.report.terminal.console import make_console
     from mutabot.report.texts import portable
@@ -96,7 +96,7 @@ def report(
     changes = _changes(campaign, journal, compare) if compare is not None else None
     material = Material(campaign, _folder(prefix), changes)
     if changes is not None and not wanted:
-        print_json(changes_data(changes)) if json else print_changes(make_console(), changes)
+        print_json(changes) if json else print_changes(make_console(), changes)
     for one, file in wanted:
         _write(one, material, file)
     if html is not None:

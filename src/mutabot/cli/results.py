@@ -60,9 +60,7 @@ def show(
         is_there = not result.outdated or result.mutant.family in found.meta.get("families", ())
         source = journal.source(result.mutant.site.span.file) if is_there else None
     if json:
-        from mutabot.report.as_json import result_data
-
-        print_json(result_data(result))
+        print_json(result)
     else:
         with closing(StoredEvidence(path)) as evidence:
             suggestions = kept_suggestions(path, found.meta)
@@ -80,7 +78,7 @@ def replay(
     from mutabot.analysis.results import find_mutant, read_results
     from mutabot.campaign.again import replay_one
     from mutabot.journal.reader import JournalReader
-    from mutabot.report.as_json import replayed_data
+    from mutabot.report.document import replayed as replayed_data
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.mutant import print_replayed
 
@@ -117,7 +115,7 @@ def suggest(
     from mutabot.analysis.results import results_at
     from mutabot.analysis.suggested import keep_suggestions
     from mutabot.report.terminal.console import make_console
-    from mutabot.report.terminal.suggested import print_suggestions, suggested_data
+    from mutabot.report.terminal.suggested import print_suggestions
     from mutabot.suggestion import suggest as find_checks
 
     path = find_journal(context.obj)
@@ -127,7 +125,7 @@ def suggest(
     with progress_shown() as progress:
         found = find_checks(request, results, chosen, progress, seeds=seeds)
     keep_suggestions(path, results.meta, found)
-    print_json(suggested_data(found)) if json else print_suggestions(make_console(), found)
+    print_json(found) if json else print_suggestions(make_console(), found)
 
 
 def _chosen(results: Results, only: list[str] | None, skip: list[str] | None) -> list[MutantResult]:

@@ -51,7 +51,6 @@ def thresholds(
     """Show from which magnitude on the tests notice graded faults, the loosest first."""
     from mutabot.analysis.thresholds.thresholds import thresholds_of
     from mutabot.report.terminal.console import make_console
-    from mutabot.report.thresholds.data import thresholds_data
     from mutabot.report.thresholds.picture import check_picture
     from mutabot.report.thresholds.text import print_thresholds
 
@@ -72,7 +71,7 @@ def thresholds(
     if suggest_demands:
         _suggest(found, context.obj)
     elif json:
-        print_json(thresholds_data(found))
+        print_json(found)
     else:
         print_thresholds(make_console(), found, steps=steps)
     if picture is not None:
@@ -96,18 +95,17 @@ def _compare(results: Results, journal: Path, old: Path, *, json: bool) -> None:
     from mutabot.analysis.stored import journal_at
     from mutabot.analysis.thresholds.thresholds import compare
     from mutabot.report.terminal.console import make_console
-    from mutabot.report.thresholds.data import compared_data
     from mutabot.report.thresholds.text import print_compared
 
     other = journal_at(old)
     if other.exists() and other.samefile(journal):
         raise UsageError(f"{old} is the campaign itself; keep a copy of its journal to compare with it later")
     comparison = compare(_read(other), results)
-    print_json(compared_data(comparison)) if json else print_compared(make_console(), comparison)
+    print_json(comparison) if json else print_compared(make_console(), comparison)
 
 
 def _suggest(found: Thresholds, project: Path) -> None:
-    from mutabot.report.thresholds.data import suggested_toml
+    from mutabot.report.thresholds.text import suggested_toml
 
     table = "demand" if (project / _OWN).is_file() else "tool.mutabot.demand"
     echo(suggested_toml(found.ladders, table=table))

@@ -359,8 +359,8 @@ class Repeats:
     survivors: Repeated = Repeated()
 
 
-#: the types of facts that are read as they are
-FACTS: Mapping[str, Any] = {
+#: the types of facts that are told as they are
+PLAIN: Mapping[str, Any] = {
     "mutabot": str,
     "python": str,
     "versions": Mapping[str, str],
@@ -375,8 +375,12 @@ FACTS: Mapping[str, Any] = {
     "started": float,
     "seconds": float,
     "shards": int,
-    ALTERED: tuple[str, ...],
     REMARKS: tuple[str, ...],
+}
+#: the types of all facts that are read as they are
+FACTS: Mapping[str, Any] = {
+    **PLAIN,
+    ALTERED: tuple[str, ...],
     OPERATORS: Mapping[str, str],
     DRAWS: tuple[str, ...],
     DRAWING: Drawing,

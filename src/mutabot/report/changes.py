@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any
 
 from rich.console import Console, RenderableType
 from rich.table import Table
@@ -14,7 +13,6 @@ from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group
 from mutabot.analysis.stored import Changes, Ends
 from mutabot.frozen import frozen
-from mutabot.report.as_json import FORMAT, facts, mutant_data
 from mutabot.report.terminal.campaign import WIDE
 from mutabot.report.terminal.console import (
     add_row,
@@ -27,7 +25,7 @@ from mutabot.report.terminal.console import (
 )
 from mutabot.report.texts import escaped, table
 
-from .texts import rounds_text, status_of
+from .texts import rounds_text
 
 
 @frozen
@@ -50,15 +48,14 @@ def sections(changes: Changes) -> Iterator[Section]:
         ("Changed survivors", changes.changed),
         ("Survivors of which nothing is known now", changes.unknown),
         ("Fixed survivors", changes.fixed),
+        ("Mutants that are gone", changes.gone),
     )
     for name, found in pairs:
         if found:
             yield Section(name, tuple((pair.either, _told(pair)) for pair in found))
-    if changes.gone:
-        yield Section(
-            "Mutants that are gone", tuple((one, f"before: {rounds_text(one)}") for one in changes.gone)
-        )
-    added = tuple((one, rounds_text(one)) for one in changes.added if not one.is_survivor)
+    added = tuple(
+        (one.either, rounds_text(one.either)) for one in changes.added if not one.either.is_survivor
+    )
     if added:
         yield Section("New mutants that do not survive", added)
 
@@ -94,50 +91,6 @@ def _told(pair: Ends) -> str:
 
 def _mean(group: Group | None) -> float | None:
     return group.scores.mean if group is not None else None
-
-
-def changes_data(changes: Changes) -> dict[str, Any]:
-    """Everything about a comparison with an older campaign."""
-    return {
-        "format": FORMAT,
-        **facts(changes, "old_state new_state notes"),
-        "same_survivors": changes.same,
-        "new_survivors": _pairs(changes.appeared),
-        "fixed_survivors": _pairs(changes.fixed),
-        "changed_survivors": _pairs(changes.changed),
-        "unknown_survivors": _pairs(changes.unknown),
-        "gone_mutants": _pairs(Ends(one, None) for one in changes.gone),
-        "new_mutants": _pairs(Ends(None, one) for one in changes.added),
-        "groups": [
-            {"family": family, "role": role, "old": _score(old), "new": _score(new)}
-            for (family, role), (old, new) in changes.scores.items()
-        ],
-    }
-
-
-def _pairs(pairs: Iterable[Ends]) -> list[dict[str, Any]]:
-    return [
-        {**mutant_data(pair.either.mutant), "old": _result(pair.old), "new": _result(pair.new)}
-        for pair in pairs
-    ]
-
-
-def _result(result: MutantResult | None) -> dict[str, Any] | None:
-    if result is None:
-        return None
-    status = status_of(result)
-    return {
-        "status": status.value if status is not None else None,
-        "rounds": [one.verdict.value if one is not None else None for one in result.rounds],
-        **facts(result.kill_rate, "killed valid"),
-        **facts(result, "indistinguishable why"),
-    }
-
-
-def _score(group: Group | None) -> dict[str, Any] | None:
-    if group is None:
-        return None
-    return {"mutants": group.mutants, "score": group.scores.mean, "check_score": group.scores.mean_check}
 
 
 #: mutants of a section that are shown

@@ -17,7 +17,7 @@ from mutabot.analysis.divergence import first_line
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.stored import StoredCampaign
 from mutabot.journal.records import Reaching
-from mutabot.model import Outcome, Verdict
+from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
 
 #: XML and strict JSON cannot hold these: controls, halves of surrogate pairs, and what is no character at all
 _UNFIT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
@@ -108,41 +108,37 @@ _META = (
 def portable(campaign: StoredCampaign) -> StoredCampaign:
     """The same campaign, fit for any report."""
     clean = Cleaner(campaign.meta.get("root"))
+    texts = "state mutants graded controls flaky attempt verification left_out"
+    found: dict[str, Any] = {name: mapped(getattr(campaign, name), clean) for name in texts.split()}
     return replace(
         campaign,
+        **found,
         meta=mapped({key: campaign.meta[key] for key in _META if key in campaign.meta}, clean),
-        state=clean(campaign.state),
-        mutants=tuple(_mutant(one, clean) for one in campaign.mutants),
-        graded=tuple(_mutant(one, clean) for one in campaign.graded),
-        left_out=mapped(campaign.left_out, legible),
-        controls=mapped(campaign.controls, clean),
-        flaky=mapped(campaign.flaky, clean),
-        attempt=mapped(campaign.attempt, clean),
-        verification=mapped(campaign.verification, clean),
         baseline=tuple(
             replace(one, test=replace(one.test, test=clean(one.test.test))) for one in campaign.baseline
         ),
         # a mark of the byte order is no part of the first line
-        sources={
-            legible(file): legible(text.removeprefix("\ufeff")) for file, text in campaign.sources.items()
-        },
-        operators=mapped(campaign.operators, legible),
-        reaching=Reaching(
-            mapped(campaign.reaching.tests, clean),
-            {legible(site): tests for site, tests in campaign.reaching.sites.items()},
+        sources=mapped(
+            {file: text.removeprefix("\ufeff") for file, text in campaign.sources.items()}, legible
         ),
+        operators=mapped(campaign.operators, legible),
+        reaching=Reaching(mapped(campaign.reaching.tests, clean), mapped(campaign.reaching.sites, legible)),
     )
 
 
+#: what says what stands in the program, which stays as it is: it is the user's own text
+_OWN = (Mutant, LeftOut)
+
+
 def mapped(value: T, change: Callable[[str], str]) -> T:
-    """The same data with every text in it changed; keys of tables too."""
+    """The same data with every text in it changed; keys of tables too. Of ids, only signs are."""
     made: Any = _mapped(value, change)
     result: T = made
     return result
 
 
 def _mapped(value: Any, change: Callable[[str], str]) -> Any:
-    if isinstance(value, Enum):
+    if isinstance(value, Enum | Quantity):
         return value
     if isinstance(value, str):
         return change(value)
@@ -151,23 +147,12 @@ def _mapped(value: Any, change: Callable[[str], str]) -> Any:
     if isinstance(value, tuple | list):
         return type(value)(_mapped(item, change) for item in value)
     if is_dataclass(value) and not isinstance(value, type):
-        return replace(
-            value, **{one.name: _mapped(getattr(value, one.name), change) for one in fields(value)}
-        )
+        change = legible if isinstance(value, _OWN) else change
+        made = {one.name: _mapped(getattr(value, one.name), change) for one in fields(value)}
+        if isinstance(value, Outcome):
+            made["mutant"] = legible(value.mutant)
+        return replace(value, **made)
     return value
-
-
-def _mutant(result: MutantResult, clean: Cleaner) -> MutantResult:
-    """Ids and what stands in the program stay as they are: they are the user's own text."""
-    return replace(
-        result,
-        mutant=mapped(result.mutant, legible),
-        rounds=tuple(
-            replace(mapped(one, clean), mutant=legible(one.mutant)) if one is not None else None
-            for one in result.rounds
-        ),
-        why=clean(result.why),
-    )
 
 
 #: verdicts outside the score, those first that most need a look; of several rounds the first names the state

@@ -15,11 +15,10 @@ from analysis.thresholds.journals import LETTERS, SIZES, Rungs
 from mutabot.analysis.thresholds.ladders import Ladder, ladders_of
 from mutabot.analysis.thresholds.thresholds import thresholds_of
 from mutabot.analysis.thresholds.words import line_of
-from mutabot.report.as_json import dumps
+from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds.data import suggested_toml, thresholds_data
 from mutabot.report.thresholds.picture import picture_of, svg
-from mutabot.report.thresholds.text import print_thresholds
+from mutabot.report.thresholds.text import print_thresholds, suggested_toml
 
 ROUND = st.text("".join(LETTERS) + ".CCCSSS", min_size=len(SIZES), max_size=len(SIZES))
 
@@ -37,7 +36,7 @@ def test_whatever_was_seen_can_be_told(
     for one in found.ladders:
         assert_sound(one)
     print_thresholds(make_console(io.StringIO(), width=80), found, steps=True)
-    dumps(thresholds_data(found))
+    dumps(data_of(found))
     suggested_toml(found.ladders, table="demand")
     svg(picture_of(found), by="a test")
 

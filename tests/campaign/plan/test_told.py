@@ -10,7 +10,7 @@ from mutabot.analysis.stored import open as open_campaign
 from mutabot.campaign.faults.providers import provider
 from mutabot.campaign.run import run_campaign
 from mutabot.families import ROBOT
-from mutabot.report.as_json import results_data
+from mutabot.report.document import document
 from tests.campaign.project import Quiet, request_for, write_project
 
 pytestmark = pytest.mark.needs("source")
@@ -65,4 +65,4 @@ def test_the_tests_that_reach_a_site_are_known_for_calls_and_for_program_text(
 
 
 def test_results_as_json_do_not_repeat_it(campaign: StoredCampaign) -> None:
-    assert not {"operators", "reaching"} & set(results_data(campaign)["meta"])
+    assert not {"operators", "reaching"} & set(document(campaign)["meta"])

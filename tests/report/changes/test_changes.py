@@ -13,8 +13,8 @@ import pytest
 from analysis import samples
 from mutabot.analysis.stored import Changes, changes
 from mutabot.model import By, Outcome, Verdict
-from mutabot.report.as_json import dumps
-from mutabot.report.changes import change_lines, changes_data, print_changes
+from mutabot.report.changes import change_lines, print_changes
+from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.texts import portable
 from report.formats.test_markdown import cells
@@ -59,7 +59,7 @@ def test_text_tells_every_section_and_what_happened(found: Changes) -> None:
 
 
 def test_json_has_the_same_mutants(found: Changes) -> None:
-    data = json.loads(dumps(changes_data(found)), parse_constant=pytest.fail)
+    data = json.loads(dumps(data_of(found)), parse_constant=pytest.fail)
     assert [one["id"] for one in data["new_survivors"]] == [samples.SKIP.id, samples.NOISE.id]
     assert [one["id"] for one in data["fixed_survivors"]] == [samples.REVERSE.id]
     assert [one["id"] for one in data["changed_survivors"]] == [samples.NEGATE.id]
@@ -76,7 +76,7 @@ def test_json_has_the_same_mutants(found: Changes) -> None:
 def test_every_key_of_the_json_is_documented(found: Changes) -> None:
     text = PAGE.read_text(encoding="utf-8").partition("With `--json`:")[2].partition("\n## ")[0]
     told = set(re.findall(r"`(\w+)`", text))
-    data = changes_data(found)
+    data = data_of(found)
     result = data["new_survivors"][0]["new"]
     assert {*data, *result, *data["groups"][0], *data["groups"][0]["new"]} - {"format"} <= told
 
@@ -93,7 +93,7 @@ def test_every_text_is_shown_as_it_is(tmp_path: Path, text: str) -> None:
     new = with_text(stored(tmp_path / "new"), text)
     old = with_text(stored(tmp_path / "old", outcomes=KILLED), text)
     found = changes(portable(old), portable(new))
-    json.loads(dumps(changes_data(found)), parse_constant=pytest.fail)
+    json.loads(dumps(data_of(found)), parse_constant=pytest.fail)
     rows = [row for row in cells(made("markdown", new, changes=found)) if len(row) == 5 and row[0] == "2"]
     assert shown([rows[0][3]]) == shown([portable(new).mutants[1].mutant.description])
 

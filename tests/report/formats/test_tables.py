@@ -31,9 +31,9 @@ def test_every_cell_comes_back(tmp_path: Path, text: str) -> None:
 def test_there_is_a_row_per_outcome_under_the_names_of_the_columns(tmp_path: Path) -> None:
     lines = read_csv(made("csv", stored(tmp_path)))
     assert len(lines) == len(samples.OUTCOMES)
-    assert list(lines[0]) == [column.name for column in COLUMNS]
+    assert list(lines[0]) == [*COLUMNS]
 
 
 def test_a_campaign_without_outcomes_has_the_columns(tmp_path: Path) -> None:
     campaign = stored(tmp_path, outcomes=())
-    assert made("csv", campaign).splitlines() == [",".join(column.name for column in COLUMNS)]
+    assert made("csv", campaign).splitlines() == [",".join(COLUMNS)]

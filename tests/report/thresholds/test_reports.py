@@ -19,11 +19,10 @@ from mutabot.analysis.thresholds.thresholds import SORTS, Thresholds, compare, t
 from mutabot.cli.thresholds import _SORTS
 from mutabot.model import Operation, Role, Vocabulary
 from mutabot.model.outcome import Figure
-from mutabot.report.as_json import dumps
+from mutabot.report.document import data_of, dumps
 from mutabot.report.terminal.console import make_console
-from mutabot.report.thresholds.data import compared_data, suggested_toml, thresholds_data
 from mutabot.report.thresholds.picture import picture_of, svg
-from mutabot.report.thresholds.text import print_compared, print_thresholds
+from mutabot.report.thresholds.text import print_compared, print_thresholds, suggested_toml
 
 FIVE = 5
 NOISY = Vocabulary(
@@ -117,7 +116,7 @@ def test_each_order_has_all_ladders(tmp_path: Path, sort: str) -> None:
 
 
 def test_json_holds_every_ladder_and_round(thresholds: Thresholds) -> None:
-    data = json.loads(dumps(thresholds_data(thresholds)))
+    data = json.loads(dumps(data_of(thresholds)))
     by_name = {(one["name"], one["unit"]): one for one in data["ladders"]}
     first = by_name["arm.move_by dx +", "mm"]
     assert (first["none_up_to"], first["half_from"], first["all_from"]) == (5.0, 20.0, 20.0)
@@ -132,7 +131,7 @@ def test_json_holds_every_ladder_and_round(thresholds: Thresholds) -> None:
 def test_the_document_tells_of_every_key(thresholds: Thresholds, tmp_path: Path) -> None:
     document = (Path(__file__).parents[3] / "docs" / "thresholds.md").read_text(encoding="utf-8")
     results = journals.results(tmp_path / "again", *LADDERS, vocabulary=NOISY)
-    for data in (thresholds_data(thresholds), compared_data(compare(results, results))):
+    for data in (data_of(thresholds), data_of(compare(results, results))):
         missing = [key for key in keys_of(json.loads(dumps(data))) if f"`{key}`" not in document]
         assert missing == []
 

@@ -13,7 +13,7 @@ def make(material: Material) -> str:
     """The report. A value that is not known is an empty cell."""
     file = io.StringIO(newline="")
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(column.name for column in COLUMNS)
+    writer.writerow(COLUMNS)
     writer.writerows(rows(material.campaign))
     return file.getvalue()
 

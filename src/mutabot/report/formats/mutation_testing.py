@@ -13,7 +13,7 @@ from typing import Any
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.stored import killers
 from mutabot.model import Mutant, Span, Verdict
-from mutabot.report.as_json import dumps
+from mutabot.report.document import dumps
 from mutabot.report.format import Format, Material, utf16
 from mutabot.report.texts import reason_of, status_of
 

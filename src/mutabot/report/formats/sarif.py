@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 from mutabot.analysis.results import MutantResult
 from mutabot.model import Mutant, Span
-from mutabot.report.as_json import dumps
+from mutabot.report.document import dumps
 from mutabot.report.format import Format, Material, utf16
 from mutabot.report.texts import is_divergent, status_of, survivor_text
 

@@ -19,7 +19,7 @@ from mutabot.errors import UsageError
 from mutabot.frozen import frozen
 from mutabot.journal.files import REPORT_MARK
 from mutabot.model import By
-from mutabot.report.as_json import drawing_data, facts, finite, group_data, repeats_data, verification_data
+from mutabot.report.document import data_of, finite
 from mutabot.report.format import place_of, utf16
 from mutabot.report.terminal.console import mark_of
 from mutabot.report.terminal.suggested import check_on_page
@@ -43,9 +43,12 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
     rows = Rows(campaign)
     return {
         "name": name,
-        **facts(campaign, "state attempt done planned rounds"),
+        **data_of.facts(
+            campaign,
+            "state attempt done planned rounds groups controls verification repeats drawing "
+            "flaky=flaky.tests confirmed=confirmation.text",
+        ),
         "meta": {key: campaign.meta[key] for key in _META if key in campaign.meta},
-        "groups": [group_data(one) for one in campaign.groups],
         "operators": dict(campaign.operators),
         "files": rows.files,
         "tests": rows.tests,
@@ -60,12 +63,6 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
             [f"{one.place} {one.name}", line_of(one)] for one in campaign.thresholds.ladders[:_LADDERS]
         ],
         "leftOut": _left_out(campaign),
-        "flaky": campaign.flaky.tests,
-        "controls": [facts(one, "test_file control ok detail") for one in campaign.controls],
-        "verification": verification_data(campaign.verification),
-        "repeats": repeats_data(campaign.repeats),
-        "confirmed": campaign.confirmation.text if campaign.confirmation is not None else None,
-        "drawing": drawing_data(campaign.drawing),
     }
 
 
@@ -113,27 +110,21 @@ class Rows:
         self.files = [*self._files]
 
     def _row(self, result: MutantResult) -> dict[str, Any]:
-        mutant, rate, status = result.mutant, result.kill_rate, status_of(result)
-        span = mutant.site.span
+        span, status = result.mutant.site.span, status_of(result)
         place = place_of(span, self._campaign.source(span.file), utf16)
         return {
-            "number": mutant.number,
-            "id": mutant.id,
+            **data_of.facts(result, "number=mutant.number id=mutant.id"),
             "file": self._files.setdefault(span.file, len(self._files)),
-            "line": place.line,
-            "column": place.column,
-            "endLine": place.end_line,
-            "endColumn": place.end_column,
-            "function": span.function,
-            **facts(mutant, "operation quantity"),
-            "unit": result.quantity.unit if result.quantity is not None else None,
-            **facts(mutant, "operator variant family"),
-            "role": mutant.site.role.value,
-            "description": mutant.description,
+            **data_of.facts(place, "line column endLine=end_line endColumn=end_column"),
+            **data_of.facts(
+                result,
+                "function=mutant.site.span.function operation=mutant.operation quantity=mutant.quantity "
+                "unit=quantity.unit operator=mutant.operator variant=mutant.variant family=mutant.family "
+                "role=mutant.site.role description=mutant.description killed=kill_rate.killed "
+                "valid=kill_rate.valid worst indistinguishable",
+            ),
             "ends": "".join(mark_of(one).letter for one in result.rounds),
             "status": status.value if status is not None else "not run",
-            **facts(rate, "killed valid"),
-            **facts(result, "worst indistinguishable"),
             "why": why_alone(result),
             "site": self._site(result),
             "kills": self._kills(result),

@@ -12,14 +12,13 @@ from itertools import pairwise
 from math import isnan
 from typing import Any
 
-from mutabot.analysis.divergence import change_text, worst_of
+from mutabot.analysis.divergence import worst_of
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.stored import StoredEvidence
-from mutabot.border.codec import to_data
 from mutabot.evidence.recording import Kind, Recording, Told, Track
 from mutabot.model import Looked, Outcome
 from mutabot.model.values.quantity import value_text
-from mutabot.report.as_json import facts, interval_data
+from mutabot.report.document import data_of
 from mutabot.report.texts import mapped, rounds_text
 
 #: what one step of the whole numbers is, and by how many steps a line may miss: m; quaternions without unit
@@ -172,18 +171,15 @@ _CHECKS = 40
 
 def mutant_page(result: MutantResult) -> dict[str, Any]:
     """All but what was recorded."""
-    mutant = result.mutant
-    quantity = result.quantity
-    change = next(filter(None, (change_text(mutant, one, quantity) for one in result.outcomes)), None)
     return {
-        "number": mutant.number,
-        "id": mutant.id,
-        "places": [{"place": mutant.site.place, "function": mutant.site.span.function}],
-        "pattern": mutant.pattern_name,
+        **data_of.facts(
+            result,
+            "number=mutant.number id=mutant.id pattern=mutant.pattern_name change "
+            "interval=kill_rate.interval",
+        ),
+        "places": [data_of.facts(result.mutant.site, "place function=span.function")],
         "meaning": _meaning_words(result),
-        "interval": interval_data(result.kill_rate.interval),
         "roundsText": rounds_text(result),
-        "change": change,
         "rounds": [_round(one) for one in result.rounds],
         "looked": _looked(result),
     }
@@ -207,15 +203,16 @@ def _round(outcome: Outcome | None) -> dict[str, Any] | None:
     if outcome is None:
         return None
     known = {
-        **facts(outcome, "test exception message place hits acted"),
+        **data_of.facts(
+            outcome,
+            "test exception message place hits acted tests wall simulated divergence gaps "
+            "compared=compared.text indistinguishable engine repeats stuck beside",
+        ),
         "away": [[why, count] for why, count in outcome.away.items()],
         "example": [_value(one) for one in outcome.example] if outcome.example is not None else None,
-        **facts(outcome, "tests wall simulated divergence gaps"),
-        "compared": outcome.compared.text if outcome.compared is not None else None,
-        **facts(outcome, "indistinguishable engine repeats stuck beside"),
         "unconfirmed": outcome.confirmed is False or None,
         "kills": [[one.test, one.by.value, one.message] for one in outcome.kills[1:]],
-        "diverged": [_told(to_data(one)) for one in outcome.diverged],
+        "diverged": [_told(data_of.facts(one, "*")) for one in outcome.diverged],
     }
     return _told(known)
 

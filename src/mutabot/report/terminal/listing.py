@@ -12,7 +12,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from mutabot.model import LeftOut, Mutant
-from mutabot.report.as_json import mutant_data
+from mutabot.report.document import data_of
 from mutabot.report.terminal.campaign import WIDE, left_out_lines
 from mutabot.report.terminal.console import add_row, heading, make_mutant_table, plain, plural, short_place
 
@@ -64,12 +64,7 @@ def _ladder_text(steps: Sequence[Mutant]) -> str:
 
 def plan_data(mutants: Sequence[Mutant], left_out: Sequence[LeftOut]) -> dict[str, Any]:
     """The plan as JSON-like data."""
-    return {
-        "mutants": [mutant_data(mutant) for mutant in mutants],
-        "left_out": [
-            {"id": item.id, "description": item.description, "reason": item.reason} for item in left_out
-        ],
-    }
+    return {"mutants": data_of(mutants), "left_out": data_of(left_out)}
 
 
 def print_rules(console: Console, rules: Iterable[Mapping[str, str]]) -> None:

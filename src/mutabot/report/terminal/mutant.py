@@ -12,7 +12,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from mutabot.analysis.divergence import change_text, worst_of
+from mutabot.analysis.divergence import worst_of
 from mutabot.analysis.results import MutantResult, Results, unlooked
 from mutabot.analysis.score import Score
 from mutabot.analysis.stored import StoredEvidence
@@ -204,9 +204,8 @@ def _parts(
     lines = excerpt(source, mutant.site.span) if source is not None else []
     if lines:
         yield Text("\n" + "\n".join(plain(line) for line in lines), no_wrap=True, overflow="ellipsis")
-    change = next(filter(None, (change_text(mutant, one, result.quantity) for one in result.outcomes)), None)
-    if change is not None:
-        yield Text(f"\nWhere it first acted, the program {plain(change)}.")
+    if result.change is not None:
+        yield Text(f"\nWhere it first acted, the program {plain(result.change)}.")
     yield heading("Rounds")
     groups: dict[Any, list[int]] = {}
     for number, outcome in enumerate(result.rounds):

@@ -11,44 +11,8 @@ from rich.text import Text
 
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.suggested import Suggestion, Suggestions, Unsolved
-from mutabot.border.codec import to_data
-from mutabot.report.as_json import facts
 
 from .console import heading, plain, plural
-
-
-def suggested_data(found: Suggestions) -> dict[str, Any]:
-    """As docs/json.md tells it; rounds are counted from 1."""
-    return {
-        "rounds": found.rounds,
-        "seeds": found.seeds,
-        "suggestions": [_suggestion_data(one, found) for one in found.suggestions],
-        "diff": found.diff,
-        "unsolved": [
-            {"mutant": _mutant_data(one.mutant, found), "reason": one.reason, "never": one.never}
-            for one in found.unsolved
-        ],
-        "dropped": [facts(one, "test statement reason") for one in found.dropped],
-    }
-
-
-def _suggestion_data(one: Suggestion, found: Suggestions) -> dict[str, Any]:
-    return {
-        **to_data(one),
-        "kills": [
-            {"mutant": _mutant_data(mutant, found), "rounds": [round + 1 for round in rounds]}
-            for mutant, rounds in one.kills.items()
-        ],
-    }
-
-
-def _mutant_data(mutant: str, found: Suggestions) -> dict[str, Any]:
-    return {
-        "id": mutant,
-        "number": found.numbers.get(mutant),
-        "description": found.descriptions.get(mutant, ""),
-    }
-
 
 #: dropped checks that are shown
 _DROPPED = 5
@@ -149,30 +113,32 @@ def suggested_parts(result: MutantResult, found: Suggestions | None) -> Iterator
 
 def _would_catch(result: MutantResult, found: Suggestions | None) -> Iterator[str]:
     mutant = result.mutant
-    suggestions = found.suggestions if found is not None else ()
-    for one in suggestions:
-        if mutant.id in one.kills and found is not None:
-            yield f"at the end of {one.test}:" if one.moment.startswith("end") else f"in {one.test}:"
-            yield from lines_of(one, found)
-            if not one.by_hand:
-                yield "`mutabot suggest` prints it as a diff."
-            return
-    for left in found.unsolved if found is not None else ():
-        if left.mutant == mutant.id:
-            yield f"none was found: {left.reason}"
-            return
-    if result.indistinguishable:
+    one = _check_for(result, found)
+    if one is not None and found is not None:
+        yield f"at the end of {one.test}:" if one.moment.startswith("end") else f"in {one.test}:"
+        yield from lines_of(one, found)
+        if not one.by_hand:
+            yield "`mutabot suggest` prints it as a diff."
+        return
+    reasons = {one.mutant: one.reason for one in found.unsolved} if found is not None else {}
+    if mutant.id in reasons:
+        yield f"none was found: {reasons[mutant.id]}"
+    elif result.indistinguishable:
         yield "nothing differs that was compared: it needs another probe or another test, or is no fault"
     else:
         yield f"`mutabot suggest --only {mutant.number}` looks for one, and proves it"
 
 
+def _check_for(result: MutantResult, found: Suggestions | None) -> Suggestion | None:
+    """The check that was suggested for a mutant."""
+    suggestions = found.suggestions if found is not None else ()
+    return next((one for one in suggestions if result.mutant.id in one.kills), None)
+
+
 def check_on_page(result: MutantResult, found: Suggestions | None) -> dict[str, Any] | None:
-    """The check that was suggested for a mutant, as its page has it; None if there is none."""
-    if found is None:
+    """The same as the mutant's page has it; None if there is none."""
+    one = _check_for(result, found)
+    if one is None or found is None:
         return None
-    for one in found.suggestions:
-        if result.mutant.id in one.kills:
-            statement, *notes = lines_of(one, found)
-            return {"code": statement, "test": one.test, "notes": notes}
-    return None
+    statement, *notes = lines_of(one, found)
+    return {"code": statement, "test": one.test, "notes": notes}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -10,9 +11,11 @@ from rich.console import Console, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from mutabot.analysis.thresholds.demands import suggested
 from mutabot.analysis.thresholds.ladders import Between, Ladder, Step
 from mutabot.analysis.thresholds.thresholds import Change, Compared, Comparison, Floor, Thresholds
 from mutabot.analysis.thresholds.words import amount, line_of, rounds_left_out, violations_in_words
+from mutabot.model.graded import OFFSET
 from mutabot.report.terminal.console import heading, make_table, percent, plain, plural
 
 #: lines of a kind that are shown; --json has all
@@ -244,3 +247,39 @@ def _ladder(one: Compared, *, with_word: bool) -> Iterator[RenderableType]:
     for name, ladder in (("before", one.old), ("now", one.new)):
         line = line_of(ladder) if ladder.counted else ladder.why_unjudged
         yield Text(plain(f"  {name:<7} {line}"))
+
+
+def suggested_toml(ladders: Sequence[Ladder], *, table: str) -> str:
+    """A demand for each quantity and site, of which both directions are met.
+
+    ``table`` is the name of the tables: ``tool.mutabot.demand``, or ``demand`` in a file of mutabot's own.
+    Where none can be suggested, a comment says why.
+    """
+    found: dict[str, list[Ladder]] = {}
+    for one in ladders:
+        found.setdefault(f"{one.mutant.site.id} {one.pair_name} {one.unit}", []).append(one)
+    blocks = ["\n".join(_block(both, table)) for both in found.values()]
+    return "\n\n".join(blocks)
+
+
+def _block(both: Sequence[Ladder], table: str) -> Iterator[str]:
+    for one in both:
+        yield f"# {one.place} {one.name}: {line_of(one)}"
+    sizes = [suggested(one) for one in both]
+    known = [size for size in sizes if size is not None]
+    first = both[0]
+    if len(known) < len(sizes):
+        yield "# no demand: some round neither notices nor refuses it, or the ladder ends too soon"
+        return
+    yield f"[[{table}]]"
+    yield f"site = {_toml_text(first.mutant.site.id)}"
+    if first.mutant.quantity is not None:
+        yield f"quantity = {_toml_text(first.mutant.quantity)}"
+    if first.mutant.operator != OFFSET:
+        yield f"operator = {_toml_text(first.mutant.operator)}"
+    notice = f"{max(known):.12g} {first.unit or ''}"
+    yield f"notice = {_toml_text(notice.strip())}"
+
+
+def _toml_text(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)

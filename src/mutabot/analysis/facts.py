@@ -1,0 +1,83 @@
+"""Facts of objects as plain data, named in a line: ``id file=site.span.file round=round+1``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from functools import cache
+from typing import Any
+
+#: what the facts of a class are, where they are others than its fields: a line, or a function
+Facts = Mapping[type, str | Callable[[Any], dict[str, Any]]]
+
+
+def fact(one: Any, path: str) -> Any:
+    """The attribute at ``site.span.file``; None where something on the way is None."""
+    for name in path.split("."):
+        if one is None:
+            return None
+        one = getattr(one, name)
+    return one
+
+
+class Encoder:
+    """Makes JSON-like data of objects. Fields that are None are left out where a class has no facts here.
+
+    A line of facts has words for attributes: ``name``, ``key=path`` for another name, ``*path`` for all facts
+    of what is there, and ``*`` for the fields. ``path+1`` counts from 1, ``path?`` is null where it is empty,
+    ``path#`` is a list whose items have their number as ``round``.
+    """
+
+    def __init__(self, known: Facts) -> None:
+        self._known = known
+
+    def __call__(self, value: Any) -> Any:
+        """The data of any value."""
+        known = self._known.get(type(value))
+        if known is not None:
+            return self.facts(value, known) if isinstance(known, str) else known(value)
+        if isinstance(value, Enum):
+            return value.value
+        if isinstance(value, Mapping):
+            return {str(key): self(item) for key, item in value.items()}
+        if isinstance(value, tuple | list):
+            return [self(item) for item in value]
+        return self._fields(value) if is_dataclass(value) else value
+
+    def facts(self, one: object, line: str) -> dict[str, Any]:
+        """The facts of an object that a line names, in its order."""
+        found: dict[str, Any] = {}
+        for key, path, kind in _words(line):
+            if kind == "*":
+                found |= self(fact(one, path)) if path else self._fields(one)
+            else:
+                found[key] = self._fact(fact(one, path), kind)
+        return found
+
+    def _fact(self, value: Any, kind: str) -> Any:
+        if kind == "+1":
+            return value + 1
+        if kind == "#":
+            items = enumerate(map(self, value), start=1)
+            return [{"round": number, **(item or {"verdict": None})} for number, item in items]
+        return None if kind == "?" and not value else self(value)
+
+    def _fields(self, value: Any) -> dict[str, Any]:
+        pairs = ((one.name, getattr(value, one.name)) for one in fields(value))
+        return {name: self(item) for name, item in pairs if item is not None}
+
+
+@cache
+def _words(line: str) -> tuple[tuple[str, str, str], ...]:
+    """Of each word its key, its path and what is made of the value there."""
+    found = []
+    for word in line.split():
+        if word.startswith("*"):
+            found.append(("", word[1:], "*"))
+            continue
+        name, _, path = word.rpartition("=")
+        kind = next((one for one in ("+1", "?", "#") if path.endswith(one)), "")
+        path = path.removesuffix(kind)
+        found.append((name or path, path, kind))
+    return tuple(found)

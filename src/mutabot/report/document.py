@@ -1,0 +1,246 @@
+"""The results document: all facts of a campaign as JSON; docs/results.schema.json says what is in it.
+
+Reports are functions of ``analysis.results.Results``, which holds the same facts.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from mutabot.analysis.chance import Confirmed, Estimate, false_kills, false_survivors
+from mutabot.analysis.facts import Encoder
+from mutabot.analysis.results import MutantResult, Results
+from mutabot.analysis.score import Group, RoundScores, Score
+from mutabot.analysis.stored import Changes, Ends
+from mutabot.analysis.suggested import Suggestion, Suggestions
+from mutabot.analysis.thresholds import ladders, thresholds
+from mutabot.analysis.thresholds.words import line_of
+from mutabot.extensions import brought
+from mutabot.journal import records
+from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
+from mutabot.model.outcome import Figure
+from mutabot.report.texts import status_of
+
+#: raised when a key changes its meaning or goes away; new keys do not raise it
+FORMAT = 1
+
+
+def dumps(data: Any) -> str:
+    """Valid JSON for any data of ours: numbers that JSON cannot hold become null."""
+    return json.dumps(finite(data), indent=2, ensure_ascii=False, default=str)
+
+
+def finite(value: Any, number: Callable[[float], float] = float) -> Any:
+    """Data that JSON can hold: numbers that are none become null, others what ``number`` makes of them."""
+    if isinstance(value, dict):
+        return {str(key): finite(item, number) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(item, number) for item in value]
+    if isinstance(value, float):
+        return number(value) if math.isfinite(value) else None
+    return value
+
+
+def document(results: Results) -> dict[str, Any]:
+    """The results document. Packages add sections: functions of the same results."""
+    return {
+        "format": FORMAT,
+        **data_of.facts(results, "state finished=is_complete attempt"),
+        "meta": {key: value for key, value in results.meta.items() if key in records.PLAIN},
+        **data_of.facts(
+            results,
+            "rounds=all.rounds# groups mutants graded left_out controls baseline sample=drawing since budget "
+            "flaky=flaky.tests verification repeats confirmation shard set_aside altered",
+        ),
+        "sections": {name: data_of(part.load()(results)) for name, part in brought("sections").items()},
+    }
+
+
+def replayed(mutant: Mutant, rounds: Iterable[records.Replayed]) -> dict[str, Any]:
+    """One mutant that was run again, beside its outcomes in the journal."""
+    return {**data_of.facts(mutant, "id number"), "rounds": data_of(list(rounds))}
+
+
+def _mutant(result: MutantResult) -> dict[str, Any]:
+    data = data_of.facts(
+        result,
+        "*mutant meaning=quantity rounds# kill_rate survivor=is_survivor indistinguishable distance worst "
+        "why earlier outdated",
+    )
+    data["kill_rate"] = data_of.facts(result.kill_rate, "killed valid rate=score interval")
+    return data if result.is_survivor else data | {"distance": None, "worst": None}
+
+
+def _replayed(one: records.Replayed) -> dict[str, Any]:
+    none = {"round": one.round + 1, "verdict": None}
+    return data_of.facts(one, "round=round+1 agrees journal=first replay=second") | (
+        {"journal": none} if one.first is None else {}
+    )
+
+
+def _repeats(repeats: records.Repeats) -> dict[str, Any]:
+    found = {"false_kills": false_kills(repeats), "false_survivors": false_survivors(repeats)}
+    return {**data_of.facts(repeats, "doubted others certain survivors"), **data_of(found)}
+
+
+def _changes(changes: Changes) -> dict[str, Any]:
+    return {
+        "format": FORMAT,
+        **data_of.facts(
+            changes,
+            "old_state new_state notes same_survivors=same new_survivors=appeared fixed_survivors=fixed "
+            "changed_survivors=changed unknown_survivors=unknown gone_mutants=gone new_mutants=added",
+        ),
+        "groups": [
+            {"family": family, "role": role, "old": _mean(old), "new": _mean(new)}
+            for (family, role), (old, new) in changes.scores.items()
+        ],
+    }
+
+
+def _ends(pair: Ends) -> dict[str, Any]:
+    return {**data_of(pair.either.mutant), "old": _end(pair.old), "new": _end(pair.new)}
+
+
+def _end(result: MutantResult | None) -> dict[str, Any] | None:
+    if result is None:
+        return None
+    return {
+        "status": data_of(status_of(result)),
+        "rounds": [one.verdict.value if one is not None else None for one in result.rounds],
+        **data_of.facts(result, "killed=kill_rate.killed valid=kill_rate.valid indistinguishable why"),
+    }
+
+
+def _mean(group: Group | None) -> dict[str, Any] | None:
+    if group is None:
+        return None
+    return data_of.facts(group, "mutants score=scores.mean check_score=scores.mean_check")
+
+
+def _ladder(ladder: ladders.Ladder) -> dict[str, Any]:
+    known = "none_up_to? half_from all_from refused_from median share_shown"
+    data = data_of.facts(
+        ladder,
+        "id place name file=mutant.site.span.file line=mutant.site.span.line "
+        "function=mutant.site.span.function call=mutant.site.text role=mutant.site.role "
+        "quantity=mutant.quantity operator=mutant.operator direction=mutant.direction unit magnitudes=sizes "
+        "why=why_unjudged?",
+    )
+    if ladder.why_unjudged:
+        data |= {"judged": False, "text": None, **dict.fromkeys(known.replace("?", "").split())}
+    else:
+        data |= {"judged": True, "text": line_of(ladder), **data_of.facts(ladder, known)}
+        if ladder.median is not None:
+            data["median"] = data_of.facts(ladder.median, "above=low? at_most=high level")
+    return data | {
+        "rounds_counted": len(ladder.counted),
+        **data_of.facts(ladder, "rounds steps violations better runs"),
+    }
+
+
+def _ladder_round(one: ladders.LadderRound) -> dict[str, Any]:
+    return {
+        **data_of.facts(
+            one,
+            "round=number+1 counts why=why_out? missed=bracket.low noticed=bracket.high "
+            "refused=bracket.refused by=noticed_by above",
+        ),
+        "verdicts": [
+            {"magnitude": size, "verdict": outcome.verdict.value} for size, outcome in one.outcomes.items()
+        ],
+    }
+
+
+def _thresholds(found: thresholds.Thresholds) -> dict[str, Any]:
+    line = "state rounds ladders=all floors runs exhaustive controls false_alarms most_violated"
+    return {"format": FORMAT, **data_of.facts(found, line)}
+
+
+def _floor(one: thresholds.Floor) -> dict[str, Any]:
+    return {
+        **data_of.facts(one, "up=up.id down=down.id unit=up.unit blind half_width"),
+        "bias": [
+            {"round": pair.round + 1, "above": pair.bias[0], "at_most": pair.bias[1]} for pair in one.pairs
+        ],
+        **data_of.facts(one, "noise below_noise=is_below_noise false_alarms"),
+        "text": one.text if one.is_below_noise else None,
+    }
+
+
+def _comparison(found: thresholds.Comparison) -> dict[str, Any]:
+    data = data_of.facts(found, "why_no_words? mean improved=has_improved ladders gone added")
+    if found.mean is not None:
+        data["mean"] = data_of.facts(found.mean, "steps=mean low high level")
+    if found.why_no_words:
+        data["ladders"] = [{**one, "change": None} for one in data["ladders"]]
+    return {"format": FORMAT, **data}
+
+
+def _suggestions(found: Suggestions) -> dict[str, Any]:
+    def mutant(name: str) -> dict[str, Any]:
+        told = found.descriptions.get(name, "")
+        return {"id": name, "number": found.numbers.get(name), "description": told}
+
+    def kills(one: Suggestion) -> list[dict[str, Any]]:
+        return [
+            {"mutant": mutant(name), "rounds": [round + 1 for round in rounds]}
+            for name, rounds in one.kills.items()
+        ]
+
+    return {
+        **data_of.facts(found, "rounds seeds"),
+        "suggestions": [{**data_of(one), "kills": kills(one)} for one in found.suggestions],
+        "diff": found.diff,
+        "unsolved": [{**data_of(one), "mutant": mutant(one.mutant)} for one in found.unsolved],
+        "dropped": data_of(found.dropped),
+    }
+
+
+#: JSON-like data of anything of ours
+data_of = Encoder(
+    {
+        Mutant: "id number operator variant family role=site.role file=site.span.file span=site.span "
+        "function=site.span.function call=site.text operation pattern quantity description magnitude unit "
+        "direction? ladder? moment=moment.text",
+        Span: "line column=column+1 end_line end_column=end_column+1",
+        Quantity: "kind axis unit frame mode",
+        MutantResult: _mutant,
+        Outcome: "round=round+1 verdict by test exception message place hits acted away example tests wall "
+        "simulated indistinguishable distance divergence way gaps compared engine stuck repeats beside "
+        "confirmed figures looked diverged",
+        Figure: "* is_better",
+        Diverged: "* worst",
+        Score: "score check_score killed valid by_check timeouts counts=of_each",
+        RoundScores: "*total score=mean check_score=mean_check interval check_interval sample_interval "
+        "sample_check_interval rounds#",
+        Group: "family role mutants population *scores",
+        LeftOut: "id description reason",
+        records.ControlEnd: "test_file control ok detail",
+        records.BaselineTest: "test=test.test round=round+1 repetition=repetition+1 outcome=test.outcome "
+        "wall=test.wall simulated=test.simulated",
+        records.Drawing: "size=sample selected",
+        records.Verification: "wanted checked agreed disagreements",
+        records.Disagreement: "id=mutant number round=round+1 first second",
+        records.Repeats: _repeats,
+        Estimate: "expected low high level known unknown",
+        Confirmed: "outcomes refused confirmed wrong left most level text",
+        records.ShardOf: "number of mutants",
+        records.Replayed: _replayed,
+        Changes: _changes,
+        Ends: _ends,
+        thresholds.Thresholds: _thresholds,
+        ladders.Ladder: _ladder,
+        ladders.LadderRound: _ladder_round,
+        ladders.Step: "magnitude number noticed valid interval by refused unknown",
+        ladders.Violation: "round=round+1 noticed missed",
+        ladders.Better: "round=round+1 magnitude text",
+        thresholds.Floor: _floor,
+        thresholds.Comparison: _comparison,
+        thresholds.Compared: "id=new.id change steps old new",
+        Suggestions: _suggestions,
+    }
+)
