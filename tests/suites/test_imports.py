@@ -224,7 +224,12 @@ SUITES: dict[str, dict[str, str]] = {
             threading.Thread(target=time.sleep, args=(60,), daemon=True).start()
             LIMIT = WAIT * 4
         """,
-        "tests/test_table.py": "from program import table\n\ndef test_limit():\n    assert table.LIMIT == 4\n",
+        "tests/test_table.py": """
+            from program import table
+
+            def test_limit():
+                assert table.LIMIT == 4
+        """,
     },
     "tests look at warnings, arguments and the environment": {
         "program/table.py": """
