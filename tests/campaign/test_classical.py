@@ -138,12 +138,11 @@ def _more(one: Outcome) -> tuple[Any, ...]:
     return one.acted, one.commands, one.kills, one.example, one.indistinguishable
 
 
-def test_branches_are_what_runs_mutants_that_act_in_a_test(ends: dict[str, Outcome]) -> None:
-    replayed = {mutant for mutant, one in ends.items() if one.engine != "branch" and one.tests}
-    assert replayed
+def test_branches_are_what_runs_mutants_that_act_in_a_test_or_before_any(ends: dict[str, Outcome]) -> None:
+    assert any(":<module>:" in mutant for mutant in ends)
     # on a busy machine, what ran out of time is run once more by itself
-    again = {mutant for mutant in replayed if ends[mutant].verdict is Verdict.TIMEOUT}
-    assert all(":<module>:" in mutant for mutant in replayed - again)
+    others = {mutant: one for mutant, one in ends.items() if one.engine != "branch" and one.tests}
+    assert {one.verdict for one in others.values()} <= {Verdict.TIMEOUT}
 
 
 def test_a_check_kills(ends: dict[str, Outcome]) -> None:

@@ -378,7 +378,7 @@ class Session:
         self.placed.end_test()
         if self.text is not None:
             if self.trunk is not None:
-                self.trunk.tell_undiverged(self.text.hits)
+                self.trunk.tell_undiverged(self.text.hits, self.text.early)
             self.text.end_test()
 
     def take_probes(self) -> Reading:

@@ -138,6 +138,7 @@ class Trunk:
     _test: str = ""
     _number: int = -1
     _pid: int = field(default_factory=os.getpid)
+    _overtaken: bool = False
     _forking: bool = False
     _copied: bool = False
     _bunch: Bunch | None = None
@@ -159,6 +160,7 @@ class Trunk:
 
     def begin_test(self, test: str) -> None:
         """A test is about to begin: fork for the mutants that may be hit in processes below it."""
+        self._overtaken = self._overtaken or self._is_late()
         self._test, self._number = test, self.tests.index(test)
         self._copied = False
         due = set(self.branching.at_start.get(test, ())) - self._gone
@@ -196,18 +198,19 @@ class Trunk:
         found = {place: [self._index(one) for one in self._live_at(place)] for place in self._places}
         return {place: frozenset(indexes) for place, indexes in found.items() if indexes}
 
-    def tell_undiverged(self, hits: Mapping[int, int]) -> None:
+    def tell_undiverged(self, hits: Mapping[int, int], early: Mapping[int, int]) -> None:
         """The test is over: tell which mutants of the program text were no different from the original.
 
         ``hits``: evaluations of each place in this test. If the test has forked copies of this process they
-        are not all: a mutant may have differed in one.
+        are not all: a mutant may have differed in one. The same holds for those before any test, ``early``,
+        if processes were started there.
         """
         if self._copied:
             return
         same = {
-            mutant.id: hits[place]
+            mutant.id: hits.get(place, 0) + early.get(place, 0)
             for place in self._places
-            if hits.get(place)
+            if (place in early and not self._overtaken) or (hits.get(place) and place not in early)
             for mutant in self._live_at(place)
             if self._index(mutant) >= 0
         }
@@ -246,11 +249,14 @@ class Trunk:
     def _may_fork(self, mutants: Sequence[str]) -> bool:
         """Whether forking is safe; if not, it is told that these mutants are not branched here."""
         own = (child.pid for child in self._children.values())
-        is_late = self._number < 0 and self.has_started()
-        reason = _STARTED if is_late else self.apart.reason() or why_not(own, self._known)
+        reason = _STARTED if self._is_late() else self.apart.reason() or why_not(own, self._known)
         if reason is not None:
             self.pipe.send(Unbranched(self._test, tuple(mutants), reason))
         return reason is None
+
+    def _is_late(self) -> bool:
+        """Whether, before any test, processes below have gone on already as the original."""
+        return self._number < 0 and self.has_started()
 
     def part_at_place(self, place: int, alike: Sequence[frozenset[int]]) -> None:
         """In a branch of several mutants: those that have another value now go on in branches of their own.

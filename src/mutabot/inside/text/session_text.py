@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -118,9 +117,13 @@ class SessionText:
 
     @property
     def hits(self) -> Mapping[int, int]:
-        """Evaluations of each place that was on, in the running test and before any."""
-        early = {place: hits for place, (hits, _) in self._early.items()}
-        return Counter(early) + Counter(self.hook.alternatives.hits)
+        """Evaluations in the running test of each place that was on."""
+        return self.hook.alternatives.hits
+
+    @property
+    def early(self) -> Mapping[int, int]:
+        """The same before any test."""
+        return {place: hits for place, (hits, _) in self._early.items()}
 
     def raised(self, error: BaseException, call: Call, refusals: Iterable[str]) -> None:
         """An operation raised: if the robot refuses what it was told, that may be the mutant's doing."""
