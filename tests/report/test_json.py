@@ -174,7 +174,12 @@ def full(path: Path) -> Any:
         for one in samples.OUTCOMES
     )
     shard = {"number": 2, "of": 8, "mutants": [1]}
-    return data(path, outcomes=outcomes, shard=shard, **SECOND_LOOK, **DRAWING, **NARROWED)
+    told = {
+        "operators": {"reverse": "sends a quantity with the other sign"},
+        "draws": ["reverse"],
+        "reaching": {"tests": [samples.TEST], "sites": {samples.REVERSE.site.id: [0]}},
+    }
+    return data(path, outcomes=outcomes, shard=shard, **told, **SECOND_LOOK, **DRAWING, **NARROWED)
 
 
 def test_a_document_keeps_the_published_schema(tmp_path: Path) -> None:

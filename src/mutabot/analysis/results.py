@@ -16,8 +16,11 @@ from mutabot.journal.records import (
     ALTERED,
     BUDGET,
     DRAWING,
+    DRAWS,
     FLAKY,
     INCOMPLETE,
+    OPERATORS,
+    REACHING,
     REPEATS,
     SHARD,
     SINCE,
@@ -27,12 +30,13 @@ from mutabot.journal.records import (
     ControlEnd,
     Drawing,
     Flaky,
+    Reaching,
     Repeats,
     ShardOf,
     Since,
     Verification,
 )
-from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Role, Verdict
+from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
 
 from .chance import Confirmed
@@ -140,6 +144,11 @@ class Results:
         shard: which part of its plan the campaign has run; None for all of it.
         set_aside: what the journal holds that Mutabot has not written or that cannot be, in words. Nothing
             of it is believed: its outcomes count as not run.
+        sources: text of the mutated files at the time of the campaign, by path relative to the project.
+        operators: what each operator does, in a sentence, by its name; those of journals that do not say it
+            are missing.
+        reaching: which tests reach which sites.
+        draws: names of operators that draw a number for each round.
     """
 
     meta: Mapping[str, Any]
@@ -162,6 +171,10 @@ class Results:
     budget: Budgeted | None = None
     shard: ShardOf | None = None
     set_aside: tuple[str, ...] = ()
+    sources: Mapping[str, str] = field(default_factory=dict)
+    operators: Mapping[str, str] = field(default_factory=dict)
+    reaching: Reaching = field(default_factory=Reaching)
+    draws: tuple[str, ...] = ()
 
     @property
     def altered(self) -> tuple[str, ...]:
@@ -184,6 +197,21 @@ class Results:
     def outcomes(self) -> tuple[Outcome, ...]:
         """Every outcome there is: by mutant, then by round."""
         return tuple(outcome for result in self.everything for outcome in result.outcomes)
+
+    @property
+    def tests(self) -> list[str]:
+        """Node ids of all tests that are known: what mutants name is among them."""
+        named = (test for one in self.outcomes for test, _ in killers(one))
+        baseline = (one.test.test for one in self.baseline)
+        return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
+
+    def source(self, file: str) -> str | None:
+        """The text of a mutated file at the time of the campaign; None if it was not written down."""
+        return self.sources.get(file)
+
+    def reached_by(self, mutant: Mutant) -> tuple[str, ...]:
+        """Node ids of the tests that reach a mutant in any round, as far as the journal says."""
+        return self.reaching.at(mutant.site.id)
 
     @property
     def ladders(self) -> int:
@@ -229,6 +257,14 @@ class Results:
     def done(self) -> int:
         """Number of (mutant, round) pairs that have an outcome."""
         return sum(len(result.outcomes) for result in self.mutants)
+
+
+def killers(outcome: Outcome) -> list[tuple[str, By | None]]:
+    """The tests that noticed a mutant, as far as they are known, and by what."""
+    if not outcome.verdict.is_killed:
+        return []
+    first = [(outcome.test, outcome.by)] if outcome.test is not None else []
+    return [*first, *((one.test, one.by) for one in outcome.kills)]
 
 
 def find_mutant(results: Results, name: str) -> MutantResult:
@@ -295,6 +331,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         quantity = quantity_of(mutant, vocabulary)
         return MutantResult(mutant, row, quantity, why, mutant.id in old_ids, mutant.id in old.outdated)
 
+    texts = {file: journal.source(file) for file in sorted({one.site.span.file for one in mutants})}
     found = Results(
         meta=meta,
         state="",
@@ -315,6 +352,10 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         since=from_data(Since, meta[SINCE]) if SINCE in meta else None,
         budget=budget,
         shard=shard,
+        sources={file: text for file, text in texts.items() if text is not None},
+        operators=meta.get(OPERATORS, {}),
+        reaching=from_data(Reaching, meta[REACHING]) if REACHING in meta else Reaching(),
+        draws=tuple(meta.get(DRAWS, ())),
     )
     # what rows hold is known now that they are read
     set_aside = tuple(journal.set_aside)

@@ -53,7 +53,8 @@ def document(results: Results) -> dict[str, Any]:
         **data_of.facts(
             results,
             "rounds=all.rounds# groups mutants graded left_out controls baseline sample=drawing since budget "
-            "flaky=flaky.tests verification repeats confirmation shard set_aside altered",
+            "flaky=flaky.tests verification repeats confirmation shard set_aside altered "
+            "operators draws reaching sources",
         ),
         "sections": {name: data_of(part.load()(results)) for name, part in brought("sections").items()},
     }
@@ -70,6 +71,7 @@ def _mutant(result: MutantResult) -> dict[str, Any]:
         "*mutant meaning=quantity rounds# kill_rate survivor=is_survivor indistinguishable distance worst "
         "why earlier outdated",
     )
+    data["status"] = data_of(status_of(result))
     data["kill_rate"] = data_of.facts(result.kill_rate, "killed valid rate=score interval")
     return data if result.is_survivor else data | {"distance": None, "worst": None}
 
@@ -204,14 +206,14 @@ def _suggestions(found: Suggestions) -> dict[str, Any]:
 data_of = Encoder(
     {
         Mutant: "id number operator variant family role=site.role file=site.span.file span=site.span "
-        "function=site.span.function call=site.text operation pattern quantity description magnitude unit "
-        "direction? ladder? moment=moment.text",
+        "function=site.span.function site=site.id call=site.text operation pattern quantity description "
+        "magnitude unit direction? ladder? moment=moment.text",
         Span: "line column=column+1 end_line end_column=end_column+1",
         Quantity: "kind axis unit frame mode",
         MutantResult: _mutant,
         Outcome: "round=round+1 verdict by test exception message place hits acted away example tests wall "
-        "simulated indistinguishable distance divergence way gaps compared engine stuck repeats beside "
-        "confirmed figures looked diverged",
+        "cpu simulated indistinguishable distance divergence way gaps compared commands engine stuck repeats "
+        "beside confirmed kills complete figures looked diverged",
         Figure: "* is_better",
         Diverged: "* worst",
         Score: "score check_score killed valid by_check timeouts counts=of_each",
