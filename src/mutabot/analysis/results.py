@@ -206,6 +206,12 @@ class Results:
         found = [result for result in self.mutants if result.is_survivor]
         return sorted(found, key=lambda one: (-one.worst, one.indistinguishable, one.mutant.number))
 
+    @property
+    def worst_first(self) -> list[MutantResult]:
+        """The survivors in that order, then all others by number."""
+        survivors = self.survivors
+        return [*survivors, *(result for result in self.mutants if not result.is_survivor)]
+
     def with_verdict(self, *verdicts: Verdict) -> list[tuple[MutantResult, Outcome]]:
         """Each mutant with its first outcome of one of these verdicts, by number."""
         found = []
@@ -229,6 +235,11 @@ class Results:
     def is_incomplete(self) -> bool:
         """Whether all was run, but not every outcome is in the journal."""
         return records.INCOMPLETE in self.state
+
+    @property
+    def known(self) -> str:
+        """``12 of 20 outcomes are known``."""
+        return f"{self.done} of {self.planned} outcomes are known"
 
     @property
     def done(self) -> int:

@@ -89,10 +89,10 @@ def changes(old: Results, new: Results) -> Changes:
     """Compare two campaigns."""
     before = {one.mutant.id: one for one in old.mutants}
     after = {one.mutant.id: one for one in new.mutants}
-    pairs = [Ends(before.get(one.mutant.id), one) for one in _worst_first(new)]
+    pairs = [Ends(before.get(one.mutant.id), one) for one in new.worst_first]
     both = [pair for pair in pairs if _is_survivor(pair.old) and _is_survivor(pair.new)]
     changed = [pair for pair in both if _told(pair.old) != _told(pair.new)]
-    lost = [Ends(one, after.get(one.mutant.id)) for one in _worst_first(old) if one.is_survivor]
+    lost = [Ends(one, after.get(one.mutant.id)) for one in old.worst_first if one.is_survivor]
     lost = [pair for pair in lost if pair.new is not None and not pair.new.is_survivor]
     return Changes(
         appeared=tuple(pair for pair in pairs if _is_survivor(pair.new) and not _is_survivor(pair.old)),
@@ -123,12 +123,6 @@ def _notes(name: str, results: Results, other: Results) -> Iterator[str]:
         yield f"the {name} campaign was not to run family {family}; mutants that are not compared: {count}"
     if results.drawing is not None:
         yield f"the {name} campaign is of a sample: mutants that it does not have may not have been drawn"
-
-
-def _worst_first(results: Results) -> list[MutantResult]:
-    survivors = results.survivors
-    ids = {one.mutant.id for one in survivors}
-    return [*survivors, *(one for one in results.mutants if one.mutant.id not in ids)]
 
 
 def _is_survivor(result: MutantResult | None) -> bool:

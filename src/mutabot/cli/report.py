@@ -103,8 +103,7 @@ def report(
     if html is not None:
         _write_pages(html, campaign, journal, stored.meta.get("root"))
     if not campaign.is_complete:
-        known = f"{campaign.done} of {campaign.planned} outcomes are known"
-        tell([f"mutabot: the campaign is not complete ({campaign.state}): {known}"])
+        tell([f"mutabot: the campaign is not complete ({campaign.state}): {campaign.known}"])
 
 
 def _names() -> list[str]:

@@ -35,8 +35,7 @@ def _lines(material: Material) -> Iterator[str]:
     yield f"## Mutation testing:{mutants}{graded} × {campaign.rounds} rounds"
     yield ""
     if not campaign.is_complete or campaign.done < campaign.planned:
-        known = f"{campaign.done} of {campaign.planned} outcomes are known"
-        yield f"> **This campaign is not complete** ({escaped(campaign.state)}): {known}."
+        yield f"> **This campaign is not complete** ({escaped(campaign.state)}): {campaign.known}."
         yield ""
     if not campaign.groups and campaign.ladders:
         yield "Graded mutants alone, which have no score."

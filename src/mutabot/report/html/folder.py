@@ -261,7 +261,7 @@ def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]]
         }
         used += _write(folder / "mutants" / f"{number}.js", f"mutant {number}", page)
     recorded = Recorded(contents.evidence, contents.clean)
-    found, without = _recordings(recorded, _in_order(campaign), limit - used)
+    found, without = _recordings(recorded, campaign.worst_first, limit - used)
     for number in found.keys() | without.keys():
         data = {"recordings": found.get(number, []), "without": without.get(number, 0)}
         with (folder / "mutants" / f"{number}.js").open("ab") as file:
@@ -269,13 +269,6 @@ def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]]
     for number, original in enumerate(recorded.originals.values()):
         _write(folder / "originals" / f"{number}.js", f"original {number}", original)
     return sum(without.values())
-
-
-def _in_order(campaign: Results) -> list[MutantResult]:
-    """The mutants in the order in which their recordings are wanted."""
-    survivors = campaign.survivors
-    numbers = {one.mutant.number for one in survivors}
-    return [*survivors, *(one for one in campaign.mutants if one.mutant.number not in numbers)]
 
 
 def _recordings(
