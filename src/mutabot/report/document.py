@@ -18,7 +18,8 @@ from mutabot.analysis.stored import Changes, Ends
 from mutabot.analysis.suggested import Suggestion, Suggestions
 from mutabot.analysis.thresholds import ladders, thresholds
 from mutabot.analysis.thresholds.words import line_of
-from mutabot.extensions import brought
+from mutabot.errors import ExtensionError
+from mutabot.extensions import Part, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Figure
@@ -56,8 +57,16 @@ def document(results: Results) -> dict[str, Any]:
             "flaky=flaky.tests verification repeats confirmation shard set_aside altered "
             "operators draws reaching sources",
         ),
-        "sections": {name: data_of(part.load()(results)) for name, part in brought("sections").items()},
+        "sections": {name: _section(part, results) for name, part in brought("sections").items()},
     }
+
+
+def _section(part: Part, results: Results) -> Any:
+    make = part.load()
+    try:
+        return data_of(make(results))
+    except Exception as error:  # a package of others may fail in any way
+        raise ExtensionError(f"{part.words} makes no section of these results: {error!r}") from error
 
 
 def replayed(mutant: Mutant, rounds: Iterable[records.Replayed]) -> dict[str, Any]:
