@@ -84,6 +84,17 @@ def _imported(node: ast.AST) -> list[str]:
     return [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
 
 
+def test_reports_read_the_results_and_no_journal() -> None:
+    allowed = {"mutabot.journal", "mutabot.journal.records", "mutabot.journal.files"}
+    wrong = [
+        f"{file} imports {module}"
+        for file in (SOURCE / "report").rglob("*.py")
+        for module in imports(file)
+        if module.startswith("mutabot.journal") and module not in allowed
+    ]
+    assert wrong == []
+
+
 def test_no_module_imports_itself_in_a_circle() -> None:
     graph = {
         name_of(file): {module for module in imports(file) if module.startswith("mutabot.")} for file in FILES

@@ -15,9 +15,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.stored import StoredCampaign, StoredEvidence
-from mutabot.analysis.stored import open as open_campaign
+from mutabot.analysis.results import MutantResult, Results, results_at
+from mutabot.analysis.stored import StoredEvidence
 from mutabot.errors import JournalError
 from mutabot.report.html.folder import campaign_data, script_of
 from mutabot.report.html.mutant import Recorded, mutant_page
@@ -54,7 +53,7 @@ class _Snapshot:
     """
 
     version: int
-    campaign: StoredCampaign | None
+    campaign: Results | None
     clean: Callable[[str], str]
 
 
@@ -112,9 +111,9 @@ class Pages:
         self._next = now + took + self.every
         return self._snapshot
 
-    def _read(self) -> tuple[StoredCampaign | None, Callable[[str], str]]:
+    def _read(self) -> tuple[Results | None, Callable[[str], str]]:
         try:
-            stored = open_campaign(self._journal)
+            stored = results_at(self._journal)
         except JournalError:  # there is none yet
             return None, Cleaner(None)
         if stored.attempt is not None or not stored.everything:

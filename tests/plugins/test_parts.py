@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
@@ -35,6 +36,7 @@ EXTENSION = """
         tables={"toy": "toy.parts:ToyTable"},
         commands={"play": Described("toy.parts:play", "Play with the campaign.")},
         formats={"toys": "toy.parts:FORMAT"},
+        sections={"toys": "toy.parts:count"},
     )
     """
 PARTS = '''
@@ -91,6 +93,9 @@ PARTS = '''
         request = request_of(context.obj, executor=executor, **given)
         typer.echo(f"{request.executor} in {request.rounds} rounds")
 
+    def count(results):
+        return {"mutants": len(results.mutants)}
+
     FORMAT = Format("toys", lambda material: f"{len(material.campaign.mutants)} toys")
     '''
 
@@ -140,6 +145,8 @@ def test_the_option_of_an_executor_chooses_it_and_its_table_is_read(site: Path, 
     assert "toys lack []" in done.stderr
     said = mutabot_with(site, project, "report", "--format", "toys")
     assert said.stdout.endswith(" toys\n"), said.stderr
+    found = json.loads(mutabot_with(site, project, "results", "--json").stdout)
+    assert found["sections"] == {"toys": {"mutants": len(found["mutants"])}}
 
 
 def test_a_wrong_value_of_an_executor_is_refused_before_anything_runs(site: Path, project: Path) -> None:

@@ -14,6 +14,7 @@ import pytest
 
 from analysis import samples
 from mutabot.analysis.results import Results, read_results
+from mutabot.errors import ExtensionError
 from mutabot.extensions import Part
 from mutabot.journal.journal import Journal
 from mutabot.model import Diverged, Outcome, Verdict
@@ -174,7 +175,12 @@ def full(path: Path) -> Any:
         for one in samples.OUTCOMES
     )
     shard = {"number": 2, "of": 8, "mutants": [1]}
-    return data(path, outcomes=outcomes, shard=shard, **SECOND_LOOK, **DRAWING, **NARROWED)
+    told = {
+        "operators": {"reverse": "sends a quantity with the other sign"},
+        "draws": ["reverse"],
+        "reaching": {"tests": [samples.TEST], "sites": {samples.REVERSE.site.id: [0]}},
+    }
+    return data(path, outcomes=outcomes, shard=shard, **told, **SECOND_LOOK, **DRAWING, **NARROWED)
 
 
 def test_a_document_keeps_the_published_schema(tmp_path: Path) -> None:
@@ -216,6 +222,13 @@ def test_a_package_adds_a_section(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     found = data(tmp_path)
     assert found["sections"] == {"sizes": {"mutants": len(samples.MUTANTS), "rounds": 2}}
     jsonschema.validate(found, SCHEMA)
+
+
+def test_a_section_that_fails_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = Part("sizes", "report.test_json:SCHEMA", "another")
+    monkeypatch.setattr("mutabot.report.document.brought", lambda kind: {"sizes": own})
+    with pytest.raises(ExtensionError, match=r"'sizes' of package 'another' .* makes no section"):
+        data(tmp_path)
 
 
 def sizes(results: Results) -> dict[str, int]:

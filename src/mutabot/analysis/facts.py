@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache
@@ -12,9 +12,13 @@ from typing import Any
 Facts = Mapping[type, str | Callable[[Any], dict[str, Any]]]
 
 
-def fact(one: Any, path: str) -> Any:
-    """The attribute at ``site.span.file``; None where something on the way is None."""
-    for name in path.split("."):
+#: what needs no look at what it is
+_PLAIN = {str, int, float, bool, type(None)}
+
+
+def fact(one: Any, path: Sequence[str]) -> Any:
+    """The attribute at ``("site", "span", "file")``; None where something on the way is None."""
+    for name in path:
         if one is None:
             return None
         one = getattr(one, name)
@@ -34,6 +38,8 @@ class Encoder:
 
     def __call__(self, value: Any) -> Any:
         """The data of any value."""
+        if type(value) in _PLAIN:
+            return value
         known = self._known.get(type(value))
         if known is not None:
             return self.facts(value, known) if isinstance(known, str) else known(value)
@@ -69,15 +75,15 @@ class Encoder:
 
 
 @cache
-def _words(line: str) -> tuple[tuple[str, str, str], ...]:
+def _words(line: str) -> tuple[tuple[str, tuple[str, ...], str], ...]:
     """Of each word its key, its path and what is made of the value there."""
-    found = []
+    found: list[tuple[str, tuple[str, ...], str]] = []
     for word in line.split():
         if word.startswith("*"):
-            found.append(("", word[1:], "*"))
+            found.append(("", tuple(word[1:].split(".")) if word[1:] else (), "*"))
             continue
         name, _, path = word.rpartition("=")
         kind = next((one for one in ("+1", "?", "#") if path.endswith(one)), "")
         path = path.removesuffix(kind)
-        found.append((name or path, path, kind))
+        found.append((name or path, tuple(path.split(".")), kind))
     return tuple(found)

@@ -3,36 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import field, fields, replace
 from pathlib import Path
 from typing import Any
 
 from mutabot.border.codec import from_data
 from mutabot.errors import SelectionError, unknown_name_text
 from mutabot.frozen import frozen
+from mutabot.journal import records
 from mutabot.journal.lock import is_written
 from mutabot.journal.reader import JournalReader
-from mutabot.journal.records import (
-    ALTERED,
-    BUDGET,
-    DRAWING,
-    FLAKY,
-    INCOMPLETE,
-    REPEATS,
-    SHARD,
-    SINCE,
-    VERIFICATION,
-    BaselineTest,
-    Budgeted,
-    ControlEnd,
-    Drawing,
-    Flaky,
-    Repeats,
-    ShardOf,
-    Since,
-    Verification,
-)
-from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Role, Verdict
+from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
 
 from .chance import Confirmed
@@ -140,6 +121,11 @@ class Results:
         shard: which part of its plan the campaign has run; None for all of it.
         set_aside: what the journal holds that Mutabot has not written or that cannot be, in words. Nothing
             of it is believed: its outcomes count as not run.
+        sources: text of the mutated files at the time of the campaign, by path relative to the project.
+        operators: what each operator does, in a sentence, by its name; those of journals that do not say it
+            are missing.
+        reaching: which tests reach which sites.
+        draws: names of operators that draw a number for each round.
     """
 
     meta: Mapping[str, Any]
@@ -149,24 +135,28 @@ class Results:
     groups: tuple[Group, ...]
     all: RoundScores
     left_out: tuple[LeftOut, ...]
-    controls: tuple[ControlEnd, ...]
-    baseline: tuple[BaselineTest, ...]
-    verification: Verification | None = None
-    repeats: Repeats = field(default_factory=Repeats)
-    flaky: Flaky = field(default_factory=Flaky)
-    drawing: Drawing | None = None
+    controls: tuple[records.ControlEnd, ...]
+    baseline: tuple[records.BaselineTest, ...]
+    verification: records.Verification | None = None
+    repeats: records.Repeats = field(default_factory=records.Repeats)
+    flaky: records.Flaky = field(default_factory=records.Flaky)
+    drawing: records.Drawing | None = None
     drawn: tuple[Group, ...] = ()
     attempt: str | None = None
     graded: tuple[MutantResult, ...] = ()
-    since: Since | None = None
-    budget: Budgeted | None = None
-    shard: ShardOf | None = None
+    since: records.Since | None = None
+    budget: records.Budgeted | None = None
+    shard: records.ShardOf | None = None
     set_aside: tuple[str, ...] = ()
+    sources: Mapping[str, str] = field(default_factory=dict)
+    operators: Mapping[str, str] = field(default_factory=dict)
+    reaching: records.Reaching = field(default_factory=records.Reaching)
+    draws: tuple[str, ...] = ()
 
     @property
     def altered(self) -> tuple[str, ...]:
         """What something else changed in the journal while the campaign ran, and was restored, in words."""
-        return tuple(self.meta.get(ALTERED) or ())
+        return tuple(self.meta.get(records.ALTERED) or ())
 
     @property
     def is_complete(self) -> bool:
@@ -186,6 +176,21 @@ class Results:
         return tuple(outcome for result in self.everything for outcome in result.outcomes)
 
     @property
+    def tests(self) -> list[str]:
+        """Node ids of all tests that are known: what mutants name is among them."""
+        named = (test for one in self.outcomes for test, _ in killers(one))
+        baseline = (one.test.test for one in self.baseline)
+        return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
+
+    def source(self, file: str) -> str | None:
+        """The text of a mutated file at the time of the campaign; None if it was not written down."""
+        return self.sources.get(file)
+
+    def reached_by(self, mutant: Mutant) -> tuple[str, ...]:
+        """Node ids of the tests that reach a mutant in any round, as far as the journal says."""
+        return self.reaching.at(mutant.site.id)
+
+    @property
     def ladders(self) -> int:
         """Number of ladders of graded mutants; ``analysis.thresholds`` says what became of them."""
         return len({one.mutant.ladder for one in self.graded if one.mutant.magnitude})
@@ -200,6 +205,12 @@ class Results:
         """Mutants that some round lets through, the farthest from the original at any moment first."""
         found = [result for result in self.mutants if result.is_survivor]
         return sorted(found, key=lambda one: (-one.worst, one.indistinguishable, one.mutant.number))
+
+    @property
+    def worst_first(self) -> list[MutantResult]:
+        """The survivors in that order, then all others by number."""
+        survivors = self.survivors
+        return [*survivors, *(result for result in self.mutants if not result.is_survivor)]
 
     def with_verdict(self, *verdicts: Verdict) -> list[tuple[MutantResult, Outcome]]:
         """Each mutant with its first outcome of one of these verdicts, by number."""
@@ -223,12 +234,25 @@ class Results:
     @property
     def is_incomplete(self) -> bool:
         """Whether all was run, but not every outcome is in the journal."""
-        return INCOMPLETE in self.state
+        return records.INCOMPLETE in self.state
+
+    @property
+    def known(self) -> str:
+        """``12 of 20 outcomes are known``."""
+        return f"{self.done} of {self.planned} outcomes are known"
 
     @property
     def done(self) -> int:
         """Number of (mutant, round) pairs that have an outcome."""
         return sum(len(result.outcomes) for result in self.mutants)
+
+
+def killers(outcome: Outcome) -> list[tuple[str, By | None]]:
+    """The tests that noticed a mutant, as far as they are known, and by what."""
+    if not outcome.verdict.is_killed:
+        return []
+    first = [(outcome.test, outcome.by)] if outcome.test is not None else []
+    return [*first, *((one.test, one.by) for one in outcome.kills)]
 
 
 def find_mutant(results: Results, name: str) -> MutantResult:
@@ -260,6 +284,10 @@ def _several(name: str, found: Sequence[MutantResult]) -> str:
     return "\n".join([f"{name!r} fits {len(found)} mutants; give a number or a whole id:", *lines, *more])
 
 
+#: what a campaign says about itself under the name that it has in ``Results``
+_TOLD = {one.name for one in fields(Results)} & (records.FACTS.keys() - records.PLAIN.keys())
+
+
 def results_at(path: Path, *, earlier: bool = False) -> Results:
     """What the journal at a path holds. Raises JournalError."""
     with JournalReader.open(path) as journal:
@@ -274,12 +302,11 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
     rounds = _number_of_rounds(meta, outcomes)
     outcomes = [outcome for outcome in outcomes if outcome.round < rounds]
     vocabulary = journal.vocabulary
-    drawing = from_data(Drawing, meta[DRAWING]) if DRAWING in meta else None
-    shard = from_data(ShardOf, meta[SHARD]) if SHARD in meta else None
+    told: dict[str, Any] = {key: from_data(records.FACTS[key], meta[key]) for key in _TOLD if key in meta}
+    drawing, shard = told.get(records.DRAWING), told.get(records.SHARD)
     groups = groups_of(mutants, outcomes, rounds, drawing)
     is_whole = _is_whole(mutants, outcomes, rounds)
     drawn = groups if drawing is not None else ()
-    budget = from_data(Budgeted, meta[BUDGET]) if BUDGET in meta else None
     old = _Earlier.of(journal, mutants, outcomes, rounds) if earlier else _Earlier()
     if old.outcomes:
         mutants = sorted([*mutants, *old.mutants], key=lambda mutant: mutant.number)
@@ -295,6 +322,7 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         quantity = quantity_of(mutant, vocabulary)
         return MutantResult(mutant, row, quantity, why, mutant.id in old_ids, mutant.id in old.outdated)
 
+    texts = {file: journal.source(file) for file in sorted({one.site.span.file for one in mutants})}
     found = Results(
         meta=meta,
         state="",
@@ -306,15 +334,10 @@ def read_results(journal: JournalReader, *, earlier: bool = False) -> Results:
         left_out=tuple(journal.left_out()),
         controls=tuple(journal.controls()),
         baseline=tuple(journal.tests()),
-        verification=from_data(Verification, meta[VERIFICATION]) if VERIFICATION in meta else None,
-        repeats=from_data(Repeats, meta[REPEATS]) if REPEATS in meta else Repeats(),
-        flaky=from_data(Flaky, meta[FLAKY]) if FLAKY in meta else Flaky(),
-        drawing=drawing,
         drawn=drawn,
         attempt=_attempt(journal),
-        since=from_data(Since, meta[SINCE]) if SINCE in meta else None,
-        budget=budget,
-        shard=shard,
+        sources={file: text for file, text in texts.items() if text is not None},
+        **told,
     )
     # what rows hold is known now that they are read
     set_aside = tuple(journal.set_aside)
@@ -355,7 +378,7 @@ class _Earlier:
         mutants = tuple(mutant for mutant, _ in known.values() if mutant.id in ids)
         # what was planned and would still hold has been taken over, unless everything is to be run again, or
         # another shard is to look at it
-        planned_may_hold = bool(meta.get("fresh")) or SHARD in meta
+        planned_may_hold = bool(meta.get("fresh")) or records.SHARD in meta
         outdated = {name for name in ids if (known[name][1] if name in known else not planned_may_hold)}
         return cls(mutants, tuple(found), frozenset(outdated))
 
@@ -381,10 +404,10 @@ def _is_whole(mutants: Sequence[Mutant], outcomes: Sequence[Outcome], rounds: in
     return all((name, round) in known for name in alone for round in range(rounds))
 
 
-def _state(journal: JournalReader, shard: ShardOf | None, *, is_whole: bool) -> str:
+def _state(journal: JournalReader, shard: records.ShardOf | None, *, is_whole: bool) -> str:
     state = journal.finished or ("running" if is_written(journal.path) else "killed")
     if state == "complete" and not is_whole and (shard is None or shard.of == 1):
-        return INCOMPLETE
+        return records.INCOMPLETE
     if shard is None or shard.of == 1:
         return state
     # a part of a campaign is never complete, whatever has become of it

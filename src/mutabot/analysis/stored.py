@@ -13,24 +13,22 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mutabot.analysis.thresholds.thresholds import Thresholds, thresholds_of
-from mutabot.border.codec import from_data, shallow
+from mutabot.border.codec import shallow
 from mutabot.errors import UsageError
 from mutabot.evidence.recording import Recording, from_bytes
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal
-from mutabot.journal.reader import JournalReader
 from mutabot.journal.recordings import ORIGINAL, Recordings
-from mutabot.journal.records import DRAWS, OPERATORS, REACHING, Reaching
-from mutabot.model import By, Mutant, Outcome, Quantity
+from mutabot.model import Mutant, Outcome, Quantity
 
 from .facts import Encoder
-from .results import MutantResult, Results, find_mutant, read_results
+from .results import MutantResult, Results, find_mutant, results_at
 from .score import Group
 
 if TYPE_CHECKING:
@@ -91,10 +89,10 @@ def changes(old: Results, new: Results) -> Changes:
     """Compare two campaigns."""
     before = {one.mutant.id: one for one in old.mutants}
     after = {one.mutant.id: one for one in new.mutants}
-    pairs = [Ends(before.get(one.mutant.id), one) for one in _worst_first(new)]
+    pairs = [Ends(before.get(one.mutant.id), one) for one in new.worst_first]
     both = [pair for pair in pairs if _is_survivor(pair.old) and _is_survivor(pair.new)]
     changed = [pair for pair in both if _told(pair.old) != _told(pair.new)]
-    lost = [Ends(one, after.get(one.mutant.id)) for one in _worst_first(old) if one.is_survivor]
+    lost = [Ends(one, after.get(one.mutant.id)) for one in old.worst_first if one.is_survivor]
     lost = [pair for pair in lost if pair.new is not None and not pair.new.is_survivor]
     return Changes(
         appeared=tuple(pair for pair in pairs if _is_survivor(pair.new) and not _is_survivor(pair.old)),
@@ -125,12 +123,6 @@ def _notes(name: str, results: Results, other: Results) -> Iterator[str]:
         yield f"the {name} campaign was not to run family {family}; mutants that are not compared: {count}"
     if results.drawing is not None:
         yield f"the {name} campaign is of a sample: mutants that it does not have may not have been drawn"
-
-
-def _worst_first(results: Results) -> list[MutantResult]:
-    survivors = results.survivors
-    ids = {one.mutant.id for one in survivors}
-    return [*survivors, *(one for one in results.mutants if one.mutant.id not in ids)]
 
 
 def _is_survivor(result: MutantResult | None) -> bool:
@@ -290,27 +282,7 @@ _DTYPES = {str: "string", int: "Int64", float: "Float64", bool: "boolean"}
 
 @frozen
 class StoredCampaign(Results):
-    """The last campaign of a journal, as it was when it was read. Nothing of it changes later.
-
-    Attributes:
-        sources: text of the mutated files at the time of the campaign, by path relative to the project.
-        operators: what each operator does, in a sentence, by its name; those of journals that do not say it
-            are missing.
-        reaching: which tests reach which sites.
-        draws: names of operators that draw a number for each round.
-    """
-
-    sources: Mapping[str, str] = field(default_factory=dict)
-    operators: Mapping[str, str] = field(default_factory=dict)
-    reaching: Reaching = field(default_factory=Reaching)
-    draws: frozenset[str] = frozenset()
-
-    @property
-    def tests(self) -> list[str]:
-        """Node ids of all tests that are known: what mutants name is among them."""
-        named = (test for one in self.outcomes for test, _ in killers(one))
-        baseline = (one.test.test for one in self.baseline)
-        return list(dict.fromkeys([*baseline, *self.reaching.tests, *named]))
+    """The last campaign of a journal, as notebooks read it. Nothing of it changes later."""
 
     @property
     def scores(self) -> tuple[Group, ...]:
@@ -329,28 +301,12 @@ class StoredCampaign(Results):
         """
         return find_mutant(self, name)
 
-    def source(self, file: str) -> str | None:
-        """The text of a mutated file at the time of the campaign; None if it was not written down."""
-        return self.sources.get(file)
-
-    def reached_by(self, mutant: Mutant) -> tuple[str, ...]:
-        """Node ids of the tests that reach a mutant in any round, as far as the journal says."""
-        return self.reaching.at(mutant.site.id)
-
     def frame(self) -> pandas.DataFrame:
         """One row per outcome; docs/reports.md has the columns. Needs pandas: ``mutabot[notebook]``.
 
         Raises UsageError if pandas is not installed.
         """
         return frame_of(self)
-
-
-def killers(outcome: Outcome) -> list[tuple[str, By | None]]:
-    """The tests that noticed a mutant, as far as they are known, and by what."""
-    if not outcome.verdict.is_killed:
-        return []
-    first = [(outcome.test, outcome.by)] if outcome.test is not None else []
-    return [*first, *((one.test, one.by) for one in outcome.kills)]
 
 
 def journal_at(path: Path) -> Path:
@@ -365,15 +321,4 @@ def open(path: str | Path = ".") -> StoredCampaign:
 
     Raises JournalError if there is no journal, or none that this version reads.
     """
-    with JournalReader.open(journal_at(Path(path))) as journal:
-        results = read_results(journal)
-        files = {one.mutant.site.span.file for one in results.everything}
-        found = {file: journal.source(file) for file in sorted(files)}
-    meta = results.meta
-    return StoredCampaign(
-        **shallow(results),
-        sources={file: text for file, text in found.items() if text is not None},
-        operators=meta.get(OPERATORS, {}),
-        reaching=from_data(Reaching, meta[REACHING]) if REACHING in meta else Reaching(),
-        draws=frozenset(meta.get(DRAWS, ())),
-    )
+    return StoredCampaign(**shallow(results_at(journal_at(Path(path)))))

@@ -21,7 +21,8 @@ from . import options
 from .output import print_json, tell
 
 if TYPE_CHECKING:
-    from mutabot.analysis.stored import Changes, StoredCampaign
+    from mutabot.analysis.results import Results
+    from mutabot.analysis.stored import Changes
     from mutabot.report.format import Format, Material
 
 _FOLDER = Path(__file__).parent.parent / "report" / "formats"
@@ -71,7 +72,7 @@ def report(
 
     It reads the journal alone, also that of a campaign that was interrupted or still runs.
     """
-    from mutabot.analysis.stored import open as open_campaign
+    from mutabot.analysis.results import results_at
     from mutabot.report.changes import print_changes
     from mutabot.report.format import Material
     from mutabot.report.terminal.console import make_console
@@ -91,7 +92,7 @@ def report(
     if json and (wanted or html is not None or compare is None):
         raise UsageError("--json goes with --compare alone; `mutabot results --json` prints the results")
     journal = find_journal(context.obj)
-    stored = open_campaign(journal)
+    stored = results_at(journal)
     campaign = portable(stored)
     changes = _changes(campaign, journal, compare) if compare is not None else None
     material = Material(campaign, _folder(prefix), changes)
@@ -102,8 +103,7 @@ def report(
     if html is not None:
         _write_pages(html, campaign, journal, stored.meta.get("root"))
     if not campaign.is_complete:
-        known = f"{campaign.done} of {campaign.planned} outcomes are known"
-        tell([f"mutabot: the campaign is not complete ({campaign.state}): {known}"])
+        tell([f"mutabot: the campaign is not complete ({campaign.state}): {campaign.known}"])
 
 
 def _names() -> list[str]:
@@ -145,7 +145,7 @@ def _check_folder(folder: Path, *, with_changes: bool) -> None:
     check_folder(folder)
 
 
-def _write_pages(folder: Path, campaign: StoredCampaign, journal: Path, root: str | None) -> None:
+def _write_pages(folder: Path, campaign: Results, journal: Path, root: str | None) -> None:
     from mutabot.analysis.stored import StoredEvidence
     from mutabot.analysis.suggested import kept_suggestions
     from mutabot.report.html.folder import Contents, write_folder
@@ -171,9 +171,9 @@ def _folder(prefix: str) -> str:
     return "" if folder == PurePosixPath() else str(folder)
 
 
-def _changes(campaign: StoredCampaign, journal: Path, old: Path) -> Changes:
+def _changes(campaign: Results, journal: Path, old: Path) -> Changes:
+    from mutabot.analysis.results import results_at
     from mutabot.analysis.stored import changes, journal_at
-    from mutabot.analysis.stored import open as open_campaign
     from mutabot.journal.files import previous_of
     from mutabot.report.texts import portable
 
@@ -183,7 +183,7 @@ def _changes(campaign: StoredCampaign, journal: Path, old: Path) -> Changes:
             f"{old} is the campaign itself; the last complete one before it, if there was any, is in "
             f"{previous_of(journal).name} beside it"
         )
-    return changes(portable(open_campaign(other)), campaign)
+    return changes(portable(results_at(other)), campaign)
 
 
 def _write(format: Format, material: Material, file: Path) -> None:

@@ -46,19 +46,17 @@ def show(
     json: options.Json = False,
 ) -> None:
     """Show everything about one mutant."""
-    from mutabot.analysis.results import find_mutant, read_results
+    from mutabot.analysis.results import find_mutant, results_at
     from mutabot.analysis.stored import StoredEvidence
     from mutabot.analysis.suggested import kept_suggestions
-    from mutabot.journal.reader import JournalReader
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.mutant import print_mutant
 
     path = find_journal(context.obj)
-    with JournalReader.open(path) as journal:
-        found = read_results(journal, earlier=True)
-        result = find_mutant(found, mutant)
-        is_there = not result.outdated or result.mutant.family in found.meta.get("families", ())
-        source = journal.source(result.mutant.site.span.file) if is_there else None
+    found = results_at(path, earlier=True)
+    result = find_mutant(found, mutant)
+    is_there = not result.outdated or result.mutant.family in found.meta.get("families", ())
+    source = found.source(result.mutant.site.span.file) if is_there else None
     if json:
         print_json(result)
     else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from rich.console import Console, RenderableType
@@ -12,7 +12,6 @@ from rich.text import Text
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group
 from mutabot.analysis.stored import Changes, Ends
-from mutabot.frozen import frozen
 from mutabot.report.terminal.campaign import WIDE
 from mutabot.report.terminal.console import (
     add_row,
@@ -27,18 +26,8 @@ from mutabot.report.texts import escaped, table
 
 from .texts import rounds_text
 
-
-@frozen
-class Section:
-    """Mutants of which the same is to be said.
-
-    Attributes:
-        heading: what is said, with a capital letter.
-        rows: the mutants, each with what happened to it.
-    """
-
-    heading: str
-    rows: tuple[tuple[MutantResult, str], ...]
+#: a heading, and the mutants of which it is said, each with what happened to it
+Section = tuple[str, tuple[tuple[MutantResult, str], ...]]
 
 
 def sections(changes: Changes) -> Iterator[Section]:
@@ -52,12 +41,12 @@ def sections(changes: Changes) -> Iterator[Section]:
     )
     for name, found in pairs:
         if found:
-            yield Section(name, tuple((pair.either, _told(pair)) for pair in found))
+            yield name, tuple((pair.either, _told(pair)) for pair in found)
     added = tuple(
         (one.either, rounds_text(one.either)) for one in changes.added if not one.either.is_survivor
     )
     if added:
-        yield Section("New mutants that do not survive", added)
+        yield "New mutants that do not survive", added
 
 
 def summary(changes: Changes) -> str:
@@ -107,8 +96,8 @@ def change_lines(changes: Changes, path: Callable[[str], str]) -> Iterator[str]:
         yield f"> **{escaped(line)}**"
         yield ""
     yield from table(("family · role", "old", "new", "points"), score_rows(changes), right=(1, 2, 3))
-    for section in sections(changes):
-        yield f"#### {section.heading}: {len(section.rows)}"
+    for title, found in sections(changes):
+        yield f"#### {title}: {len(found)}"
         yield ""
         rows = (
             (
@@ -118,11 +107,11 @@ def change_lines(changes: Changes, path: Callable[[str], str]) -> Iterator[str]:
                 result.mutant.description,
                 told,
             )
-            for result, told in section.rows[:_ROWS]
+            for result, told in found[:_ROWS]
         )
         yield from table(("no.", "place", "operator", "what it does", "how it ended"), rows, right=(0,))
-        if len(section.rows) > _ROWS:
-            yield f"and {len(section.rows) - _ROWS} more"
+        if len(found) > _ROWS:
+            yield f"and {len(found) - _ROWS} more"
             yield ""
 
 
@@ -137,11 +126,11 @@ def _parts(changes: Changes, width: int) -> Iterator[RenderableType]:
     for line in notes(changes):
         yield Text(plain(line), style="bold")
     yield _scores(changes)
-    for section in sections(changes):
-        yield heading(f"{section.heading}: {len(section.rows)}")
-        yield _mutants(section, width)
-        if len(section.rows) > _ROWS:
-            yield Text(f"and {len(section.rows) - _ROWS} more", style="dim")
+    for title, found in sections(changes):
+        yield heading(f"{title}: {len(found)}")
+        yield _mutants(found, width)
+        if len(found) > _ROWS:
+            yield Text(f"and {len(found) - _ROWS} more", style="dim")
 
 
 def _scores(changes: Changes) -> Table:
@@ -154,10 +143,10 @@ def _scores(changes: Changes) -> Table:
     return table
 
 
-def _mutants(section: Section, width: int) -> Table:
+def _mutants(found: Sequence[tuple[MutantResult, str]], width: int) -> Table:
     narrow = width < WIDE
     table = make_mutant_table(("place", "operator"), "what it does, and how it ended", narrow=narrow)
-    for result, told in section.rows[:_ROWS]:
+    for result, told in found[:_ROWS]:
         mutant = result.mutant
         facts = (short_place(mutant.site.span), mutant.operator)
         add_row(table, mutant.number, facts, f"{mutant.description}\n{told}", narrow=narrow)

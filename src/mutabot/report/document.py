@@ -18,7 +18,8 @@ from mutabot.analysis.stored import Changes, Ends
 from mutabot.analysis.suggested import Suggestion, Suggestions
 from mutabot.analysis.thresholds import ladders, thresholds
 from mutabot.analysis.thresholds.words import line_of
-from mutabot.extensions import brought
+from mutabot.errors import ExtensionError
+from mutabot.extensions import Part, brought
 from mutabot.journal import records
 from mutabot.model import Diverged, LeftOut, Mutant, Outcome, Quantity, Span
 from mutabot.model.outcome import Figure
@@ -53,10 +54,19 @@ def document(results: Results) -> dict[str, Any]:
         **data_of.facts(
             results,
             "rounds=all.rounds# groups mutants graded left_out controls baseline sample=drawing since budget "
-            "flaky=flaky.tests verification repeats confirmation shard set_aside altered",
+            "flaky=flaky.tests verification repeats confirmation shard set_aside altered "
+            "operators draws reaching sources",
         ),
-        "sections": {name: data_of(part.load()(results)) for name, part in brought("sections").items()},
+        "sections": {name: _section(part, results) for name, part in brought("sections").items()},
     }
+
+
+def _section(part: Part, results: Results) -> Any:
+    make = part.load()
+    try:
+        return data_of(make(results))
+    except Exception as error:  # a package of others may fail in any way
+        raise ExtensionError(f"{part.words} makes no section of these results: {error!r}") from error
 
 
 def replayed(mutant: Mutant, rounds: Iterable[records.Replayed]) -> dict[str, Any]:
@@ -70,6 +80,7 @@ def _mutant(result: MutantResult) -> dict[str, Any]:
         "*mutant meaning=quantity rounds# kill_rate survivor=is_survivor indistinguishable distance worst "
         "why earlier outdated",
     )
+    data["status"] = data_of(status_of(result))
     data["kill_rate"] = data_of.facts(result.kill_rate, "killed valid rate=score interval")
     return data if result.is_survivor else data | {"distance": None, "worst": None}
 
@@ -204,14 +215,14 @@ def _suggestions(found: Suggestions) -> dict[str, Any]:
 data_of = Encoder(
     {
         Mutant: "id number operator variant family role=site.role file=site.span.file span=site.span "
-        "function=site.span.function call=site.text operation pattern quantity description magnitude unit "
-        "direction? ladder? moment=moment.text",
+        "function=site.span.function site=site.id call=site.text operation pattern quantity description "
+        "magnitude unit direction? ladder? moment=moment.text",
         Span: "line column=column+1 end_line end_column=end_column+1",
         Quantity: "kind axis unit frame mode",
         MutantResult: _mutant,
         Outcome: "round=round+1 verdict by test exception message place hits acted away example tests wall "
-        "simulated indistinguishable distance divergence way gaps compared engine stuck repeats beside "
-        "confirmed figures looked diverged",
+        "cpu simulated indistinguishable distance divergence way gaps compared commands engine stuck repeats "
+        "beside confirmed kills complete figures looked diverged",
         Figure: "* is_better",
         Diverged: "* worst",
         Score: "score check_score killed valid by_check timeouts counts=of_each",

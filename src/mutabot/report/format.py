@@ -14,7 +14,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from mutabot.analysis.stored import Changes, StoredCampaign
+from mutabot.analysis.results import Results
+from mutabot.analysis.stored import Changes
 from mutabot.errors import ExtensionError, UsageError, unknown_name_text
 from mutabot.extensions import Part, brought
 from mutabot.frozen import frozen
@@ -31,7 +32,7 @@ class Material:
         changes: what differs from an older campaign, if that is to be told.
     """
 
-    campaign: StoredCampaign
+    campaign: Results
     prefix: str = ""
     changes: Changes | None = None
 
@@ -52,7 +53,7 @@ class Material:
                 "score": one.scores.mean,
                 "checkScore": one.scores.mean_check,
             }
-            for one in self.campaign.scores
+            for one in self.campaign.groups
         ]
 
 

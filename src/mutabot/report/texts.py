@@ -14,8 +14,7 @@ from itertools import groupby
 from typing import Any, TypeVar
 
 from mutabot.analysis.divergence import first_line
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.stored import StoredCampaign
+from mutabot.analysis.results import MutantResult, Results
 from mutabot.journal.records import Reaching
 from mutabot.model import LeftOut, Mutant, Outcome, Quantity, Verdict
 
@@ -105,7 +104,7 @@ _META = (
 )
 
 
-def portable(campaign: StoredCampaign) -> StoredCampaign:
+def portable(campaign: Results) -> Results:
     """The same campaign, fit for any report."""
     clean = Cleaner(campaign.meta.get("root"))
     texts = "state mutants graded controls flaky attempt verification left_out"

@@ -32,7 +32,7 @@ def test_a_program_s_own_text_and_its_columns_stay(tmp_path: Path) -> None:
 def test_what_is_fit_already_is_left_alone(tmp_path: Path) -> None:
     campaign = stored(tmp_path, draws=["noise"])
     made = portable(campaign)
-    assert made.draws == {"noise"}
+    assert made.draws == ("noise",)
     assert (made.mutants, made.scores, made.sources) == (campaign.mutants, campaign.scores, campaign.sources)
     assert "root" not in made.meta
 

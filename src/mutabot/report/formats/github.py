@@ -33,8 +33,7 @@ def _lines(material: Material) -> Iterator[str]:
     told = [f"{hidden} more survivors are not shown here; `mutabot results` lists them"] if hidden else []
     if not material.campaign.is_complete:
         campaign = material.campaign
-        told.append(f"the campaign is not complete ({campaign.state}): {campaign.done} of {campaign.planned} "
-                    "outcomes are known")  # fmt: skip
+        told.append(f"the campaign is not complete ({campaign.state}): {campaign.known}")
     if told:
         yield f"::notice title=mutabot::{_data('; '.join(told))}"
 

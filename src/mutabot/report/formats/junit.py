@@ -32,7 +32,7 @@ def make(material: Material) -> str:
     for result in campaign.mutants:
         site = result.mutant.site
         suites.setdefault((site.span.file, result.mutant.family, site.role.value), []).append(result)
-    groups = {(group.family, group.role): group for group in campaign.scores}
+    groups = {(group.family, group.role): group for group in campaign.groups}
     root = Xml.Element("testsuites", {"name": f"mutabot ({campaign.state})", **_counts(campaign.mutants)})
     for (file, family, role), results in suites.items():
         name = f"{material.path(file)} · {family} · {role}"

@@ -9,6 +9,7 @@ from dataclasses import replace
 from mutabot.analysis.results import MutantResult
 from mutabot.analysis.score import Group
 from mutabot.analysis.statistics import Interval
+from mutabot.analysis.thresholds.thresholds import thresholds_of
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.model import Verdict
 from mutabot.report.changes import change_lines
@@ -34,8 +35,7 @@ def _lines(material: Material) -> Iterator[str]:
     yield f"## Mutation testing:{mutants}{graded} × {campaign.rounds} rounds"
     yield ""
     if not campaign.is_complete or campaign.done < campaign.planned:
-        known = f"{campaign.done} of {campaign.planned} outcomes are known"
-        yield f"> **This campaign is not complete** ({escaped(campaign.state)}): {known}."
+        yield f"> **This campaign is not complete** ({escaped(campaign.state)}): {campaign.known}."
         yield ""
     if not campaign.groups and campaign.ladders:
         yield "Graded mutants alone, which have no score."
@@ -108,7 +108,7 @@ def _survivor_cells(result: MutantResult, material: Material) -> tuple[str, ...]
 
 def _thresholds(material: Material) -> Iterator[str]:
     """The loosest ladders of graded mutants."""
-    ladders = material.campaign.thresholds.ladders
+    ladders = thresholds_of(material.campaign).ladders
     if not ladders:
         return
     yield f"### How big a fault must be before the tests notice: {len(ladders)} ladders, the loosest first"

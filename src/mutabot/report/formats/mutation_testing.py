@@ -10,8 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from mutabot.analysis.results import MutantResult
-from mutabot.analysis.stored import killers
+from mutabot.analysis.results import MutantResult, killers
 from mutabot.model import Mutant, Span, Verdict
 from mutabot.report.document import dumps
 from mutabot.report.format import Format, Material, utf16

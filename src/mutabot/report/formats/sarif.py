@@ -71,7 +71,7 @@ def _rule(name: str, mutant: Mutant, material: Material) -> dict[str, Any]:
 def _invocation(material: Material) -> dict[str, Any]:
     campaign = material.campaign
     is_complete = campaign.is_complete
-    told = f"{campaign.state}: {campaign.done} of {campaign.planned} outcomes are known"
+    told = f"{campaign.state}: {campaign.known}"
     notes = [] if is_complete else [{"level": "warning", "message": {"text": _message(told)}}]
     if campaign.confirmation is not None:
         notes.append({"level": "note", "message": {"text": _message(f"{campaign.confirmation.text}.")}})

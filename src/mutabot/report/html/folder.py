@@ -11,9 +11,10 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from mutabot.analysis.results import MutantResult, unlooked
-from mutabot.analysis.stored import StoredCampaign, StoredEvidence, killers
+from mutabot.analysis.results import MutantResult, Results, killers, unlooked
+from mutabot.analysis.stored import StoredEvidence
 from mutabot.analysis.suggested import Suggestions
+from mutabot.analysis.thresholds.thresholds import thresholds_of
 from mutabot.analysis.thresholds.words import line_of
 from mutabot.errors import UsageError
 from mutabot.frozen import frozen
@@ -34,7 +35,7 @@ _LADDERS = 200
 _META = ("mutabot", "python", "versions", "seed", "engine", "families", "started", "seconds")
 
 
-def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
+def campaign_data(campaign: Results, name: str) -> dict[str, Any]:
     """All of it but sources and the pages of mutants.
 
     Args:
@@ -60,13 +61,13 @@ def campaign_data(campaign: StoredCampaign, name: str) -> dict[str, Any]:
             [*one.places[:3], one.operation, one.quantity, one.text] for one in unlooked(campaign.mutants)
         ],
         "ladders": [
-            [f"{one.place} {one.name}", line_of(one)] for one in campaign.thresholds.ladders[:_LADDERS]
+            [f"{one.place} {one.name}", line_of(one)] for one in thresholds_of(campaign).ladders[:_LADDERS]
         ],
         "leftOut": _left_out(campaign),
     }
 
 
-def _baseline(campaign: StoredCampaign, tests: list[str]) -> list[list[Any]]:
+def _baseline(campaign: Results, tests: list[str]) -> list[list[Any]]:
     """Per test: its outcomes on the original that occurred, and its simulated seconds."""
     found: dict[str, list[Any]] = {name: [[], None] for name in tests}
     for one in campaign.baseline:
@@ -77,7 +78,7 @@ def _baseline(campaign: StoredCampaign, tests: list[str]) -> list[list[Any]]:
     return list(found.values())
 
 
-def _left_out(campaign: StoredCampaign) -> list[list[Any]]:
+def _left_out(campaign: Results) -> list[list[Any]]:
     left_out = campaign.left_out
     reasons = Counter(one.reason for one in left_out)
     return [
@@ -97,7 +98,7 @@ class Rows:
         rows: one row per mutant.
     """
 
-    def __init__(self, campaign: StoredCampaign) -> None:
+    def __init__(self, campaign: Results) -> None:
         self._campaign = campaign
         self.tests = campaign.tests
         self._tests = {name: number for number, name in enumerate(self.tests)}
@@ -196,7 +197,7 @@ class Contents:
         suggestions: the checks that were suggested for its survivors; None if none were looked for.
     """
 
-    campaign: StoredCampaign
+    campaign: Results
     name: str
     evidence: StoredEvidence
     clean: Callable[[str], str]
@@ -260,7 +261,7 @@ def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]]
         }
         used += _write(folder / "mutants" / f"{number}.js", f"mutant {number}", page)
     recorded = Recorded(contents.evidence, contents.clean)
-    found, without = _recordings(recorded, _in_order(campaign), limit - used)
+    found, without = _recordings(recorded, campaign.worst_first, limit - used)
     for number in found.keys() | without.keys():
         data = {"recordings": found.get(number, []), "without": without.get(number, 0)}
         with (folder / "mutants" / f"{number}.js").open("ab") as file:
@@ -268,13 +269,6 @@ def _write_data(folder: Path, contents: Contents, clips: Mapping[int, list[str]]
     for number, original in enumerate(recorded.originals.values()):
         _write(folder / "originals" / f"{number}.js", f"original {number}", original)
     return sum(without.values())
-
-
-def _in_order(campaign: StoredCampaign) -> list[MutantResult]:
-    """The mutants in the order in which their recordings are wanted."""
-    survivors = campaign.survivors
-    numbers = {one.mutant.number for one in survivors}
-    return [*survivors, *(one for one in campaign.mutants if one.mutant.number not in numbers)]
 
 
 def _recordings(

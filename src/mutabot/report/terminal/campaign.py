@@ -89,7 +89,7 @@ def title(results: Results) -> str:
     size = f"{' and '.join(kinds)} × {plural(results.rounds, 'round')}"
     if results.done == results.planned:
         return f"{size}: {results.state}"
-    return f"{size}: {results.state}, {results.done} of {results.planned} outcomes are known"
+    return f"{size}: {results.state}, {results.known}"
 
 
 def _circumstances(results: Results) -> str:
