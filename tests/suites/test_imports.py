@@ -261,6 +261,9 @@ UNSAFE = {
 }
 
 
+first, *others = SUITES
+
+
 def project(folder: Path, files: dict[str, str]) -> Path:
     more = {
         "program/__init__.py": "",
@@ -274,7 +277,7 @@ def project(folder: Path, files: dict[str, str]) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("suite", SUITES)
+@pytest.mark.parametrize("suite", [first, *(pytest.param(one, marks=pytest.mark.whole) for one in others)])
 def test_every_verdict_is_that_of_plain_pytest(tmp_path: Path, suite: str) -> None:
     folder = project(tmp_path / "imports", SUITES[suite])
     found = compare(folder, families=("classical",), only={"classical": 8}, engines=("branch",), limit=8.0)
@@ -307,7 +310,12 @@ def run(folder: Path, engine: str, only: tuple[str, ...] = ()) -> tuple[dict[str
 
 
 @pytest.mark.parametrize(
-    "files", [LEAVES, SUITES["it cannot be imported"], SUITES["conftest.py cannot import it"]]
+    "files",
+    [
+        pytest.param(LEAVES, marks=pytest.mark.whole),
+        SUITES["it cannot be imported"],
+        pytest.param(SUITES["conftest.py cannot import it"], marks=pytest.mark.whole),
+    ],
 )
 def test_both_engines_say_the_same_of_programs_that_cannot_be_imported(
     tmp_path: Path, files: dict[str, str]
