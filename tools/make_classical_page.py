@@ -50,7 +50,7 @@ alternative, or is made of names, constants, operators, plain attributes and ite
 mathematics; any other alternative counts as having acted when it is reached.
 
 Values that are computed while the program is imported (constants, taught points, default arguments of
-functions at the top level) have mutants too; they are marked, since they need a process of their own.
+functions at the top level) have mutants too; all tests judge them.
 
 """
 
