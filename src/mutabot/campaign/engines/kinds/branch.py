@@ -106,7 +106,8 @@ def _tell(campaign: Campaign, left: Remainder) -> None:
             )
         else:
             progress.note(
-                f"no branches while the program is imported: {reason}; mutants there run in processes of their own"
+                f"no branches while the program is imported: {reason}; "
+                "mutants there run in processes of their own"
             )
     for why, number in Counter(left.why_apart.values()).items():
         progress.note(f"{number} mutants: each {why}, in a process of its own")
