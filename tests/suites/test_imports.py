@@ -187,6 +187,32 @@ SUITES: dict[str, dict[str, str]] = {
                 assert said() > 6
         """,
     },
+    "a process has called it before the tests do": {
+        "program/table.py": """
+            import sys
+
+            def limit(number):
+                return number * 2 + abs(number) - 3
+
+            if __name__ == "__main__":
+                print(limit(int(sys.argv[1])))
+        """,
+        "tests/conftest.py": """
+            import subprocess
+            import sys
+
+            COMMAND = [sys.executable, "-m", "program.table", "7"]
+            SAID = subprocess.run(COMMAND, capture_output=True, check=False, text=True).stdout
+        """,
+        "tests/test_table.py": """
+            from program.table import limit
+            from tests.conftest import SAID
+
+            def test_said():
+                assert limit(0) < 100
+                assert SAID == "18\\n"
+        """,
+    },
     "a process has imported it before the tests do": {
         "program/table.py": """
             SIGN = -1 if __name__ == "__main__" else 1

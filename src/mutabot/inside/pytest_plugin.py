@@ -39,9 +39,8 @@ def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginMa
     """Before pytest loads other plug-ins: if there is a job, keep out those that it cannot do with."""
     if JOB_VARIABLE not in os.environ:
         return
-    if pluginmanager.is_blocked(
-        "cacheprovider"
-    ):  # then nobody knows what workers are given, and pytest warns
+    if pluginmanager.is_blocked("cacheprovider"):
+        # else pytest warns of what workers are given
         parser.addini("cache_dir", "where workers would keep what they keep between runs")
     from mutabot.inside.suite.switched_off import switch_off  # noqa: PLC0415  # a sleeping plugin costs nothing
 

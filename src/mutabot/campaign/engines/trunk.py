@@ -232,9 +232,8 @@ class _Trunk:
             instrumentation=text,
         )
         self._left_out = {mutant.id: job.left_out(mutant.id) for mutant in mutants}
-        patience = (
-            2.0 * sum(walls.values()) + branching.startup + _PATIENCE
-        )  # it waits for branches that go to the end
+        # it waits for branches that go to the end
+        patience = 2.0 * sum(walls.values()) + branching.startup + _PATIENCE
         may_share = not any(map(baseline.is_early, mutants))  # else it forks while it imports the program
         return Task(
             key, job, {}, patience, patience, is_trunk=True, may_share=may_share, alone=branching.serial

@@ -20,7 +20,7 @@ from mutabot.border.events import ForkEnded, Serving
 from mutabot.frozen import compile_all
 from mutabot.inside.event_file import EventFile
 
-from .forkable import open_now, why_not
+from .forkable import STARTED, open_now, why_not
 from .isolate import isolate_files
 from .lifeline import die_with_parent
 from .private_files import may_be_private
@@ -59,14 +59,16 @@ class CopyServer:
     _known: frozenset[tuple[int, str]] = field(default_factory=open_now)
     _copies: dict[int, int] = field(default_factory=dict)
 
-    def serve(self) -> Commission | None:
+    def serve(self, has_started: bool) -> Commission | None:
         """Fork a copy for each job that comes, until no more can come.
 
+        ``has_started``: whether processes of the program were started meanwhile, of which no job would know.
         Returns what to do in a copy; None in the server when it is done.
         """
-        reason = (
-            why_not((), self._known) if self.is_private and may_be_private() else "its files are not private"
-        )
+        is_private = self.is_private and may_be_private()
+        reason = why_not((), self._known) if is_private else "its files are not private"
+        if has_started:
+            reason = STARTED
         if reason is not None:
             self.pipe.send(Serving(reason))
             return None

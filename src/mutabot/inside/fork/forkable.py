@@ -12,6 +12,8 @@ from typing import Any
 
 from .event_loops import descriptors_of_loops
 
+#: why no fork is made where processes have already done their work as the original
+STARTED = "processes of the program were started before any test"
 #: libraries whose loading means that a graphics context may exist, which does not survive a fork
 _GRAPHICS = ("libEGL", "libGL.", "libGLX", "libOSMesa", "libvulkan")
 _SELF = "/proc/self"

@@ -24,7 +24,7 @@ from mutabot.inside.watchdogs import alarm_held
 from mutabot.model import Call, Mutant, Span
 
 from .bunch import Board, Bunch
-from .forkable import open_now, why_not
+from .forkable import STARTED, open_now, why_not
 from .isolate import Apart, Foot
 from .lifeline import ALONE
 from .tokens import Tokens
@@ -45,7 +45,6 @@ _LEAST = 0.2
 #: where a mutant is branched: a site with its operation and pattern, or a place of the program text
 Key = tuple[Span, str, str | None] | int
 _NODES = "its nodes would meet those of other mutants"
-_STARTED = "processes of the program were started before any test"
 
 
 @dataclass(slots=True)
@@ -160,7 +159,7 @@ class Trunk:
 
     def begin_test(self, test: str) -> None:
         """A test is about to begin: fork for the mutants that may be hit in processes below it."""
-        self._overtaken = self._overtaken or self._is_late()
+        self._is_overtaken()  # also if no place is reached before
         self._test, self._number = test, self.tests.index(test)
         self._copied = False
         due = set(self.branching.at_start.get(test, ())) - self._gone
@@ -202,15 +201,15 @@ class Trunk:
         """The test is over: tell which mutants of the program text were no different from the original.
 
         ``hits``: evaluations of each place in this test. If the test has forked copies of this process they
-        are not all: a mutant may have differed in one. The same holds for those before any test, ``early``,
-        if processes were started there.
+        are not all: a mutant may have differed in one, as in processes that were started before any test.
+        ``early``: those before any test.
         """
-        if self._copied:
+        if self._copied or self._is_overtaken():
             return
         same = {
             mutant.id: hits.get(place, 0) + early.get(place, 0)
             for place in self._places
-            if (place in early and not self._overtaken) or (hits.get(place) and place not in early)
+            if place in early or hits.get(place)
             for mutant in self._live_at(place)
             if self._index(mutant) >= 0
         }
@@ -249,14 +248,16 @@ class Trunk:
     def _may_fork(self, mutants: Sequence[str]) -> bool:
         """Whether forking is safe; if not, it is told that these mutants are not branched here."""
         own = (child.pid for child in self._children.values())
-        reason = _STARTED if self._is_late() else self.apart.reason() or why_not(own, self._known)
+        reason = STARTED if self._is_overtaken() else self.apart.reason() or why_not(own, self._known)
         if reason is not None:
             self.pipe.send(Unbranched(self._test, tuple(mutants), reason))
         return reason is None
 
-    def _is_late(self) -> bool:
-        """Whether, before any test, processes below have gone on already as the original."""
-        return self._number < 0 and self.has_started()
+    def _is_overtaken(self) -> bool:
+        """Whether processes were started before any test: what they did, they did as the original."""
+        if self._number < 0:
+            self._overtaken = self._overtaken or self.has_started()
+        return self._overtaken
 
     def part_at_place(self, place: int, alike: Sequence[frozenset[int]]) -> None:
         """In a branch of several mutants: those that have another value now go on in branches of their own.

@@ -110,6 +110,8 @@ class Conductor:
         conductor.look_at_checks()
         if job.serving is None:
             conductor._begin(home)
+        else:
+            conductor._watch_processes(home)
         return conductor
 
     def _make_private(self, job: Job, home: str) -> None:
@@ -123,17 +125,22 @@ class Conductor:
                 _pytest.pathlib.cleanup_numbered_dir = lambda *_, **__: None
             die_with_parent()  # a process that changes its rights loses that wish
 
+    def _watch_processes(self, home: str) -> Members:
+        """Processes that are started from now on tell in this home what they do."""
+        members = self.running.members = Members(home, self.session)
+        watch_forks(members.folder, self.session)
+        return members
+
     def _begin(self, home: str) -> None:
         has_nodes = prepare(self.job.root, home, self.job.vocabulary)
-        self.running.members = Members(home, self.session)
-        watch_forks(self.running.members.folder, self.session)
+        members = self._watch_processes(home)
         if self.job.mutant is not None:
             self.running.branch.left_out.become(self.job, [self.job.mutant.id])
         if self.job.branching is not None:
             preload({mutant.operator for mutant in self.job.branching.mutants})  # and not in every branch
-            self.grow(self.job.branching, home, has_nodes)
+            self.grow(self.job.branching, home, members, has_nodes=has_nodes)
 
-    def grow(self, branching: Branching, home: str, has_nodes: bool) -> None:
+    def grow(self, branching: Branching, home: str, members: Members, *, has_nodes: bool) -> None:
         """Be a trunk: fork a branch for every mutant."""
         compile_all()
         log, pipe = os.stat(os.path.join(home, LOG)), self.session.pipe
@@ -150,8 +157,6 @@ class Conductor:
         def where_is(pid: int) -> str | None:
             return stack.ask(pid, file, self.job.root)
 
-        members = self.running.members
-        assert members is not None
         trunk = Trunk(
             branching, self.job.tests or (), pipe, apart, branch, where_is, has_nodes, members.have_begun
         )
@@ -239,9 +244,11 @@ class Conductor:
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, Any, Any]:
         """All tests are collected: run them, or fork a copy of this process for every job."""
-        commission = self._server.serve() if self._server is not None else None
-        if commission is not None:
-            self._take_on(session, commission)
+        members = self.running.members
+        if self._server is not None and members is not None:
+            commission = self._server.serve(members.have_begun())
+            if commission is not None:
+                self._take_on(session, commission)
         if self._server is not None:
             session.items.clear()
             return (yield)

@@ -100,15 +100,11 @@ def _tell(campaign: Campaign, left: Remainder) -> None:
         tests.setdefault(reason, []).append(test)
     for reason, (first, *others) in tests.items():
         more = f" and {len(others)} more" if others else ""
+        there = "mutants there run in processes of their own"
         if first:
-            progress.note(
-                f"no branches in {first}{more}: {reason}; mutants there run in processes of their own"
-            )
+            progress.note(f"no branches in {first}{more}: {reason}; {there}")
         else:
-            progress.note(
-                f"no branches while the program is imported: {reason}; "
-                "mutants there run in processes of their own"
-            )
+            progress.note(f"no branches while the program is imported: {reason}; {there}")
     for why, number in Counter(left.why_apart.values()).items():
         progress.note(f"{number} mutants: each {why}, in a process of its own")
     for note in left.notes:
