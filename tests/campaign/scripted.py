@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -30,6 +30,7 @@ from mutabot.border.events import (
     TextsSeen,
 )
 from mutabot.border.job import Job
+from mutabot.border.units import Executed, File, is_test_file
 from mutabot.campaign.request import Request
 from mutabot.campaign.workers.task import Executor, Result, Task
 from mutabot.families import CONTROL
@@ -252,11 +253,13 @@ class _Test:
         functions: the functions of the program that it mentions.
         calls: what these call.
         place: where it ends, which is where it fails.
+        executed: what it executes: these functions, itself, and all of files that are no program.
     """
 
     functions: frozenset[str]
     calls: tuple[_Call, ...]
     place: str
+    executed: Executed
 
     def hits(self, mutant: Mutant) -> int:
         """How often the test reaches a mutant: its call, or the text of a function."""
@@ -296,7 +299,9 @@ class _Suite:
                 names = {_name(one) for one in ast.walk(node)}
                 found = tuple(call for name, some in numbered.items() if name in names for call in some)
                 functions = frozenset(name for name in numbered if name in names)
-                tests[f"{file}::{node.name}"] = _Test(functions, found, f"{file}:{node.end_lineno}")
+                executed = _executed(request.root, program, functions, file, node.name)
+                place = f"{file}:{node.end_lineno}"
+                tests[f"{file}::{node.name}"] = _Test(functions, found, place, executed)
         return cls(tests)
 
     @property
@@ -322,8 +327,24 @@ class _Suite:
             "trace": tuple(call.trace for call in test.calls),
             "example": (0, 1) if hits else None,
             "place": test.place if is_failed else None,
+            "executed": test.executed,
         }
         return TestEnd(run.test, **{**usual, **end})
+
+
+def _executed(
+    root: Path, program: Sequence[str], functions: Collection[str], test_file: str, test: str
+) -> Executed:
+    found: dict[str, tuple[int, ...]] = {}
+    for path in sorted(root.glob("**/*.py")):
+        name = path.relative_to(root).as_posix()
+        file = File(name, path.read_bytes())
+        names = set(file.said)
+        if name in program or is_test_file(name):
+            wanted = {"", test} if name == test_file else {"", *functions} if name in program else {""}
+            names &= wanted
+        found[name] = file.lines_of(names)
+    return found
 
 
 def _functions(

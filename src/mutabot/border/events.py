@@ -17,6 +17,7 @@ from mutabot.model.mutant import Span
 from mutabot.model.outcome import By, Check
 
 from .codec import from_data, to_data
+from .units import Executed
 
 #: hits per test that are reported with their values; a test is compared and planned from these
 TRACE_LIMIT = 5000
@@ -73,6 +74,9 @@ class TestEnd:
         more_checks: how many further ones were made.
         recording: what the world did, as ``evidence.recording.to_text`` writes it; None if that was not asked
             for.
+        executed: units of the project's files that were executed until the test ended, outside of tests or in
+            this one; of a mutant that this test neither reached nor failed, in this one alone. None if that
+            is not known.
     """
 
     __test__ = False  # not a test class, whatever pytest may think of the name
@@ -115,6 +119,7 @@ class TestEnd:
     more_checks: int = 0
     recording: str | None = None
     hindered: str | None = None
+    executed: Executed | None = None
 
     @property
     def lasting(self) -> str:

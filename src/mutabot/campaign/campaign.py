@@ -85,4 +85,4 @@ class Sink:
 
     def add_outcome(self, outcome: Outcome) -> None:
         """Add one outcome; a later one of the same mutant and round takes its place."""
-        self.journal.add_outcome(outcome, key=self.key_of(outcome))
+        self.journal.add_outcome(replace(outcome, executed=None), key=self.key_of(outcome))

@@ -136,8 +136,8 @@ def recorded(request: Request, progress: Progress) -> Iterator[Evidence | None]:
 
 
 def without_recording(end: TestEnd) -> TestEnd:
-    """The end of a test for the journal, which has recordings beside it."""
-    return end if end.recording is None else replace(end, recording=None)
+    """The end of a test for the journal, which has recordings beside it, and what outcomes depend on."""
+    return replace(end, recording=None, executed=None)
 
 
 def _seen(end: TestEnd) -> Seen:

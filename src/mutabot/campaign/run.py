@@ -21,10 +21,10 @@ from mutabot.campaign.engines.repeats import look_again
 from mutabot.campaign.engines.second_look import refuse_flaky
 from mutabot.campaign.faults.demanded import apart, demanded_of
 from mutabot.campaign.faults.providers import family_of
-from mutabot.campaign.plan.plan import Plan, carry, drawing, note_outdated, reaching, summaries
+from mutabot.campaign.plan.plan import Plan, carry, drawing, reaching, summaries
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.campaign.reuse.opened import OpenedFiles
-from mutabot.campaign.reuse.reuse import Reused, reuse
+from mutabot.campaign.reuse.reuse import Reused, note_outdated, reuse
 from mutabot.campaign.reuse.snapshot import Snapshot, State
 from mutabot.campaign.search.search import run_ladders
 from mutabot.campaign.sharding.shards import part_of, write_shard
@@ -126,13 +126,13 @@ def _run(
         is_whole = _run_all(campaign, part, Sink(journal), Reused(), started)
         return _end(journal, part, request, progress, is_whole=is_whole)
     state = State.now(request, before, after, watch.opened)
-    dependencies = Dependencies(request, baseline, _collected(results), state)
+    dependencies = Dependencies(request, baseline, state)
     journal.add_texts({state.files[name]: text for name, text in state.texts.items()})
     write_shard(journal, request.shard, part, dependencies)
     note_outdated(journal, request, dependencies)
     found = reuse(journal, dependencies, part.mutants, request.rounds, progress, others)
     if revision is not None:
-        altered = altered_since(revision, campaign, _collected(results), dependencies, part.mutants)
+        altered = altered_since(revision, campaign, dependencies, found, part.mutants)
         part = only_altered(journal, revision, altered, found, part, request.rounds, progress)
     sink = Sink(journal, _key_of(journal, dependencies, plan))
     try:
@@ -206,17 +206,15 @@ def _tidy(request: Request, journal: Journal, whole: Plan) -> None:
     journal.tidy([*there, *(one for one in rest if family_of(one) not in request.families)])
 
 
-def _collected(results: Sequence[Result]) -> set[str]:
-    """All tests that the baseline knows of, also those it set aside."""
-    ends = (result.end for result in results)
-    return {test for end in ends if end is not None for test in end.collected}
-
-
 def _key_of(journal: Journal, dependencies: Dependencies, plan: Plan) -> Callable[[Outcome], str]:
     by_id = {mutant.id: mutant for mutant in plan.mutants}
 
     def key_of(outcome: Outcome) -> str:
-        key = dependencies.key_of(outcome, by_id[outcome.mutant])
+        executed = dependencies.stored(outcome.executed)
+        if outcome.repeats and outcome.executed is None:  # it is in the journal, and was run once more
+            before = journal.row(outcome.mutant, outcome.round)
+            executed = before.key.split()[-1] if before is not None else executed
+        key = dependencies.key_of(outcome, by_id[outcome.mutant], executed)
         journal.add_parts(dependencies.new_parts())
         return key
 

@@ -305,6 +305,8 @@ class Outcome:
         figures: of a survivor, figures of merit that differ from the original's by more than their tolerance.
         confirmed: whether the whole suite says so too, of what was found without tests that do not reach the
             mutant; None if none was left out, or not before the test that decided.
+        executed: units of the project's files that were executed until then, see ``border.units``; None if
+            that is not known. The journal keeps it in the outcome's key.
     """
 
     mutant: str
@@ -341,6 +343,7 @@ class Outcome:
     diverged: tuple[Diverged, ...] = ()
     figures: tuple[Figure, ...] = ()
     confirmed: bool | None = None
+    executed: Mapping[str, tuple[int, ...]] | None = None
 
     @property
     def improvement(self) -> str:

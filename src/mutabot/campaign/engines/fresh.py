@@ -165,7 +165,7 @@ def without_tests(baseline: Baseline, mutant: Mutant, round: int) -> Outcome:
         text = f"all tests that reach the site are set aside in this round, such as {aside[0]}"
         return Outcome(mutant.id, round, Verdict.UNSTABLE, message=text)
     text = "no test reaches the site in this round"
-    return Outcome(mutant.id, round, Verdict.NOT_COVERED, message=text)
+    return Outcome(mutant.id, round, Verdict.NOT_COVERED, message=text, executed={})
 
 
 def run_of(result: Result, sources: Sources) -> Run:

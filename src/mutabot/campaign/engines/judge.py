@@ -9,6 +9,7 @@ from pathlib import Path
 
 from mutabot.border.events import TestEnd
 from mutabot.border.processes import OWN_FAULT
+from mutabot.border.units import Executed, together
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.comparing.observation import Observation, compare, farthest
@@ -167,9 +168,24 @@ def judge(campaign: Campaign, run: Run) -> Outcome:
         commands=end.commands if end is not None else None,
         stuck=run.death.where if run.death is not None else None,
         looked=_looked(run, baseline) if verdict is Verdict.SURVIVED else (),
+        executed=_executed(run, end, baseline, is_of_suite=end is None and verdict.is_killed),
     )
     outcome = replace(outcome, confirmed=False if _lacks_tests(run, outcome) else None)
     return _compared(campaign, outcome, run) if verdict is Verdict.SURVIVED else outcome
+
+
+def _executed(run: Run, decided: TestEnd | None, baseline: Baseline, *, is_of_suite: bool) -> Executed | None:
+    """The units that were executed in the tests that the outcome depends on, also by the original.
+
+    None if that is not known: of a process that died, and of a suite that ended otherwise without a failed
+    test.
+    """
+    if run.death is not None or run.problem is not None or is_of_suite:
+        return None
+    reaching = baseline.tests_reaching(run.round, run.mutant)
+    ends = [one for one in run.ends if one is decided or one.hits or one.test in reaching]
+    ends += [baseline.ends[run.round, one.test] for one in ends if (run.round, one.test) in baseline.ends]
+    return together(end.executed for end in ends)
 
 
 def _lacks_tests(run: Run, outcome: Outcome) -> bool:

@@ -15,11 +15,9 @@ from itertools import groupby
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.faults.providers import asked_for, provider, rules_of
 from mutabot.campaign.request import Request
-from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.faults import Preparation, Project
 from mutabot.frozen import frozen
-from mutabot.journal.journal import Journal
-from mutabot.journal.records import Drawing, Kept, Reaching, Stratum
+from mutabot.journal.records import Drawing, Reaching, Stratum
 from mutabot.model import LeftOut, Mutant
 from mutabot.model.mutant import Place
 from mutabot.operators.operator import Rule, in_order
@@ -140,37 +138,6 @@ def renumbered(mutants: Sequence[Mutant], planned: Sequence[Mutant]) -> list[Mut
             found.append(mutant)
         taken.add(found[-1].number)
     return found
-
-
-def note_outdated(journal: Journal, request: Request, dependencies: Dependencies) -> None:
-    """Find out which mutants of earlier campaigns depend on something that has changed since."""
-    known = [mutant for mutant, _ in journal.known()]
-    if not known:
-        return
-    kept = journal.kept()
-    journal.set_known(
-        [(mutant, _is_outdated(mutant, journal, kept, request, dependencies)) for mutant in known]
-    )
-    journal.add_parts(dependencies.new_parts())
-
-
-def _is_outdated(
-    mutant: Mutant,
-    journal: Journal,
-    kept: dict[tuple[str, int], Kept],
-    request: Request,
-    dependencies: Dependencies,
-) -> bool:
-    for round in range(request.rounds):
-        outcome = kept.get((mutant.id, round))
-        if outcome is None:
-            return True
-        if mutant.family not in request.families:
-            if not dependencies.still_hold(outcome.key, journal.parts(outcome.key.split()[1]) or {}):
-                return True
-        elif dependencies.holding(outcome.key, mutant, round) is None:
-            return True
-    return False
 
 
 @frozen

@@ -1,13 +1,12 @@
 """What an outcome depends on, by content: what is as it was need not be run again.
 
-An outcome has a *key* of four digests: of what all outcomes share (settings, versions, files that are no
-program text), of what those at its place share (tests, all that these can reach, entries of the vocabulary),
-of the mutant's own, and of the Python files when it was found. The last one does not count: it tells where
-lines have gone since, and what has changed. All but the third stand for *parts*, names with a digest or a
-plain value each.
+An outcome has a *key* of five digests: of what all outcomes share (settings, versions, files that are no
+program text), of what those at its place share (tests, entries of the vocabulary), of the mutant's own, of
+the Python files when it was found, and of the units in them that its tests have executed. All but the third
+stand for *parts*, names with a digest or a plain value each.
 
-The tests are those that reach the mutant. The others count only where one of them has noticed it: then all
-tests do.
+The tests are those that reach the mutant, up to the one that killed it. The others count only where one of
+them has noticed it: then all tests do.
 """
 
 from __future__ import annotations
@@ -15,9 +14,11 @@ from __future__ import annotations
 import hashlib
 import json
 import platform
+import re
 import sys
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cached_property
 from importlib.metadata import distributions
 from itertools import islice
 from pathlib import Path
@@ -26,11 +27,10 @@ from typing import Any
 import mutabot
 from mutabot.border.codec import to_data
 from mutabot.border.job import Idle
+from mutabot.border.units import ALL_FILES, Executed, File, is_test_file, together
 from mutabot.campaign.baseline.baseline import Baseline
-from mutabot.campaign.pieces.mentions import names_in
-from mutabot.campaign.pieces.project import Project
-from mutabot.campaign.pieces.reach import Reach, Reached
 from mutabot.campaign.request import Request
+from mutabot.frozen import frozen
 from mutabot.model import Mutant, Outcome, Vocabulary
 
 from .snapshot import _HASH, State, _digest_of, read
@@ -41,10 +41,83 @@ Parts = Mapping[str, str]
 #: installed packages that have no say in how a test ends
 _TOOLS = {"black", "hatchling", "isort", "mypy", "pip", "pre-commit", "ruff", "setuptools", "uv", "wheel"}
 _CONFIGURATIONS = ("pyproject.toml", "pytest.ini", ".pytest.ini", "tox.ini", "setup.cfg", "conftest.py")
-#: parts of a place that are not looked at by name
-REACHING, REACHED, ASIDE = "which tests reach it", "what its tests can reach", "which tests are set aside"
-#: in the place of the first, if a test that does not reach it has noticed it: all tests count
-SUITE = "which tests there are"
+#: parts of a place: the tests that reach it, or all of them if one that does not has noticed it; the one that
+#: decided; and those that are set aside
+_REACHING, _SUITE, _UNTIL = "which tests reach it", "which tests there are", "the test that decided"
+_ASIDE = "which tests are set aside"
+
+
+class Tree:
+    """The Python files of a project at one moment.
+
+    Args:
+        digests: by their names.
+        text: what stood in a file with this name and digest; None if nobody knows that any more.
+    """
+
+    def __init__(self, digests: Parts, text: Callable[[str, str], bytes | None]) -> None:
+        self.digests = digests
+        self._text = text
+        self._files: dict[str, File | None] = {}
+
+    def file(self, name: str) -> File | None:
+        """A file; None if there is none, or nobody knows what stood in it."""
+        if name not in self._files:
+            text = self._text(name, self.digests[name]) if name in self.digests else None
+            self._files[name] = File(name, text) if text is not None else None
+        return self._files[name]
+
+    @cached_property
+    def said(self) -> dict[str, dict[str, str] | None]:
+        """What each unit of each file says."""
+        files = {name: self.file(name) for name in self.digests}
+        return {name: file.said if file is not None else None for name, file in files.items()}
+
+    def moved(self, text: str, new: Tree) -> str | None:
+        """A text with the places that it names as they are in a new tree; None if one of them is gone."""
+        gone = False
+
+        def place(match: re.Match[str]) -> str:
+            nonlocal gone
+            name = match[1]
+            before, now = self.file(name), new.file(name)
+            if name not in self.digests or self.digests[name] == new.digests.get(name):
+                return match[0]
+            extent = tuple(int(part) for part in match.groups()[1:] if part is not None)
+            found = before.moves_to(now).get(extent) if before is not None and now is not None else None
+            if found is None:
+                gone = True
+                return match[0]
+            line, *rest = map(str, found)
+            return f"{name}:{line}:{rest[0]}-{rest[1]}:{rest[2]}" if rest else f"{name}:{line}"
+
+        text = _PLACE.sub(place, text)
+        return None if gone else text
+
+
+#: a place as outcomes name it: ``file:line``, or ``file:line:column-line:column``
+_PLACE = re.compile(r"(?<![\w./-])([\w./-]+\.py):(\d+)(?::(\d+)-(\d+):(\d+))?")
+
+
+@frozen
+class Was:
+    """What an outcome depended on when it was found, or at a revision.
+
+    Attributes:
+        common, place, own: as in its key.
+        tree: the Python files of then.
+        found_in: those in which it was found; the executed units are told by their lines.
+        executed: what of them was executed; None if that is not known.
+        notes: digests of notes that were read.
+    """
+
+    common: Parts | None
+    place: Parts | None
+    own: str
+    tree: Tree
+    found_in: Tree
+    executed: Executed | None
+    notes: Parts
 
 
 def _digest(data: Any) -> str:
@@ -52,54 +125,46 @@ def _digest(data: Any) -> str:
     return hashlib.blake2b(text.encode(), digest_size=12).hexdigest()
 
 
-def says_same(key: str, other: str) -> bool:
-    """Whether two keys stand for the same, whatever the files are in which that stands."""
-    return key.split()[:3] == other.split()[:3]
-
-
 class Dependencies:
     """What the outcomes of a campaign depend on.
 
     Args:
         request, baseline: the campaign.
-        tests: all tests that the baseline collected.
         state: the project's files.
         read: what a file of the configuration holds.
 
     Attributes:
         request: the campaign.
         files: the files that count, with their digests.
+        notes: the others.
         parts: what the digests in keys stand for; grows as keys are made.
         texts: what stands in the Python files.
-        tree: the digest of the Python files together.
-        reach: what tests can run.
+        tree: the Python files.
+        common: what all outcomes depend on.
     """
 
     def __init__(
         self,
         request: Request,
         baseline: Baseline,
-        tests: Iterable[str],
         state: State,
         read: Callable[[Path], bytes | None] = read,
     ) -> None:
-        self.files, self.texts = state.files, state.texts
+        self.request, self._baseline = request, baseline
+        self.files, self.notes, self.texts = state.files, state.notes, state.texts
         self.parts: dict[str, Parts] = {}
         self._told = 0
-        self.request, self._baseline, self.names = request, baseline, state.names
-        self._test_files = {self.file_of(test) for test in tests}
-        self._places: dict[Any, str] = {}
-        self._targets: dict[str, set[str]] = {}
-        self._reached: dict[Any, Reached] = {}
+        self._idle: dict[int, Executed] = {}
+        self._differing: dict[Any, list[str]] = {}
         code = {name: digest for name, digest in self.files.items() if name in self.texts}
-        self.reach = self.reach_of(code, self.texts)
-        self.tree = self._stored(code)
+        self.tree = Tree(code, lambda name, digest: self.texts.get(name))
+        self._tree = self._stored(code)
         self.common = {
             **{name: digest for name, digest in self.files.items() if name not in self.texts},
-            **self.reach.project.around,
+            **dict(self._around()),
             **_pytest_parts(request, read),
             **_settings(request),
-            **self._roles(name for name in self.files if name not in self.texts),
+            **{f"role of {name}": role for name in self.files if (role := role_of(name, request))},
             **_vocabulary_parts(request.vocabulary),
             **versions(),
         }
@@ -109,19 +174,45 @@ class Dependencies:
             for operation in request.vocabulary.operations
         }
 
-    def reach_of(self, digests: Mapping[str, str], texts: Mapping[str, bytes]) -> Reach:
-        """What tests can run of these Python files, everything else being as it is now."""
-        vocabulary = _without_source(to_data(self.request.vocabulary))
-        everywhere = {*self.names, *_targets({**vocabulary, "operations": ()})}
-        starts = any(end.processes for end in self._baseline.ends.values())
-        return Reach(Project(digests, texts, self._test_files), everywhere, starts_processes=starts)
+    def _around(self) -> Iterator[tuple[str, str]]:
+        """Which Python files there are: any may hide another one. New tests hide nothing."""
+        for name in self.tree.digests:
+            if not is_test_file(name):
+                yield name, "there"
+                continue
+            file = self.tree.file(name)
+            if file is not None and not file.is_quiet:
+                yield file.shown(""), f"#{file.said['']}"
 
-    def file_of(self, test: str) -> str:
-        """The test's file relative to the project's root; pytest's root may be a folder above."""
-        name = test.partition("::")[0]
-        while name not in self.files and "/" in name:
-            name = name.partition("/")[2]
-        return name
+    def was(
+        self,
+        key: str,
+        parts: Callable[[str], Parts | None],
+        tree: Callable[[str], Tree],
+    ) -> Was:
+        """What an outcome with this key depended on.
+
+        Args:
+            parts: what a digest stands for.
+            tree: the Python files that a digest stands for.
+        """
+        common, place, own, files, executed = key.split()
+        found_in = self.tree if files == self._tree else tree(files)
+        units = parts(executed)
+        lines = (
+            {}
+            if units is None
+            else {k: v for k, v in units.items() if k == ALL_FILES or k in found_in.digests}
+        )
+        return Was(
+            self.common if common == self._common else parts(common),
+            parts(place),
+            own,
+            found_in,
+            found_in,
+            None if units is None else {k: tuple(map(int, v.split())) for k, v in lines.items()},
+            {k: v for k, v in (units or {}).items() if k not in lines},
+        )
 
     @property
     def everything(self) -> Parts:
@@ -132,48 +223,140 @@ class Dependencies:
             **{k: v for one in self._operations.values() for k, v in one.items()},
         }
 
-    def key(self, mutant: Mutant, round: int, *, whole: bool = False) -> str:
-        """The key of an outcome that is found now; ``whole``: one that depends on all tests."""
-        own = _digest([self._own(mutant, round)])
-        return f"{self._common} {self._of_place(mutant, round, whole)} {own} {self.tree}"
-
-    def key_of(self, outcome: Outcome, mutant: Mutant) -> str:
-        """The key of this outcome."""
+    def key_of(self, outcome: Outcome, mutant: Mutant, executed: str) -> str:
+        """The key of an outcome that is found now; ``executed`` is what ``stored`` made of its units."""
         noticed = {outcome.test, *(kill.test for kill in outcome.kills)}
         is_noticed = outcome.verdict.is_killed or outcome.test is not None
         whole = is_noticed and not noticed.issubset(self._baseline.tests_reaching(outcome.round, mutant))
-        return self.key(mutant, outcome.round, whole=whole)
+        is_first = outcome.verdict.is_killed and not self.request.every_test
+        place = self.place(mutant, outcome.round, whole, (outcome.test or "") if is_first else "")
+        words = self._common, self._stored(place), self.own(mutant, outcome.round), self._tree, executed
+        return " ".join(words)
 
-    def tests(self, mutant: Mutant, round: int, *, whole: bool) -> tuple[str, ...]:
-        """The tests that an outcome depends on."""
-        return self._baseline.suite(round) if whole else self._baseline.tests_reaching(round, mutant)
+    def stored(self, executed: Executed | None) -> str:
+        """The digest that stands for executed units, and for the notes that were read."""
+        if executed is None:
+            return self._stored({ALL_FILES: "0"})
+        found = {
+            name: " ".join(map(str, lines)) if name in self.texts else self.notes.get(name, "")
+            for name, lines in executed.items()
+            if name in self.texts or name == ALL_FILES or name not in self.files
+        }
+        return self._stored({**found, **({ALL_FILES: "0"} if ALL_FILES in executed else {})})
 
-    def holding(self, key: str, mutant: Mutant, round: int) -> str | None:
-        """The key of now for an outcome with this key, if it would come out the same; else None."""
-        both = (self.key(mutant, round, whole=whole) for whole in (False, True))
-        return next((now for now in both if says_same(key, now)), None)
+    def tests(self, mutant: Mutant, round: int, *, whole: bool, until: str = "") -> tuple[str, ...]:
+        """The tests that an outcome depends on, in their order, up to the one that decided."""
+        reaching = self._baseline.tests_reaching(round, mutant)
+        suite = self._baseline.suite(round)
+        found = suite if whole else tuple(test for test in suite if test in reaching)
+        return found[: found.index(until) + 1] if until in found else found
 
-    def still_hold(self, key: str, of_place: Parts) -> bool:
-        """Whether all that is known now of what a key stands for is as it was; the rest is taken for granted.
+    def place(self, mutant: Mutant, round: int, whole: bool, until: str) -> Parts:
+        """What outcomes at the place of a mutant share."""
+        aside = self._baseline.missing_judges(round, mutant) if self._baseline.unstable else ()
+        names = (mutant.operation,) if mutant.operation else tuple(self._operations)
+        entries = {k: v for name in names for k, v in self._operations.get(name, {}).items()}
+        tests = self.tests(mutant, round, whole=whole, until=until)
+        return {
+            **entries,
+            (_SUITE if whole else _REACHING): _HASH + _digest(tests),
+            **({_UNTIL: until} if until else {}),
+            **({_ASIDE: _HASH + _digest(sorted(aside))} if aside else {}),
+        }
 
-        For mutants of which nothing is known now, because their families are not asked for.
-        """
-        words = key.split()
-        if words[0] != self._common or words[3:] != [self.tree]:
-            return False
-        now = self._roles(self.files)
-        for parts in self._operations.values():
-            now.update(parts)
-        unknown = {REACHING, SUITE, REACHED, ASIDE}
-        return bool(of_place) and all(
-            now.get(name) == value for name, value in of_place.items() if name not in unknown
-        )
-
-    def _own(self, mutant: Mutant, round: int) -> list[Any]:
+    def own(self, mutant: Mutant, round: int) -> str:
         """What a mutant does, beyond what its id says."""
         planted = self._baseline.faults.by_id.get(mutant.id)
         does = planted.does if planted is not None else None
-        return [mutant.provider, Idle.of(mutant.idle).in_round(round), mutant.pattern, does]
+        return _digest([mutant.provider, Idle.of(mutant.idle).in_round(round), mutant.pattern, does])
+
+    def why(self, was: Was, mutant: Mutant, round: int, *, is_known: bool = True) -> list[str]:
+        """Why an outcome that depended on this may come out otherwise now; empty if it cannot.
+
+        ``is_known``: whether anything is known of the mutant now; not if its family is not asked for.
+        """
+        if was.common is None or was.place is None:
+            return ["what they depend on is not known any more"]
+        found = self._differing_units(was, mutant, round)
+        if is_known:
+            found = [*found, *changes(was.place, self.place(mutant, round, *self.asked(was)))]
+        if was.common is not self.common:
+            found = [*found, *self._changes(was.common)]
+        if is_known and was.own != self.own(mutant, round) and not found:
+            found = ["the calls return something else"]
+        return found
+
+    def renewed(self, key: str, was: Was, mutant: Mutant, round: int) -> str:
+        """The key of an outcome that holds as it is now, with the lines that its units have now."""
+        place = self.place(mutant, round, *self.asked(was))
+        executed: dict[str, tuple[int, ...]] = dict.fromkeys(was.notes, ())
+        for name, units in _names(was).items():
+            now = self.tree.file(name)
+            if now is not None:
+                executed[name] = now.lines_of(units)
+        is_all = was.executed is None or ALL_FILES in was.executed
+        stored = self.stored(None if is_all else executed)
+        return " ".join((self._common, self._stored(place), key.split()[2], self._tree, stored))
+
+    def asked(self, was: Was) -> tuple[bool, str]:
+        """Whether an outcome depended on all tests, and up to which one."""
+        place = was.place or {}
+        return _SUITE in place, place.get(_UNTIL, "")
+
+    def executed_by(self, mutant: Mutant, round: int) -> Executed | None:
+        """What tests execute of the original that reach a mutant, and what no test does: a mutant might."""
+        ends = {test: end.executed for (where, test), end in self._baseline.ends.items() if where == round}
+        if round not in self._idle:
+            everywhere = together(ends.values()) or {}
+            files = [self.tree.file(name) for name in self.tree.digests if not is_test_file(name)]
+            self._idle[round] = {
+                file.name: tuple({*file.lines_of(file.said)}.difference(everywhere.get(file.name, ())))
+                for file in files
+                if file is not None
+            }
+        tests = self._baseline.tests_reaching(round, mutant)
+        return together([*(ends[test] for test in tests), self._idle[round]])
+
+    def _changes(self, common: Parts) -> list[str]:
+        key = id(common)
+        if key not in self._differing:
+            self._differing[key] = changes(common, self.common)
+        return self._differing[key]
+
+    def _differing_units(self, was: Was, mutant: Mutant, round: int) -> list[str]:
+        is_all = was.executed is None or ALL_FILES in was.executed
+        tests = self._baseline.tests_reaching(round, mutant) if is_all else ()
+        key = id(was.tree), id(was.found_in), id(was.executed), tests
+        if key not in self._differing:
+            names = self._names_of_all(was.tree, tests) if is_all else _names(was)
+            notes = {name: self.notes.get(name, self.files.get(name, "")) for name in was.notes}
+            self._differing[key] = [
+                *_differing(names, was.tree, self.tree),
+                *changes(was.notes, notes),
+            ]
+        return self._differing[key]
+
+    def _names_of_all(self, tree: Tree, tests: Iterable[str]) -> dict[str, set[str] | None]:
+        """All units that there were or are, bar those of other tests."""
+        own = {(self.file_of(test), _function_of(test)) for test in tests}
+        found: dict[str, set[str] | None] = {}
+        for name in {*tree.digests, *self.tree.digests}:
+            files = [file for file in (tree.file(name), self.tree.file(name)) if file is not None]
+            units = {unit for file in files for unit in file.said}
+            found[name] = {
+                unit
+                for unit in units
+                if not (is_test_file(name) and unit.rpartition(".")[2].startswith("test"))
+                or (name, unit) in own
+            }
+        return found
+
+    def file_of(self, test: str) -> str:
+        """The test's file relative to the project's root; pytest's root may be a folder above."""
+        name = test.partition("::")[0]
+        while name not in self.files and "/" in name:
+            name = name.partition("/")[2]
+        return name
 
     def new_parts(self) -> Mapping[str, Parts]:
         """The parts that have come since this was last asked."""
@@ -181,70 +364,45 @@ class Dependencies:
         self._told = len(self.parts)
         return new
 
-    def reached(self, mutant: Mutant, tests: tuple[str, ...], reach: Reach | None = None) -> Reached:
-        """All that these tests can run as this mutant; ``reach``: in another state of the files."""
-        reach = reach or self.reach
-        place = mutant.site.span.file, mutant.site.span.function
-        operations = self._operations_of(mutant)
-        names = self._names_of(mutant)
-        key = (id(reach), tests, place, operations, names)
-        if key not in self._reached:
-            found = {*reach.of_tests(tests, self.file_of), *reach.at(*place)}
-            targets = {name for one in operations for name in self._operation_names(one)}
-            found |= reach.closure((), {*names, *targets})
-            self._reached[key] = frozenset(found)
-        return self._reached[key]
-
-    def _operation_names(self, target: str) -> set[str]:
-        if target not in self._targets:
-            vocabulary = self.request.vocabulary
-            found = (vocabulary.operation(name) for name in _together(vocabulary, target))
-            self._targets[target] = _targets([_meaning(one) for one in found if one is not None])
-        return self._targets[target]
-
-    def _names_of(self, mutant: Mutant) -> frozenset[str]:
-        """Names that the text of a mutant mentions, beyond those of the original."""
-        planted = self._baseline.faults.by_id.get(mutant.id)
-        return frozenset(names_in(planted.mentions)) if planted is not None else frozenset()
-
-    def _operations_of(self, mutant: Mutant) -> tuple[str, ...]:
-        """The operations whose meaning counts: to a mutant that acts on none, any might refuse."""
-        return (mutant.operation,) if mutant.operation else tuple(self._operations)
-
-    def _of_place(self, mutant: Mutant, round: int, whole: bool) -> str:
-        tests = self.tests(mutant, round, whole=whole)
-        aside = tuple(self._baseline.missing_judges(round, mutant)) if self._baseline.unstable else ()
-        key = (whole, tests, self.reached(mutant, tests), self._operations_of(mutant), aside)
-        found = self._places.get(key)
-        if found is None:
-            found = self._places[key] = self._stored(self._place_parts(mutant, round, whole))
-        return found
-
-    def _place_parts(self, mutant: Mutant, round: int, whole: bool) -> dict[str, str]:
-        tests = self.tests(mutant, round, whole=whole)
-        reached = self.reached(mutant, tests)
-        aside = self._baseline.missing_judges(round, mutant)
-        return {
-            **{
-                name: digest
-                for operation in self._operations_of(mutant)
-                for name, digest in self._operations.get(operation, {}).items()
-            },
-            **self._roles(self.reach.files(reached)),
-            (SUITE if whole else REACHING): _HASH + _digest(sorted(tests)),
-            **({ASIDE: _HASH + _digest(sorted(aside))} if aside else {}),
-            REACHED: _HASH + self.reach.digest(reached),
-        }
-
-    def _roles(self, files: Iterable[str]) -> dict[str, str]:
-        """Which of these files are program and which are oracle."""
-        roles = {f"role of {file}": role_of(file, self.request) for file in files}
-        return {name: role for name, role in roles.items() if role}
-
     def _stored(self, parts: Parts) -> str:
         digest = _digest(parts)
         self.parts[digest] = parts
         return digest
+
+
+def _function_of(test: str) -> str:
+    """The qualified name of a test's function."""
+    return ".".join(part.partition("[")[0] for part in test.split("::")[1:])
+
+
+def _names(was: Was) -> dict[str, set[str] | None]:
+    """The names of the units that were executed; None for a file of which all counts."""
+    found: dict[str, set[str] | None] = {}
+    for name, lines in (was.executed or {}).items():
+        file = was.found_in.file(name)
+        found[name] = file.names_at(lines) if file is not None else None
+    return found
+
+
+def _differing(names: Mapping[str, set[str] | None], old: Tree, new: Tree) -> list[str]:
+    """Which of these units say something else in two trees, in words; what is new last."""
+    found, made = [], []
+    for name in sorted(names):
+        units = names[name]
+        if old.digests.get(name) == new.digests.get(name):
+            continue
+        before, now = old.file(name), new.file(name)
+        if units is None or before is None or now is None or before.nodes is None or now.nodes is None:
+            state = "is new" if name not in old.digests else "changed"
+            found.append(f"{name} {state if name in new.digests else 'is gone'}")
+            continue
+        for unit in sorted(units):
+            said, says = before.said.get(unit), now.said.get(unit)
+            if said is None and says is not None:
+                made.append(f"{now.shown(unit)} is new")
+            elif said != says:
+                found.append(f"{before.shown(unit)} {'changed' if says is not None else 'is gone'}")
+    return found + made
 
 
 def changes(old: Parts, new: Parts) -> list[str]:
@@ -326,12 +484,12 @@ def _operation_parts(vocabulary: Vocabulary, target: str) -> dict[str, str]:
     """The entry of an operation, and those of the operations that its mutants need."""
     return {
         f"{operation.target} in the vocabulary": _HASH + _digest(_meaning(operation))
-        for name in _together(vocabulary, target)
+        for name in _operations_with(vocabulary, target)
         if (operation := vocabulary.operation(name)) is not None
     }
 
 
-def _together(vocabulary: Vocabulary, target: str) -> list[str]:
+def _operations_with(vocabulary: Vocabulary, target: str) -> list[str]:
     """An operation, and those that its mutants need."""
     found: dict[str, None] = {}
     waiting = [target]
@@ -341,18 +499,6 @@ def _together(vocabulary: Vocabulary, target: str) -> list[str]:
             found[operation.target] = None
             waiting += [*operation.currents, *operation.opposites]
     return list(found)
-
-
-def _targets(data: Any) -> set[str]:
-    """The names in what stands for something of the program: ``robot:Arm.move_by``, ``self.time``."""
-    if isinstance(data, str):
-        is_target = (":" in data or "." in data) and " " not in data and "/" not in data
-        return names_in(data) if is_target else set()
-    if isinstance(data, Mapping):
-        data = [*data.keys(), *data.values()]
-    if isinstance(data, list | tuple):
-        return {name for one in data for name in _targets(one)}
-    return set()
 
 
 def _meaning(value: Any) -> Any:

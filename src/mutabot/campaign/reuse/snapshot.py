@@ -10,12 +10,11 @@ import hashlib
 import os
 import re
 import stat
-from collections.abc import Iterable, Iterator, Mapping, Set
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from mutabot.campaign.pieces.mentions import names_in
 from mutabot.campaign.request import Request
 from mutabot.journal.files import REPORT_MARK
 
@@ -26,8 +25,6 @@ _NOTES = {
     ".bak", ".diff", ".dot", ".err", ".gif", ".htm", ".html", ".log", ".md", ".mp4", ".orig", ".out",
     ".patch", ".pdf", ".pid", ".prof", ".rst", ".svg", ".tex", ".tmp", ".txt", ".webm",
 }  # fmt: skip
-#: files that may name others, and bytes beyond which they are data
-_MAY_NAME, _LONGEST = re.compile(r".*\.(py|toml|cfg|ini|json|ya?ml|xml|urdf|xacro|feature|txt)"), 1 << 20
 #: how our own JSON begins, and reports of tests and their coverage
 _REPORTS = {
     ".json": re.compile(rb'\{\s*"format": \d+,\s*"'),
@@ -38,10 +35,10 @@ _REPORTS = {
 def counted(
     request: Request, digests: Mapping[str, str], written: Set[str], opened: Set[str] | None
 ) -> dict[str, str]:
-    """The files that outcomes depend on, with their digests.
+    """The files that all outcomes depend on, with their digests.
 
     Those that the configuration itself consists of count by what they say. A note (``_NOTES``) counts if the
-    baseline opened it or one like it beside it, or if another file names it: a mutant might read it.
+    baseline opened it; a mutant that opens another one says so by itself.
 
     Args:
         digests: all files of the project.
@@ -49,15 +46,11 @@ def counted(
         opened: those that anybody opened meanwhile; None if that is not known.
     """
     own = own_files(request)
-    others = {
-        name: digest
-        for name, digest in digests.items()
-        if name not in own and not _is_report(request.root / name)
-    }
-    ignored = _ignored(request.root, others, opened) if opened is not None else set()
     found = {}
-    for name, digest in others.items():
-        if name not in ignored:
+    for name, digest in digests.items():
+        path = request.root / name
+        is_idle = opened is not None and is_note(name) and name not in opened and not path.is_symlink()
+        if name not in own and not is_idle and not _is_report(path):
             is_result = name in written and not name.endswith(".py")
             found[name] = WRITTEN if is_result else digest
     return found
@@ -79,47 +72,6 @@ def own_files(request: Request) -> set[str]:
         name = _relative(request.other_journal, request.root)
         own |= {name, f"{name}-wal", f"{name}-shm", f"{name}.lock"}
     return own
-
-
-def _ignored(root: Path, names: Iterable[str], opened: Set[str]) -> set[str]:
-    """Notes that nothing has to do with."""
-    names = list(names)
-    alike = {_kind(name) for name in opened}
-    notes = {
-        name
-        for name in names
-        if is_note(name)
-        and _kind(name) not in alike
-        and not (root / name).is_symlink()  # it is opened elsewhere
-    }
-    if not notes:
-        return notes
-    for text in _texts(root, (name for name in names if name not in notes)):
-        notes = {name for name in notes if not _is_named(PurePosixPath(name), text)}
-    return notes
-
-
-def _kind(name: str) -> tuple[str, str]:
-    path = PurePosixPath(name)
-    return path.parent.as_posix(), path.suffix.lower()
-
-
-def _texts(root: Path, names: Iterable[str]) -> Iterator[bytes]:
-    for name in names:
-        if not _MAY_NAME.fullmatch(name):
-            continue
-        try:
-            path = root / name
-            if path.stat().st_size <= _LONGEST:
-                yield path.read_bytes()
-        except OSError:
-            continue
-
-
-def _is_named(note: PurePosixPath, text: bytes) -> bool:
-    """Whether a text holds the name of a file, or what comes before the suffix, in quotes."""
-    stem = os.fsencode(note.stem)
-    return os.fsencode(note.name) in text or any(quote + stem + quote in text for quote in (b"'", b'"'))
 
 
 def _relative(path: Path, root: Path) -> str:
@@ -256,24 +208,19 @@ def _new_hash() -> Any:
     return hashlib.blake2b(digest_size=12)
 
 
-#: files that may name what is to be called, and bytes beyond which they are data
-_MAY_TELL, _LONGEST_TOLD = re.compile(r".*\.(toml|cfg|ini|json|ya?ml|xml|launch|xacro|urdf|feature)"), 1 << 20
-_ENTRY = re.compile(r"[\w.]+:[\w.]+")
-
-
 @dataclass(frozen=True, slots=True)
 class State:
-    """The files of a project that count, at one moment.
+    """The files of a project at one moment.
 
     Attributes:
-        files: all of them, with digests of their content.
+        files: those that count, with digests of their content.
+        notes: digests of the others, which count for what opens them.
         texts: what stands in the Python files.
-        names: names that other files mention.
     """
 
     files: Mapping[str, str]
+    notes: Mapping[str, str]
     texts: Mapping[str, bytes]
-    names: frozenset[str] = frozenset()
 
     @classmethod
     def now(cls, request: Request, before: Snapshot, after: Snapshot, opened: Set[str] | None) -> State:
@@ -285,24 +232,9 @@ class State:
         """
         digests = {name: file.digest for name, file in after.files.items()}
         files = counted(request, digests, after.touched_since(before), opened)
+        notes = {name: digest for name, digest in digests.items() if name not in files}
         found = {name: read(request.root / name) for name in files if name.endswith(".py")}
-        texts = {name: text for name, text in found.items() if text is not None}
-        return cls(files, texts, named(request.root, files))
-
-
-def named(root: Path, files: Mapping[str, str]) -> frozenset[str]:
-    """The names that files beside the program text mention: by them, libraries may find what to call."""
-    found: set[str] = set()
-    for name in files:
-        text = read(root / name) if _MAY_TELL.fullmatch(name) else None
-        if text is not None and len(text) <= _LONGEST_TOLD:
-            found |= names_in(text.decode("utf-8", "replace"))
-    for name in ("pyproject.toml", "setup.cfg"):
-        text = read(root / name)
-        if text is not None:
-            for entry in _ENTRY.findall(text.decode("utf-8", "replace")):
-                found |= names_in(entry)
-    return frozenset(found)
+        return cls(files, notes, {name: text for name, text in found.items() if text is not None})
 
 
 def read(path: Path) -> bytes | None:

@@ -17,12 +17,11 @@ from pathlib import Path, PurePosixPath
 from tempfile import TemporaryDirectory
 
 from mutabot.border.codec import to_data
-from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.plan.plan import Plan
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.reuse.keys import Dependencies, says_same
-from mutabot.campaign.reuse.reuse import GONE, Earlier, Pair, Reused
+from mutabot.campaign.reuse.keys import Dependencies, Was
+from mutabot.campaign.reuse.reuse import GONE, Pair, Reused, in_short
 from mutabot.campaign.reuse.snapshot import WRITTEN, State, counts_by_name, is_note, own_files
 from mutabot.errors import ConfigurationError, JournalError, UsageError
 from mutabot.frozen import frozen
@@ -169,19 +168,24 @@ def _run(folder: Path, *command: str) -> subprocess.CompletedProcess[bytes]:
 _CONFIGURATIONS = ("mutabot.toml", "pyproject.toml")
 
 
-def dependencies_then(
-    revision: Revision, request: Request, baseline: Baseline, tests: Iterable[str], now: Dependencies
-) -> Dependencies:
+def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependencies:
     """What the same outcomes depended on at a revision.
 
     Raises ConfigurationError where its configuration or vocabulary cannot be read.
     """
+    request = campaign.request
     files, texts = _files(revision, request.root, now)
     then = _request(revision, request, files, texts)
     for name in {*own_files(request), *own_files(then)} & files.keys():
         del files[name]
         texts.pop(name, None)
-    return Dependencies(then, baseline, tests, State(files, texts, now.names), read=revision.read)
+    notes: dict[str, str] = {}
+    for name, digest in now.notes.items():
+        if revision.is_changed(request.root / name):
+            _add(notes, {}, name, revision.read(request.root / name))
+        else:
+            notes[name] = digest
+    return Dependencies(then, campaign.baseline, State(files, notes, texts), read=revision.read)
 
 
 def _files(revision: Revision, root: Path, now: Dependencies) -> tuple[dict[str, str], dict[str, bytes]]:
@@ -269,27 +273,42 @@ def open_others(request: Request, progress: Progress) -> list[JournalReader]:
 
 
 def altered_since(
-    revision: Revision,
-    campaign: Campaign,
-    tests: Iterable[str],
-    now: Dependencies,
-    mutants: Sequence[Mutant],
+    revision: Revision, campaign: Campaign, now: Dependencies, found: Reused, mutants: Sequence[Mutant]
 ) -> dict[Pair, str]:
-    """Mutants and rounds that the changes since a revision can have altered, and why."""
+    """Mutants and rounds that are not taken over and that the changes can have altered, and why.
+
+    Of a mutant that no journal knows, all counts that its tests execute of the original, and what no test
+    does: a mutant might.
+    """
     request = campaign.request
     pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
+    left = [(mutant, round) for mutant, round in pairs if (mutant.id, round) not in found.done]
     try:
-        then = dependencies_then(revision, request, campaign.baseline, tests, now)
+        then = _then(revision, campaign, now)
     except ConfigurationError as error:
         campaign.progress.note(f"{error}; so everything counts as changed")
         reason = f"the configuration of {revision.ref} cannot be read"
-        return {(mutant.id, round): reason for mutant, round in pairs}
-    earlier = Earlier(now, then.parts.get, reaches={then.tree: then.reach})
-    return {
-        (mutant.id, round): earlier.why(was, mutant, round)
-        for mutant, round in pairs
-        if not says_same(now.key(mutant, round), was := then.key(mutant, round))
-    }
+        return {(mutant.id, round): reason for mutant, round in left}
+    altered: dict[Pair, str] = {}
+    for mutant, round in left:
+        pair = (mutant.id, round)
+        known = next((one.was(one.kept[pair].key) for one in found.sources if pair in one.kept), None)
+        whole, until = now.asked(known) if known is not None else (False, "")
+        was = Was(
+            then.common,
+            then.place(mutant, round, whole, until),
+            then.own(mutant, round),
+            then.tree,
+            known.found_in if known is not None else now.tree,
+            known.executed if known is not None else now.executed_by(mutant, round),
+            {name: then.notes.get(name, "") for name in known.notes} if known is not None else {},
+        )
+        why = now.why(was, mutant, round)
+        if why:
+            altered[pair] = in_short(why)
+        elif pair in found.why and (whole or found.why[pair] == GONE):
+            altered[pair] = found.why[pair]  # as without a revision
+    return altered
 
 
 def only_altered(
@@ -304,24 +323,21 @@ def only_altered(
     """The plan without mutants of which nothing is known nor run.
 
     What the changes cannot have altered is not run, also where no journal holds an outcome of it: ``found``
-    says so from then on. An outcome that depends on all tests is run again as without a revision.
+    says so from then on.
     """
     pairs = [(mutant.id, round) for round in range(rounds) for mutant in plan.mutants]
-    again = {pair: why for pair, why in found.why.items() if why == GONE or pair in found.whole}
-    why = {**altered, **again}
-    left = [pair for pair in pairs if pair not in found.done and pair not in why]
-    run = {pair: reason for pair, reason in why.items() if pair not in found.done}
+    left = [pair for pair in pairs if pair not in found.done and pair not in altered]
     reasons = Counter(_why_not_taken(found, pair) for pair in left)
     since = Since(
         ref=revision.ref,
         commit=revision.commit,
-        run=dict(Counter(run.values()).most_common()),
+        run=dict(Counter(altered.values()).most_common()),
         taken_over=len(found.done),
         not_judged=dict(reasons.most_common()),
     )
     _tell(since, revision.short, progress)
     journal.set_meta(SINCE, to_data(since))
-    known = {mutant for mutant, _ in found.done | run.keys()}
+    known = {mutant for mutant, _ in found.done | altered.keys()}
     kept = [mutant for mutant in plan.mutants if mutant.id in known]
     journal.keep_planned(known)
     found.done.update(left)

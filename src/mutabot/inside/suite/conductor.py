@@ -108,6 +108,7 @@ class Conductor:
         conductor.session.returns = Returns(conductor.locator)
         conductor.session.install()
         conductor.look_at_checks()
+        conductor.record_units()
         if job.serving is None:
             conductor._begin(home)
         else:
@@ -168,6 +169,10 @@ class Conductor:
         Assertions(root, self._is_of_tests, looks).install()
         Comparisons(root, looks).install()
         self.session.call_sites.hook_pytest()
+
+    def record_units(self) -> None:
+        """Note what is executed."""
+        self.running.units.install()
 
     def _is_of_tests(self, path: str) -> bool:
         """Whether a file is the project's own, and not the program's."""

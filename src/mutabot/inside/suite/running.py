@@ -13,10 +13,12 @@ import pytest
 
 from mutabot.border.events import TestEnd, TestStart
 from mutabot.border.time_used import TimeUsed
+from mutabot.border.units import Executed
 from mutabot.inside import seeds
 from mutabot.inside.calls.locate import Locator
 from mutabot.inside.checks.looks import Looks
 from mutabot.inside.evidence import Evidence
+from mutabot.inside.executed import ExecutedUnits
 from mutabot.inside.node_ids import node_id
 from mutabot.inside.processes.members import Members
 from mutabot.inside.readings.probes import Reading
@@ -50,6 +52,7 @@ class Running:
         branch: what to do if this process turns out to be a branch.
         members: processes below the tests; None as long as no job is known.
         looks: the checks that the test makes.
+        units: what is executed.
     """
 
     def __init__(self, session: Session, locator: Locator) -> None:
@@ -59,6 +62,7 @@ class Running:
         self.members: Members | None = None
         self.addresses = FixedAddresses()
         self.looks = Looks()
+        self.units = ExecutedUnits(session.job.root)
         self._ending: Ending | None = None
         self._expected: Ending | None = None
         self._outcome = PASSED
@@ -78,6 +82,7 @@ class Running:
         self._ending, self._expected, self._outcome, self._reading = None, None, PASSED, Reading()
         self.looks.clear()
         self._logged = None
+        self.units.start_test()
         self.branch.start_test()
         if self.branch.left_out.is_next(node_id(item)):
             return (yield)
@@ -126,14 +131,16 @@ class Running:
             self.session.pipe.send(watched(node_id(item), settings.timeout, "pytest-timeout"))
 
     @pytest.hookimpl(tryfirst=True)
-    def pytest_runtest_call(self) -> None:
+    def pytest_runtest_call(self, item: pytest.Item) -> None:
         """The test's fixtures are set up."""
         if self.session.returns is not None:
             self.session.returns.begin_call()
+        self.units.begin_call(keeps=self._has_shared_fixtures(item))
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_teardown(self) -> Generator[None, Any, Any]:
         """Before fixtures take the world down: take the probes."""
+        self.units.end_call()
         self._reading = self.session.take_probes()
         return (yield)
 
@@ -155,6 +162,20 @@ class Running:
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """A report counts for the suite: a plug-in that runs a test again does not report what it undoes."""
         self._logged = bool(self._logged) or report.failed
+
+    def _has_shared_fixtures(self, item: pytest.Item) -> bool:
+        """Whether the test has fixtures of the project's that outlive it."""
+        known = getattr(getattr(item, "_fixtureinfo", None), "name2fixturedefs", {})
+        return any(
+            one.scope != "function" and self.units.is_of_project(getattr(one.func, "__code__", None))
+            for some in known.values()
+            for one in some
+        )
+
+    def _executed(self, evidence: Evidence) -> Executed:
+        """What was executed: in a test that a mutant neither reached nor failed, in that test alone."""
+        is_mutant = self.session.job.mutant is not None or self.branch.is_one
+        return self.units.of_test(alone=is_mutant and not evidence.hits and self._outcome != FAILED)
 
     def _note_failure(self, ending: Ending) -> None:
         """The first failure counts; of several subtests, the first that is more than a refusal."""
@@ -232,6 +253,7 @@ class Running:
             more_checks=self.looks.more,
             recording=session.recording.text(session.recorder.told()),
             hindered=self._hindered(ending),
+            executed=self._executed(evidence),
         )
 
 

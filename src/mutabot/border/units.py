@@ -1,0 +1,217 @@
+"""Units of a Python file: each function by itself, and its module level, which is the rest.
+
+The runtime records which units are executed, by the lines of their ``def``; the controller compares what the
+units say. A unit says its syntax tree, without positions, comments and layout.
+"""
+
+from __future__ import annotations
+
+import ast
+import copy
+import hashlib
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
+from pathlib import PurePosixPath
+
+#: in the place of a line: the module level, or the text of the whole file
+MODULE, WHOLE = -1, 0
+#: in the place of a file: all Python files of the project may have been executed
+ALL_FILES = "*"
+#: units that were executed: by file, the lines of their ``def``, ``MODULE`` or ``WHOLE``
+Executed = Mapping[str, tuple[int, ...]]
+
+#: decorators that leave it to others when a function is called, and do not look into it
+_PLAIN = {
+    "staticmethod", "classmethod", "property", "setter", "getter", "deleter", "cached_property", "cache",
+    "lru_cache", "contextmanager", "asynccontextmanager", "abstractmethod", "override", "overload", "final",
+    "fixture",
+}  # fmt: skip
+#: names by which a function may read program text or its line numbers
+_TEXT = {
+    "getsource", "getsourcelines", "getsourcefile", "findsource", "f_lineno", "tb_lineno", "co_firstlineno",
+    "lineno", "linecache", "tokenize", "getframeinfo", "extract_stack", "format_stack", "print_stack",
+}  # fmt: skip
+
+
+def together(parts: Iterable[Executed | None]) -> Executed | None:
+    """The units of all of these; None if those of one are not known."""
+    found: dict[str, set[int]] = {}
+    for part in parts:
+        if part is None:
+            return None
+        for file, lines in part.items():
+            found.setdefault(file, set()).update(lines)
+    return {file: tuple(sorted(lines)) for file, lines in found.items()}
+
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+#: the first and last line and column of a node, or a line alone
+Extent = tuple[int, ...]
+
+
+def is_test_file(name: str) -> bool:
+    """Whether pytest looks for tests in a file of this name."""
+    last = PurePosixPath(name).name
+    return last.endswith(".py") and (last.startswith("test_") or last.endswith("_test.py"))
+
+
+def is_unit(node: ast.AST) -> bool:
+    """Whether a function is a unit of its own: a decorator that is not known may do anything with it."""
+    return isinstance(node, Function) and all(map(_is_plain, node.decorator_list))
+
+
+def functions_of(tree: ast.AST, prefix: str = "") -> Iterator[tuple[str, Function]]:
+    """The functions of a module and its classes that are units, with their qualified names."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, Function):
+            if is_unit(node):
+                yield prefix + node.name, node
+        elif isinstance(node, ast.ClassDef):
+            yield from functions_of(node, f"{prefix}{node.name}.")
+        elif isinstance(node, ast.stmt | ast.ExceptHandler | ast.match_case):
+            yield from functions_of(node, prefix)
+
+
+def last_name(node: ast.AST) -> str:
+    """The last part of the name of what is called or read; empty if it has none."""
+    if isinstance(node, ast.Call):
+        return last_name(node.func)
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+
+
+def _is_plain(decorator: ast.expr) -> bool:
+    return last_name(decorator) in _PLAIN or _is_mark(decorator)
+
+
+def _is_mark(decorator: ast.expr) -> bool:
+    """Whether this is a mark of pytest's with arguments that are computed without a call."""
+    calls = [one for one in ast.walk(decorator) if isinstance(one, ast.Call)]
+    is_mark = ast.unparse(decorator).startswith(("pytest.mark.", "mark."))
+    return is_mark and all(one is decorator or last_name(one) == "param" for one in calls)
+
+
+class File:
+    """What stands in a Python file.
+
+    Args:
+        name: its path relative to the project.
+        text: what it holds.
+    """
+
+    def __init__(self, name: str, text: bytes) -> None:
+        self.name, self._text = name, text
+
+    @cached_property
+    def digest(self) -> str:
+        """The text, as a digest."""
+        return hashlib.blake2b(self._text, digest_size=12).hexdigest()
+
+    @cached_property
+    def nodes(self) -> dict[str, ast.AST] | None:
+        """Its units by name, the module level by the empty name; None if it cannot be parsed."""
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                tree = ast.parse(self._text)
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            return None
+        found: dict[str, ast.AST] = {}
+        for name, node in functions_of(tree):
+            number = sum(one.partition("#")[0] == name for one in found)
+            found[f"{name}#{number}" if number else name] = node
+        found[""] = _ModuleLevel(is_test_file(self.name)).visit(copy.deepcopy(tree))
+        return found
+
+    @cached_property
+    def said(self) -> dict[str, str]:
+        """What each unit says, as a digest, by its name; of a file that cannot be parsed, the text."""
+        if self.nodes is None:
+            return {"": self.digest}
+        return {name: self._said_by(node) for name, node in self.nodes.items()}
+
+    @property
+    def is_quiet(self) -> bool:
+        """Whether nothing happens when it is imported but that names are given to what is plain."""
+        tree = (self.nodes or {}).get("")
+        return isinstance(tree, ast.Module) and all(map(_is_quiet, tree.body))
+
+    def names_at(self, lines: tuple[int, ...]) -> set[str] | None:
+        """The names of the units at these lines; None if the whole text counts."""
+        if self.nodes is None or WHOLE in lines:
+            return None
+        by_line = {getattr(node, "lineno", MODULE): name for name, node in self.nodes.items()}
+        found = {by_line.get(line) for line in lines}
+        return None if None in found else {name for name in found if name is not None}
+
+    def lines_of(self, names: Iterable[str] | None) -> tuple[int, ...]:
+        """The lines by which these units are recorded; None: the whole text."""
+        if self.nodes is None or names is None:
+            return (WHOLE,)
+        return tuple(sorted(getattr(self.nodes[name], "lineno", MODULE) for name in names))
+
+    def shown(self, name: str) -> str:
+        """A unit in words: ``place() in sorting.py``."""
+        return f"{name.partition('#')[0]}() in {self.name}" if name else f"module level of {self.name}"
+
+    def moves_to(self, new: File) -> dict[Extent, Extent | None]:
+        """Where lines and nodes of this text stand in a new one; None where that is not clear."""
+        found: dict[Extent, Extent | None] = {}
+        for name, node in (self.nodes or {}).items():
+            if new.nodes is None or self.said[name] != new.said.get(name):
+                continue
+            for before, now in zip(ast.walk(node), ast.walk(new.nodes[name]), strict=True):
+                was, is_now = _extent(before), _extent(now)
+                for part in (slice(None), slice(0, 1), slice(2, 3)) if was and is_now else ():
+                    if found.setdefault(was[part], is_now[part]) != is_now[part]:
+                        found[was[part]] = None
+        return found
+
+    def _said_by(self, node: ast.AST) -> str:
+        names = {getattr(one, "attr", getattr(one, "id", "")) for one in ast.walk(node)}
+        text = self.digest if not _TEXT.isdisjoint(names) else ""
+        return hashlib.blake2b((ast.dump(node) + text).encode(), digest_size=12).hexdigest()
+
+
+def _is_quiet(node: ast.AST) -> bool:
+    if isinstance(node, ast.ClassDef):
+        return not node.decorator_list and not node.bases and all(map(_is_quiet, node.body))
+    if isinstance(node, ast.Assign | ast.AnnAssign | ast.Expr):
+        parts = ast.walk(node.value) if node.value is not None else ()
+        return not any(isinstance(one, ast.Call | ast.Await) for one in parts)
+    return isinstance(node, ast.Import | ast.ImportFrom | ast.Pass)
+
+
+def _extent(node: ast.AST) -> Extent:
+    line = getattr(node, "lineno", None)
+    if line is None:
+        return ()
+    end, column = getattr(node, "end_lineno", line), getattr(node, "end_col_offset", 0)
+    return int(line), int(getattr(node, "col_offset", 0)), int(end), int(column)
+
+
+class _ModuleLevel(ast.NodeTransformer):
+    """Leaves of functions what happens when the module is imported.
+
+    Of tests it leaves nothing: pytest alone looks for them, and which tests there are is compared elsewhere.
+    """
+
+    def __init__(self, are_tests: bool) -> None:
+        self._are_tests = are_tests
+
+    def visit_FunctionDef(self, node: Function) -> Function | None:
+        if not is_unit(node):
+            return node
+        if self._are_tests and node.name.startswith("test"):
+            return None
+        text = ast.get_docstring(node, clean=False) or ""
+        node.body = node.body[:1] if ">>>" in text else []  # the examples of a docstring are tests
+        return node
+
+    visit_AsyncFunctionDef = visit_FunctionDef  # noqa: N815  # the name that ast looks for
+
+    def visit_ClassDef(self, node: ast.ClassDef) -> ast.ClassDef | None:
+        had = len(node.body)
+        self.generic_visit(node)
+        own = [one for one in node.body if not isinstance(getattr(one, "value", None), ast.Constant)]
+        return None if len(node.body) < had and not own and not node.decorator_list else node

@@ -1,1 +1,0 @@
-"""What Python files are made of, and what a test can reach of it under any mutant."""
