@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import dedent
@@ -65,8 +65,78 @@ ERRANDS = {
         def there_and_back(length):
             return [length, -length]
     """,
+    "recovery.py": """
+        def recover(arm, missing):
+            arm.move_by(part(missing))
+            if arm.x < 0.0:
+                arm.move_by(home())
+
+        def part(missing):
+            return missing * 0.97
+
+        def home():
+            return 0.32
+    """,
+    "plans.py": """
+        from functools import lru_cache
+        from distances import far, near
+
+        _stops = None
+
+        def stops():
+            global _stops
+            if _stops is None:
+                _stops = plan()
+            return _stops
+
+        def plan():
+            return [near(), -near()]
+
+        @lru_cache
+        def reach():
+            return far()
+
+        class Route:
+            known = {}
+
+            def __init__(self, name):
+                self.name = name
+
+            def length(self):
+                if self.name not in self.known:
+                    self.known[self.name] = near() / 2
+                return self.known[self.name]
+    """,
+    "distances.py": """
+        def near():
+            return 0.1
+
+        def far():
+            return 0.31
+    """,
     "mission.py": """
+        from plans import Route, reach, stops
+        from recovery import recover
+        from robot import Refused
         from routes import FAR, NEAR, half, there_and_back
+
+        def deliver(arm):
+            start = arm.x
+            try:
+                arm.move_by(0.3)
+            except Refused:
+                recover(arm, 0.3)
+            if arm.x < start + 0.25:
+                recover(arm, start + 0.3 - arm.x)
+
+        def tour(arm):
+            for stop in stops():
+                arm.move_by(stop)
+            arm.move_by(reach())
+
+        def detour(arm):
+            arm.move_by(Route("detour").length())
+            arm.move_by(reach())
 
         def approach(arm, length):
             arm.move_by(half(length))
@@ -122,6 +192,48 @@ ERRANDS = {
             mission.bring(arm)
             assert arm.x < 0.9
     """,
+    "tests/test_deliver.py": """
+        import mission
+        import pytest
+        from helpers import is_near
+
+        @pytest.fixture(scope="module")
+        def goal():
+            return length()
+
+        def length():
+            return 0.3
+
+        def test_delivers(arm, goal):
+            start = arm.x
+            mission.deliver(arm)
+            assert is_near(arm.x - start, goal)
+
+        def test_delivers_near(arm, goal):
+            start = arm.x
+            mission.deliver(arm)
+            assert abs(arm.x - start - goal) < 0.2
+    """,
+    "tests/test_tour.py": """
+        import mission
+        from helpers import is_near
+
+        def test_tours(arm):
+            start = arm.x
+            mission.tour(arm)
+            assert is_near(arm.x - start, 0.31)
+
+        def test_tours_with_a_detour(arm):
+            start = arm.x
+            mission.detour(arm)
+            assert is_near(arm.x - start, 0.35)
+
+        def test_tours_again(arm):
+            start = arm.x
+            mission.detour(arm)
+            mission.tour(arm)
+            assert abs(arm.x - start - 0.65) < 0.1
+    """,
     "tests/test_patrol.py": """
         import mission
         from helpers import is_near
@@ -141,6 +253,8 @@ class Subject:
     Attributes:
         files: its files.
         program, tests, helpers: which files each kind of edit is for.
+        hidden: files that only mutants reach.
+        kept: files whose results outlive the test that asked for them first.
         vocabulary: its vocabulary.
         options: of ``mutabot run``.
         pinned: functions that a selection names, which must not go elsewhere.
@@ -150,6 +264,8 @@ class Subject:
     program: list[str]
     tests: list[str]
     helpers: list[str]
+    hidden: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
     vocabulary: str = "robot.toml"
     options: tuple[str, ...] = ()
     pinned: bool = False
@@ -171,8 +287,10 @@ SUBJECTS: dict[str, Callable[[], Subject]] = {
     "errands": lambda: Subject(
         {name: dedent(text).lstrip() for name, text in ERRANDS.items()},
         program=["mission.py"],
-        tests=["tests/test_fetch.py", "tests/test_bring.py", "tests/test_patrol.py"],
+        tests=[f"tests/test_{name}.py" for name in ("fetch", "bring", "patrol", "deliver", "tour")],
         helpers=["routes.py", "tests/helpers.py", "robot.py"],
+        hidden=("recovery.py",),
+        kept=("plans.py", "distances.py", "tests/test_deliver.py"),
     ),
     "scales": lambda: of_example(
         "scales",
@@ -252,6 +370,45 @@ def comment(text: str, chance: random.Random) -> str:
     )
     lines.insert(place, f"# edit {chance.randint(1, 999)}\n" * chance.randint(1, 3))
     return "".join(lines)
+
+
+def much_other_number(text: str, chance: random.Random) -> str:
+    """A number in some function is quite different."""
+    return other_number(text, chance, scale=0.5)
+
+
+def of_number(kind: Callable[[Subject], Sequence[str]]) -> Callable[[Path, Subject, random.Random], str]:
+    def edit(folder: Path, subject: Subject, chance: random.Random) -> str:
+        if not kind(subject):
+            raise NotPossibleError
+        path = folder / chance.choice(kind(subject))
+        how = chance.choice((much_other_number, other_number))
+        path.write_text(how(path.read_text(), chance))
+        return f"{how.__name__} in {path.relative_to(folder)}"
+
+    return edit
+
+
+def new_test(folder: Path, subject: Subject, chance: random.Random) -> str:
+    """A test is there twice, the second time at the end of its file and with one more assert."""
+    path = folder / chance.choice(subject.tests)
+    text = path.read_text()
+    able = [one for one in functions(text) if one.name.startswith("test_") and not one.decorator_list]
+    if not able:
+        raise NotPossibleError
+    node = chance.choice(able)
+    if node.col_offset:
+        raise NotPossibleError
+    lines = text.splitlines()[node.lineno - 1 : node.end_lineno]
+    lines[0] = lines[0].replace(node.name, f"{node.name}_once_more")
+    first = chance.random() < 0.5
+    new = "\n".join([*lines, f"    assert {chance.randint(1, 9)}"])
+    if first:
+        before, after = text.splitlines()[: node.lineno - 1], text.splitlines()[node.lineno - 1 :]
+        path.write_text("\n".join([*before, new, "", *after]) + "\n")
+    else:
+        path.write_text(f"{text.rstrip()}\n\n{new}\n")
+    return f"{node.name} once more, {'before it' if first else 'at the end'}, in {path.relative_to(folder)}"
 
 
 def of_text(kind: Callable[[Subject], list[str]]) -> Callable[[Path, Subject, random.Random], str]:
@@ -375,4 +532,7 @@ EDITS: dict[str, Callable[[Path, Subject, random.Random], str]] = {
     "test": changed_test,
     "vocabulary": changed_entry,
     "helper": of_text(lambda subject: subject.helpers),
+    "hidden": of_number(lambda subject: subject.hidden),
+    "kept": of_number(lambda subject: subject.kept),
+    "new test": new_test,
 }

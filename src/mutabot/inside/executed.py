@@ -16,7 +16,7 @@ from collections.abc import Iterable, Iterator
 from types import CodeType
 from typing import Any
 
-from mutabot.border.units import ALL_FILES, MODULE, WHOLE, Executed, functions_of, last_name
+from mutabot.border.units import ALL_FILES, MODULE, WHOLE, Executed, functions_of, is_test_file, last_name
 
 from .text import loading
 
@@ -47,6 +47,7 @@ class ExecutedUnits:
         self._ran = bytearray()
         self._places: list[_PLACES] = []
         self._keeping: set[int] = set()
+        self._tests: set[_PLACES] = set()
         self._common: set[_PLACES] = set()
         self._test: set[_PLACES] = set()
         self._loaded: set[str] = set()
@@ -100,7 +101,7 @@ class ExecutedUnits:
         found = self._take()
         self._test |= found
         if leaves:
-            self._common |= found
+            self._common |= found - self._tests
         self._in_call = False
 
     def of_test(self, *, alone: bool = False) -> Executed:
@@ -148,6 +149,8 @@ class ExecutedUnits:
         for _, node in functions_of(tree):
             number = len(self._places)
             self._places.append((name, node.lineno))
+            if is_test_file(name) and node.name.startswith("test"):
+                self._tests.add((name, node.lineno))
             self._ran.append(0)
             if node.lineno in keeping:
                 self._keeping.add(number)

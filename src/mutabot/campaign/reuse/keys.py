@@ -17,7 +17,7 @@ import platform
 import re
 import sys
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib.metadata import distributions
 from itertools import islice
@@ -33,7 +33,7 @@ from mutabot.campaign.request import Request
 from mutabot.frozen import frozen
 from mutabot.model import Mutant, Outcome, Vocabulary
 
-from .snapshot import _HASH, State, _digest_of, read
+from .snapshot import _HASH, State, _digest_of, digest_of, read
 
 #: what something is made of: names, and a digest or a plain value for each
 Parts = Mapping[str, str]
@@ -132,6 +132,7 @@ class Dependencies:
         request, baseline: the campaign.
         state: the project's files.
         read: what a file of the configuration holds.
+        absent: tests of the baseline that were not there yet, at a revision.
 
     Attributes:
         request: the campaign.
@@ -149,8 +150,9 @@ class Dependencies:
         baseline: Baseline,
         state: State,
         read: Callable[[Path], bytes | None] = read,
+        absent: Collection[str] = (),
     ) -> None:
-        self.request, self._baseline = request, baseline
+        self.request, self._baseline, self.absent = request, baseline, absent
         self.files, self.notes, self.texts = state.files, state.notes, state.texts
         self.parts: dict[str, Parts] = {}
         self._told = 0
@@ -247,7 +249,7 @@ class Dependencies:
     def tests(self, mutant: Mutant, round: int, *, whole: bool, until: str = "") -> tuple[str, ...]:
         """The tests that an outcome depends on, in their order, up to the one that decided."""
         reaching = self._baseline.tests_reaching(round, mutant)
-        suite = self._baseline.suite(round)
+        suite = tuple(test for test in self._baseline.suite(round) if test not in self.absent)
         found = suite if whole else tuple(test for test in suite if test in reaching)
         return found[: found.index(until) + 1] if until in found else found
 
@@ -350,6 +352,12 @@ class Dependencies:
                 or (name, unit) in own
             }
         return found
+
+    def is_of(self, test: str, tree: Tree) -> bool:
+        """Whether a test of now was there in a tree; one that is no function is taken for that."""
+        file, name = self.file_of(test), _function_of(test)
+        now, then = self.tree.file(file), tree.file(file)
+        return now is None or name not in now.said or (then is not None and name in then.said)
 
     def file_of(self, test: str) -> str:
         """The test's file relative to the project's root; pytest's root may be a folder above."""
@@ -458,19 +466,20 @@ def _pytest_parts(request: Request, read: Callable[[Path], bytes | None]) -> dic
                 continue
             shown = "../" * depth + name
             if name == "pyproject.toml":
-                parts[f"tool.pytest in {shown}"] = _HASH + _digest(_pytest_table(text))
+                parts[f"tool.pytest in {shown}"] = _HASH + _digest(tool_table(text, "pytest"))
             elif depth:
-                parts[shown] = _HASH + hashlib.blake2b(text, digest_size=12).hexdigest()
+                parts[shown] = digest_of(text)
     return parts
 
 
-def _pytest_table(text: bytes) -> Any:
+def tool_table(text: bytes | None, tool: str) -> Any:
+    """The table of a tool in a ``pyproject.toml``; None if there is none."""
     try:
-        data = tomllib.loads(text.decode("utf-8"))
+        data = tomllib.loads((text or b"").decode("utf-8"))
     except ValueError:
         return None
-    tool = data.get("tool")
-    return tool.get("pytest") if isinstance(tool, dict) else None
+    tools = data.get("tool")
+    return tools.get(tool) if isinstance(tools, dict) else None
 
 
 def _vocabulary_parts(vocabulary: Vocabulary) -> dict[str, str]:

@@ -194,6 +194,11 @@ def _is_name_of_project(name: str) -> bool:
     return not (name.startswith(".") or name in _FOLDERS or name.endswith(_SUFFIXES))
 
 
+def digest_of(text: bytes) -> str:
+    """What a file holds, as a digest."""
+    return f"{_HASH}{_new_hash(text).hexdigest()}"
+
+
 def _digest_of(path: Path) -> str | None:
     try:
         with path.open("rb") as file:
@@ -204,8 +209,8 @@ def _digest_of(path: Path) -> str | None:
         return f"cannot be read: {error.strerror}"
 
 
-def _new_hash() -> Any:
-    return hashlib.blake2b(digest_size=12)
+def _new_hash(text: bytes = b"") -> Any:
+    return hashlib.blake2b(text, digest_size=12)
 
 
 @dataclass(frozen=True, slots=True)

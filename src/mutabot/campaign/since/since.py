@@ -7,23 +7,28 @@ written, not even the index.
 
 from __future__ import annotations
 
-import hashlib
 import os
 import subprocess
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
-from pathlib import Path, PurePosixPath
-from tempfile import TemporaryDirectory
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from mutabot.border.codec import to_data
 from mutabot.campaign.campaign import Campaign
 from mutabot.campaign.plan.plan import Plan
 from mutabot.campaign.request import Progress, Request
-from mutabot.campaign.reuse.keys import Dependencies, Was
+from mutabot.campaign.reuse.keys import Dependencies, Tree, Was, tool_table
 from mutabot.campaign.reuse.reuse import GONE, Pair, Reused, in_short
-from mutabot.campaign.reuse.snapshot import WRITTEN, State, counts_by_name, is_note, own_files
-from mutabot.errors import ConfigurationError, JournalError, UsageError
+from mutabot.campaign.reuse.snapshot import (
+    WRITTEN,
+    State,
+    counts_by_name,
+    digest_of,
+    is_note,
+    own_files,
+    read,
+)
+from mutabot.errors import JournalError, UsageError
 from mutabot.frozen import frozen
 from mutabot.journal.files import find_journal
 from mutabot.journal.journal import Journal
@@ -31,8 +36,6 @@ from mutabot.journal.lock import refuse_tracked
 from mutabot.journal.reader import JournalReader
 from mutabot.journal.records import SINCE, Since
 from mutabot.model import Mutant
-from mutabot.settings.configuration import load_configuration
-from mutabot.vocabulary import load
 
 _OPTION = "--since"
 
@@ -165,89 +168,39 @@ def _run(folder: Path, *command: str) -> subprocess.CompletedProcess[bytes]:
         raise UsageError(f"{_OPTION} needs git, which cannot be started: {error.strerror}") from error
 
 
-_CONFIGURATIONS = ("mutabot.toml", "pyproject.toml")
-
-
 def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependencies:
-    """What the same outcomes depended on at a revision.
+    """What the same outcomes depended on at a revision, if its configuration was that of now."""
+    root = campaign.request.root
 
-    Raises ConfigurationError where its configuration or vocabulary cannot be read.
-    """
-    request = campaign.request
-    files, texts = _files(revision, request.root, now)
-    then = _request(revision, request, files, texts)
-    for name in {*own_files(request), *own_files(then)} & files.keys():
-        del files[name]
-        texts.pop(name, None)
-    notes: dict[str, str] = {}
-    for name, digest in now.notes.items():
-        if revision.is_changed(request.root / name):
-            _add(notes, {}, name, revision.read(request.root / name))
-        else:
-            notes[name] = digest
-    return Dependencies(then, campaign.baseline, State(files, notes, texts), read=revision.read)
+    def digests_then(known: Mapping[str, str]) -> dict[str, str]:
+        same = {name: digest for name, digest in known.items() if not _is_other(revision, root, name, digest)}
+        changed = {name: revision.read(root / name) for name in known.keys() - same.keys()}
+        return same | {name: digest_of(text) for name, text in changed.items() if text is not None}
 
-
-def _files(revision: Revision, root: Path, now: Dependencies) -> tuple[dict[str, str], dict[str, bytes]]:
-    """The files with their digests, and what stood in the Python files."""
-    files: dict[str, str] = {}
-    texts: dict[str, bytes] = {}
-    for name, digest in now.files.items():
-        if revision.is_changed(root / name) and digest != WRITTEN:
-            _add(files, texts, name, revision.read(root / name))
-            continue
-        files[name] = digest
-        if name in now.texts:
-            texts[name] = now.texts[name]
-    for name in revision.gone():
-        if counts_by_name(name) and not is_note(name):
-            _add(files, texts, name, revision.read(root / name))
-    return files, texts
+    gone = {name: "" for name in revision.gone() if counts_by_name(name) and not is_note(name)}
+    own = own_files(campaign.request)
+    files = digests_then({**now.files, **{name: digest for name, digest in gone.items() if name not in own}})
+    texts = {name: revision.read(root / name) or b"" for name in files if name.endswith(".py")}
+    tree = Tree({name: files[name] for name in texts}, lambda name, digest: texts[name])
+    absent = {test for _, test in campaign.baseline.ends if not now.is_of(test, tree)}
+    state = State(files, digests_then(now.notes), texts)
+    return Dependencies(campaign.request, campaign.baseline, state, revision.read, absent)
 
 
-def _add(files: dict[str, str], texts: dict[str, bytes], name: str, text: bytes | None) -> None:
-    if text is None:
-        return
-    files[name] = f"#{hashlib.blake2b(text, digest_size=12).hexdigest()}"
-    if name.endswith(".py"):
-        texts[name] = text
+def _is_other(revision: Revision, root: Path, name: str, digest: str) -> bool:
+    return revision.is_changed(root / name) and digest != WRITTEN
 
 
-def _request(
-    revision: Revision, request: Request, files: Iterable[str], texts: Mapping[str, bytes]
-) -> Request:
-    """What the campaign would have been asked then."""
-    configuration = request.configuration
-    root = request.root
-    own = {*_CONFIGURATIONS, *configuration.vocabulary}
-    if not any(revision.is_changed(root / name) for name in own):
-        return request
-    with TemporaryDirectory(prefix="mutabot-since-") as folder:
-        copy = Path(folder).resolve()
-        for name in files:  # which files there are decides what a pattern of the configuration means
-            _put(copy, name, texts.get(name, b""))
-        for name in own:
-            _put(copy, name, revision.read(root / name))
-        try:
-            then = load_configuration(copy, request.families)
-            for name in {*then.vocabulary} - own:
-                _put(copy, name, revision.read(root / name))
-            vocabulary = load(then.vocabulary, copy, request.families)
-        except (ConfigurationError, UsageError) as error:
-            raise ConfigurationError(f"at {revision.short}: {error}") from error
-    seed = then.seed if request.seed == configuration.seed else request.seed
-    return replace(
-        request, configuration=then.model_copy(update={"root": root}), vocabulary=vocabulary, seed=seed
-    )
-
-
-def _put(folder: Path, name: str, text: bytes | None) -> None:
-    parts = PurePosixPath(name).parts
-    if text is None or PurePosixPath(name).is_absolute() or ".." in parts:
-        return
-    path = folder / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(text)
+def _other_configuration(revision: Revision, request: Request) -> str | None:
+    """A file of the configuration or vocabulary that says something else now; None if there is none."""
+    files = [request.configuration.file, *request.configuration.vocabulary]
+    changed = [name for name in files if revision.is_changed(request.root / name)]
+    for name in changed:
+        texts = revision.read(request.root / name), read(request.root / name)
+        tables = [tool_table(text, "mutabot") if name == "pyproject.toml" else text for text in texts]
+        if tables[0] != tables[1]:
+            return name
+    return None
 
 
 def open_others(request: Request, progress: Progress) -> list[JournalReader]:
@@ -278,17 +231,15 @@ def altered_since(
     """Mutants and rounds that are not taken over and that the changes can have altered, and why.
 
     Of a mutant that no journal knows, all counts that its tests execute of the original, and what no test
-    does: a mutant might.
+    does: a mutant might. Where the configuration or the vocabulary has changed, everything counts as changed.
     """
     request = campaign.request
     pairs = [(mutant, round) for round in range(request.rounds) for mutant in mutants]
     left = [(mutant, round) for mutant, round in pairs if (mutant.id, round) not in found.done]
-    try:
-        then = _then(revision, campaign, now)
-    except ConfigurationError as error:
-        campaign.progress.note(f"{error}; so everything counts as changed")
-        reason = f"the configuration of {revision.ref} cannot be read"
-        return {(mutant.id, round): reason for mutant, round in left}
+    other = _other_configuration(revision, request)
+    if other is not None:
+        return {(mutant.id, round): f"{other} changed" for mutant, round in left}
+    then = _then(revision, campaign, now)
     altered: dict[Pair, str] = {}
     for mutant, round in left:
         pair = (mutant.id, round)
