@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from mutabot.border.codec import to_data
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.journal import JournalReader
 from random_edits import EDITS, SUBJECTS, NotPossibleError, Subject
 
 #: how often an edit of a kind is tried: many are not possible, or make the tests fail

@@ -25,7 +25,7 @@ from mutabot.campaign.run import run_campaign
 from mutabot.cli.request import request_of
 from mutabot.families import GRADED
 from mutabot.journal.files import HOME
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.journal import JournalReader
 from mutabot.report.document import dumps
 from mutabot.report.terminal.console import make_console
 from mutabot.report.terminal.progress import make_progress

@@ -26,7 +26,7 @@ from mutabot.cli.request import request_again
 from mutabot.cli.results import number_of
 from mutabot.errors import SelectionError, UsageError
 from mutabot.journal.files import find_journal
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.journal import JournalReader
 from mutabot.journal.records import REACHING, Reaching
 from mutabot.model import Diverged, Mutant, Outcome
 

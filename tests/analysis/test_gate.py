@@ -10,8 +10,8 @@ import pytest
 from mutabot.analysis.gate import decide
 from mutabot.analysis.results import Results, find_mutant, read_results
 from mutabot.errors import SelectionError
+from mutabot.journal.files import WriterLock
 from mutabot.journal.journal import Journal
-from mutabot.journal.lock import WriterLock
 from mutabot.model import By, Mutant, Outcome, Verdict
 from tests.analysis.samples import MUTANTS, OUTCOMES, REVERSE, SKIP, write_journal
 

@@ -11,8 +11,8 @@ import pytest
 
 from mutabot.analysis.stored import StoredEvidence
 from mutabot.campaign.run import run_campaign
+from mutabot.journal.files import recordings_path
 from mutabot.journal.journal import Journal
-from mutabot.journal.recordings import recordings_path
 from mutabot.model import Outcome, Verdict
 from tests.campaign.project import REPLAY, Quiet, request_for, write_project
 

@@ -10,7 +10,7 @@ from mutabot.analysis.gate import decide
 from mutabot.analysis.results import Results, read_results
 from mutabot.campaign.run import run_campaign
 from mutabot.exit_codes import ExitCode
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.journal import JournalReader
 from mutabot.model import Verdict
 from tests.campaign.project import CONFIGURATION, Quiet, request_for, write_project
 

@@ -13,7 +13,7 @@ import pytest
 
 from mutabot.cli.app import main, terminated_like_ctrl_c
 from mutabot.exit_codes import ExitCode
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.journal import JournalReader
 from tests.campaign.project import write_project
 
 #: seconds: only so that a test that fails does not hang

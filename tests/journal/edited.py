@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 
-from mutabot.journal.database import connect
-from mutabot.journal.marks import mark_rows
+from mutabot.journal.database import connect, mark_rows
 
 
 @contextmanager

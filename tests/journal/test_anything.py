@@ -25,12 +25,9 @@ from mutabot.cli.app import main
 from mutabot.cli.report import FORMATS
 from mutabot.errors import JournalError
 from mutabot.exit_codes import ExitCode
-from mutabot.journal.database import COLUMNS, decode
-from mutabot.journal.fitting import inflated
-from mutabot.journal.journal import Journal
-from mutabot.journal.marks import mark_of
-from mutabot.journal.reader import JournalReader
-from mutabot.journal.records import REACHING
+from mutabot.journal.database import columns, decode, mark_of
+from mutabot.journal.journal import Journal, JournalReader
+from mutabot.journal.records import REACHING, inflated
 from mutabot.report.format import Material, format_of
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
@@ -86,12 +83,12 @@ def bent(data: Any, chance: random.Random) -> Any:
 
 def damage(connection: sqlite3.Connection, chance: random.Random) -> set[tuple[str, Any, Any]]:
     """Put anything into one row; returns which it was: table, and its first two columns."""
-    table = chance.choice(["outcome", "outcome", "mutant", "kept", "meta", *COLUMNS])
-    columns = COLUMNS[table]
-    names = ", ".join(f'"{one}"' for one in columns)
+    table = chance.choice(["outcome", "outcome", "mutant", "kept", "meta", *columns()])
+    names_of = columns()[table]
+    names = ", ".join(f'"{one}"' for one in names_of)
     rows = connection.execute(f"SELECT rowid, {names} FROM {table}").fetchall()
     row, *values = chance.choice(rows)
-    index = chance.randrange(len(columns))
+    index = chance.randrange(len(names_of))
     try:
         data = json.loads(values[index])
     except (ValueError, TypeError, RecursionError):
@@ -107,7 +104,7 @@ def damage(connection: sqlite3.Connection, chance: random.Random) -> set[tuple[s
     with closing(connection.cursor()) as cursor:
         try:
             place = "CAST(? AS TEXT)" if is_text else "?"
-            cursor.execute(f'UPDATE {table} SET "{columns[index]}" = {place} WHERE rowid = ?', (value, row))
+            cursor.execute(f'UPDATE {table} SET "{names_of[index]}" = {place} WHERE rowid = ?', (value, row))
         except sqlite3.IntegrityError:  # a NULL, or a name that is taken
             return set()
     return {(table, values[0], values[1])}
@@ -128,8 +125,8 @@ def damaged(whole: Path, path: Path, chance: random.Random) -> set[tuple[str, An
 
 def forge(connection: sqlite3.Connection) -> None:
     """Mark all rows as they are now."""
-    for table, columns in COLUMNS.items():
-        names = ", ".join(f'"{one}"' for one in columns)
+    for table, found in columns().items():
+        names = ", ".join(f'"{one}"' for one in found)
         for row, *values in connection.execute(f"SELECT rowid, {names} FROM {table}").fetchall():
             mark = mark_of(table, *values)
             connection.execute('UPDATE mark SET digest = ? WHERE "table" = ? AND row = ?', (mark, table, row))

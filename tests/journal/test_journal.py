@@ -19,11 +19,9 @@ from analysis import samples
 from mutabot.border.events import TestEnd
 from mutabot.errors import JournalError
 from mutabot.journal.database import SCHEMA_VERSION, connect, guarded
-from mutabot.journal.files import previous_of
+from mutabot.journal.files import is_written, previous_of
 from mutabot.journal.journal import Journal
-from mutabot.journal.lock import is_written
 from mutabot.journal.records import Kept
-from mutabot.journal.store import Store
 from mutabot.model import By, Outcome, Verdict
 
 KILLED = Outcome("m", 0, Verdict.KILLED, By.CHECK, test="t", example=(1, -1), divergence=("a", "b"))
@@ -184,12 +182,12 @@ def test_a_campaign_that_cannot_begin_leaves_the_one_before_as_it_was(
 ) -> None:
     begin(path, KILLED)
 
-    def full(self: Store, key: str, value: object) -> None:
+    def full(self: Journal, key: str, value: object) -> None:
         with guarded(path):
             raise sqlite3.OperationalError("database or disk is full")
 
     with monkeypatch.context() as patch:
-        patch.setattr(Store, "put", full)
+        patch.setattr(Journal, "set_meta", full)
         with pytest.raises(JournalError, match="disk is full"):
             Journal.create(path, meta={"seed": 2})
     with Journal.open(path) as journal:
@@ -327,7 +325,7 @@ def test_a_writer_ended_by_sigkill_loses_nothing(path: Path) -> None:
 def test_a_full_disk_is_a_clear_error_and_keeps_what_was_there(path: Path) -> None:
     with Journal.create(path, meta={}) as journal:
         journal.add_outcome(KILLED)
-        journal._store._file._file.execute("PRAGMA max_page_count = 1")
+        journal._store._file.execute("PRAGMA max_page_count = 1")
         big = Outcome("n", 0, Verdict.ERROR, message="x" * 1_000_000)
         with pytest.raises(JournalError, match="disk is full") as error:
             journal.add_outcome(big)

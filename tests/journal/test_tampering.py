@@ -14,9 +14,8 @@ import pytest
 
 from analysis import samples
 from mutabot.errors import JournalError
-from mutabot.journal.journal import Journal
-from mutabot.journal.lock import is_written
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.files import is_written
+from mutabot.journal.journal import Journal, JournalReader
 from mutabot.model import By, Outcome, Verdict
 
 KILLED = Outcome("m", 0, Verdict.KILLED, By.CHECK, test="t")
@@ -154,7 +153,7 @@ def test_a_journal_that_another_program_holds_locked_is_written_nevertheless(pat
     with Journal.create(path, meta={}) as journal:
         journal.add_outcome(KILLED)
         journal.outcomes()
-        journal._store._file._file.execute("PRAGMA busy_timeout = 10")
+        journal._store._file.execute("PRAGMA busy_timeout = 10")
         with closing(sqlite3.connect(path)) as other:
             other.execute("BEGIN IMMEDIATE")
             journal.add_outcome(SURVIVED)

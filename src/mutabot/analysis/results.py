@@ -11,8 +11,8 @@ from mutabot.border.codec import from_data
 from mutabot.errors import SelectionError, unknown_name_text
 from mutabot.frozen import frozen
 from mutabot.journal import records
-from mutabot.journal.lock import is_written
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.files import is_written
+from mutabot.journal.journal import JournalReader
 from mutabot.model import By, LeftOut, Mutant, Outcome, Quantity, Role, Verdict
 from mutabot.model.mutant import fits
 

@@ -12,7 +12,7 @@ from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.second_look import Looker
 from mutabot.campaign.faults.providers import prepare
 from mutabot.errors import SelectionError
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.journal import JournalReader
 from mutabot.journal.records import Replayed
 from mutabot.model import Mutant
 from mutabot.model.mutant import Place

@@ -17,7 +17,7 @@ from mutabot.campaign.workers.descriptors import provide
 from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Executor, Result
 from mutabot.errors import NothingToDoError
-from mutabot.journal.lock import at_work
+from mutabot.journal.files import at_work
 
 from .campaign import Campaign
 from .evidence import Evidence

@@ -13,7 +13,7 @@ from mutabot.campaign.plan.plan import Plan
 from mutabot.campaign.reuse.opened import OpenedFiles
 from mutabot.extensions import brought
 from mutabot.families import CATALOGUE
-from mutabot.journal.lock import refuse_tracked
+from mutabot.journal.files import refuse_tracked
 from mutabot.model import Mutant, Vocabulary
 from mutabot.model.named import MAIN
 from mutabot.operators import load_all

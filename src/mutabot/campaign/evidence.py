@@ -12,8 +12,8 @@ from mutabot.errors import JournalError
 from mutabot.evidence.recording import bytes_of, from_bytes
 from mutabot.evidence.story import diverged, noise_between
 from mutabot.evidence.tracks import Seen
-from mutabot.journal.fitting import UNFIT
 from mutabot.journal.recordings import ORIGINAL, Rank, Recordings
+from mutabot.journal.records import UNFIT
 from mutabot.model import Diverged, Mutant
 
 from .request import Progress, Request

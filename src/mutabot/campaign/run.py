@@ -32,8 +32,7 @@ from mutabot.campaign.since.since import Revision, altered_since, only_altered, 
 from mutabot.campaign.workers.interruption import interruptions_kept
 from mutabot.campaign.workers.task import Executor, Result
 from mutabot.errors import JournalError
-from mutabot.journal.journal import Journal
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import DRAWING, DRAWS, INCOMPLETE, OPERATORS, REACHING, REMARKS
 from mutabot.model import LeftOut, Mutant, Outcome
 

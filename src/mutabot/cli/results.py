@@ -75,7 +75,7 @@ def replay(
     """Run one mutant of the last campaign again in fresh processes; exit with 4 if it ends otherwise."""
     from mutabot.analysis.results import find_mutant, read_results
     from mutabot.campaign.again import replay_one
-    from mutabot.journal.reader import JournalReader
+    from mutabot.journal.journal import JournalReader
     from mutabot.report.document import replayed as replayed_data
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.mutant import print_replayed

@@ -1,19 +1,33 @@
-"""SQLite as the journal needs it: its tables, one writer, readers beside it, errors that say what to do."""
+"""The SQLite file of a journal: its tables, one writer, readers beside it, errors that say what to do.
+
+What the writer knows is in a second database without a name, which is gone with its process. It is the one
+that is read. Programs under test can write to any file of the project: the file is looked at in each
+transaction and at the end, and made anew if it is not what was written.
+
+Each row has a *mark*, a digest that is written with it, by which rows that somebody else wrote are found.
+There is no secret in it: it shows that a row is as some Mutabot wrote it. A file may come from anybody. A
+view or a trigger in it would be evaluated with each question: only the tables of this version may be there.
+"""
 
 from __future__ import annotations
 
 import shutil
 import sqlite3
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, suppress
+from functools import cache
+from hashlib import blake2b
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, Self
 
 from mutabot.border.storable import printable
 from mutabot.errors import JournalError
 
-SCHEMA_VERSION = 5
+from .files import WriterLock, previous_of, refuse_tracked
+from .records import UNFIT, load
+
+SCHEMA_VERSION = 6
 
 TABLES = """
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL);
@@ -39,66 +53,48 @@ CREATE TABLE mark (
     "table" TEXT NOT NULL, row INTEGER NOT NULL, digest BLOB NOT NULL, PRIMARY KEY ("table", row)
 ) WITHOUT ROWID;
 """
-#: the tables with rows of their own, and their columns; ``mark`` holds a digest of each row
-COLUMNS = {
-    "meta": ("key", "value"),
-    "test": ("round", "repetition", "test", "outcome", "data"),
-    "mutant": ("number", "id", "data"),
-    "left_out": ("id", "reason", "data"),
-    "source": ("file", "text"),
-    "outcome": ("mutant", "round", "verdict", "by", "data", "key", "reused"),
-    "control": ("test_file", "control", "ok", "detail"),
-    "kept": ("mutant", "round", "verdict", "by", "data", "key"),
-    "parts": ("digest", "data"),
-    "known": ("id", "data", "outdated"),
-    "text": ("digest", "data"),
-}
 #: the rows that hold the last outcome of each mutant and round
 LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
-#: what ``reused`` says of an outcome: found by this campaign, or known from another
-FOUND, KNOWN_BEFORE = 0, 1
-#: from one campaign to the next
-ADOPT = f"""
-INSERT OR REPLACE INTO known SELECT id, data, 1 FROM mutant;
-INSERT OR REPLACE INTO kept
-    SELECT mutant, round, verdict, "by", data, key FROM outcome
-    WHERE rowid IN ({LAST});
-DELETE FROM meta;
-DELETE FROM test;
-DELETE FROM mutant;
-DELETE FROM left_out;
-DELETE FROM source;
-DELETE FROM outcome;
-DELETE FROM control
-"""
-_OUTCOMES = f'SELECT mutant, round, verdict, "by", data, key, reused FROM outcome WHERE rowid IN ({LAST})'
-#: from one journal to another: what is asked there, and what is done with each row here; the first counts
-TAKE = {
-    f"{_OUTCOMES} ORDER BY rowid":
-        "INSERT INTO outcome SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7 "
-        "WHERE NOT EXISTS (SELECT 1 FROM outcome WHERE mutant = ?1 AND round = ?2)",
-    "SELECT test_file, control, ok, detail FROM control ORDER BY rowid":
-        "INSERT INTO control SELECT ?1, ?2, ?3, ?4 WHERE NOT EXISTS "
-        "(SELECT 1 FROM control WHERE test_file = ?1 AND control = ?2 AND ok = ?3)",
-    "SELECT * FROM parts": "INSERT OR IGNORE INTO parts VALUES (?, ?)",
-    "SELECT * FROM text": "INSERT OR IGNORE INTO text VALUES (?, ?)",
-    "SELECT * FROM kept": "INSERT OR IGNORE INTO kept VALUES (?, ?, ?, ?, ?, ?)",
-}  # fmt: skip
-# Keys of meta that are the journal's own; the others are the campaign's.
-VERSION_KEY, FINISHED_KEY = "journal:version", "journal:finished"
-#: of a campaign that has not begun yet: why it ended, null as long as it has not
-ATTEMPT_KEY = "journal:attempt"
-
-
+#: key of meta that says which version the journal has
+VERSION_KEY = "journal:version"
 #: what Python and SQLite raise because of one row, and not because of the file
-OF_ONE_ROW = (
+_OF_ONE_ROW = (
     sqlite3.DataError, sqlite3.InterfaceError, sqlite3.ProgrammingError, sqlite3.IntegrityError,
     OverflowError, ValueError, TypeError,
 )  # fmt: skip
+#: what SQLite says where it is the disk that cannot take what is written, and not the file that is wrong
+_OF_THE_DISK = ("full", "readonly", "disk I/O", "unable to open")
 #: what a database consists of while somebody has it open
-SUFFIXES = ("", "-wal", "-shm")
-#: carries out one statement with its values
-Execute = Callable[..., sqlite3.Cursor]
+_SUFFIXES = ("", "-wal", "-shm")
+#: things in a file that are looked at: a journal has fewer; versions; rows and characters that are shown
+_MOST, _MOST_VERSIONS, _SHOWN, _LONGEST = 100, 1_000_000, 5, 150
+#: what people call rows of a table
+_WORDS = {
+    "meta": "fact", "test": "test of the baseline", "left_out": "mutant that was left out",
+    "kept": "earlier outcome", "known": "earlier mutant",
+}  # fmt: skip
+_THINGS = "SELECT type, name, sql FROM main.sqlite_master LIMIT ?"
+
+
+@cache
+def _made() -> frozenset[tuple[str, str, str | None]]:
+    """The tables and indexes that this version makes."""
+    with closing(sqlite3.connect(":memory:")) as connection:
+        connection.executescript(TABLES)
+        return frozenset(connection.execute(_THINGS, (_MOST,)))
+
+
+@cache
+def columns() -> dict[str, tuple[str, ...]]:
+    """The tables with rows of their own, and their columns."""
+    with closing(sqlite3.connect(":memory:")) as connection:
+        connection.executescript(TABLES)
+        tables = [name for kind, name, _ in _made() if kind == "table" and name != "mark"]
+        info = {name: connection.execute(f"PRAGMA table_info({name})").fetchall() for name in sorted(tables)}
+    return {name: tuple(row[1] for row in rows) for name, rows in info.items()}
+
+
+# Connections
 
 
 def decode(text: bytes) -> str:
@@ -106,35 +102,31 @@ def decode(text: bytes) -> str:
     return text.decode("utf-8", "surrogateescape")
 
 
-def stored(values: Iterable[Any]) -> tuple[Any, ...]:
-    """Values of a row, with texts that can be stored."""
-    return tuple(printable(value) if isinstance(value, str) else value for value in values)
-
-
-def connect(path: Path) -> sqlite3.Connection:
-    """A connection that writes; the file is made if it does not exist."""
+def _open(name: str, pragmas: tuple[str, ...], *, uri: bool = False) -> sqlite3.Connection:
     # The writer may hand the journal from one thread to another; it never uses it from two at once.
-    connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False, timeout=10)
+    connection = sqlite3.connect(name, uri=uri, isolation_level=None, check_same_thread=False, timeout=10)
     connection.text_factory = decode
-    # WAL lets readers work beside the writer. NORMAL survives the death of the process; only a power cut
-    # can take the last outcomes, and those are simply run again.
     try:
-        connection.execute("PRAGMA trusted_schema = OFF")
-        connection.execute("PRAGMA journal_mode = WAL")
-        connection.execute("PRAGMA synchronous = NORMAL")
+        for pragma in ("trusted_schema = OFF", *pragmas):
+            connection.execute(f"PRAGMA {pragma}")
     except sqlite3.Error:
         connection.close()
         raise
     return connection
 
 
+def connect(path: Path) -> sqlite3.Connection:
+    """A connection that writes; the file is made if it does not exist."""
+    # WAL lets readers work beside the writer. NORMAL survives the death of the process; only a power cut
+    # can take the last outcomes, and those are simply run again.
+    return _open(f"{path}", ("journal_mode = WAL", "synchronous = NORMAL"))
+
+
 def loaded(source: sqlite3.Connection) -> sqlite3.Connection:
     """All that is in a database, in one without a name, which is gone with its connection."""
-    copy = sqlite3.connect("", isolation_level=None, check_same_thread=False)
-    copy.text_factory = decode
+    copy = _open("", ())
     try:
         source.backup(copy)
-        copy.execute("PRAGMA trusted_schema = OFF")
         copy.execute("PRAGMA journal_mode = MEMORY")
         copy.execute("PRAGMA synchronous = OFF")
     except BaseException:
@@ -145,8 +137,12 @@ def loaded(source: sqlite3.Connection) -> sqlite3.Connection:
 
 def connect_to_read(path: Path) -> sqlite3.Connection:
     """A connection that only reads."""
+
+    def opened(file: Path) -> sqlite3.Connection:
+        return _open(f"{file.absolute().as_uri()}?mode=ro", ("schema_version",), uri=True)
+
     try:
-        return _connect_read_only(path)
+        return opened(path)
     except sqlite3.OperationalError:
         # In a folder we cannot write to, SQLite cannot make the index of a WAL journal: read a copy. What is
         # open can be read when it has no name any more.
@@ -154,20 +150,7 @@ def connect_to_read(path: Path) -> sqlite3.Connection:
             for part in (path, path.with_name(f"{path.name}-wal")):
                 if part.is_file():
                     (Path(folder) / part.name).write_bytes(part.read_bytes())
-            return _connect_read_only(Path(folder) / path.name)
-
-
-def _connect_read_only(path: Path) -> sqlite3.Connection:
-    uri = f"{path.absolute().as_uri()}?mode=ro"
-    connection = sqlite3.connect(uri, uri=True, isolation_level=None, check_same_thread=False, timeout=10)
-    connection.text_factory = decode
-    try:
-        connection.execute("PRAGMA trusted_schema = OFF")
-        connection.execute("SELECT count(*) FROM sqlite_master")
-    except sqlite3.Error:
-        connection.close()
-        raise
-    return connection
+            return opened(Path(folder) / path.name)
 
 
 def write_anew(copy: sqlite3.Connection, path: Path) -> None:
@@ -177,7 +160,7 @@ def write_anew(copy: sqlite3.Connection, path: Path) -> None:
     try:
         with closing(sqlite3.connect(new)) as target:
             copy.backup(target)
-        for suffix in SUFFIXES[1:]:  # they are of the other file: SQLite would read them into this one
+        for suffix in _SUFFIXES[1:]:  # they are of the other file: SQLite would read them into this one
             path.with_name(path.name + suffix).unlink(missing_ok=True)
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path)
@@ -192,17 +175,402 @@ def guarded(path: Path) -> Iterator[None]:
     try:
         yield
     except sqlite3.DatabaseError as error:
-        raise JournalError(_explain(path, error), path=str(path)) from error
+        text = str(error)
+        if "not a database" in text or "malformed" in text:
+            text = f"{path} is not a journal of mutabot ({text})"
+        elif "readonly" in text or "unable to open" in text:
+            text = f"{path} cannot be written: is the folder read-only? ({text})"
+        elif "full" in text:
+            text = f"{path} cannot be written: the disk is full; what was written before is kept ({text})"
+        else:
+            text = f"{path}: {text}"
+        raise JournalError(text, path=str(path)) from error
     except OSError as error:
         raise JournalError(f"{path}: {error.strerror or error}", path=str(path)) from error
 
 
-def _explain(path: Path, error: sqlite3.DatabaseError) -> str:
-    text = str(error)
-    if "not a database" in text or "malformed" in text:
-        return f"{path} is not a journal of mutabot ({text})"
-    if "readonly" in text or "unable to open" in text:
-        return f"{path} cannot be written: is the folder read-only? ({text})"
-    if "full" in text:
-        return f"{path} cannot be written: the disk is full; what was written before is kept ({text})"
-    return f"{path}: {text}"
+# Marks
+
+
+def mark_of(*values: Any) -> bytes:
+    """The mark of a row: a digest of its table and all its values."""
+    text = "\0".join([decode(one) if isinstance(one, bytes) else str(one) for one in values])
+    return blake2b(text.encode("utf-8", "surrogateescape"), digest_size=12).digest()
+
+
+def mark_rows(connection: sqlite3.Connection) -> None:
+    """Have every row that this connection writes marked, and no mark stay of a row that it removes."""
+    connection.create_function("mutabot_mark", -1, mark_of, deterministic=True)
+    # Without this, a row that is replaced goes without a trigger.
+    connection.execute("PRAGMA recursive_triggers = ON")
+    for table, names in columns().items():
+        # as bytes: a text from elsewhere may be no UTF-8
+        new = ", ".join(f'CAST(new."{name}" AS BLOB)' for name in names)
+        remove = f"DELETE FROM mark WHERE \"table\" = '{table}' AND row = "
+        add = f"INSERT INTO mark VALUES ('{table}', new.rowid, mutabot_mark('{table}', {new}));"
+        for event, actions in (
+            ("INSERT", f"{remove} new.rowid; {add}"),  # there may be one of a row that is gone
+            ("DELETE", f"{remove} old.rowid;"),
+            ("UPDATE", f"{remove} old.rowid; {add}"),
+        ):
+            # Temporary: in the file there is nothing but tables.
+            connection.execute(
+                f"CREATE TEMP TRIGGER mark_{table}_{event} AFTER {event} ON main.{table} BEGIN {actions} END"
+            )
+
+
+def _rows(connection: sqlite3.Connection, table: str) -> dict[int, tuple[bytes | None, tuple[Any, ...]]]:
+    """The rows of a table by their numbers, with their marks."""
+    found = connection.execute(
+        f"SELECT t.rowid, m.digest, t.* FROM main.{table} AS t "
+        f"LEFT JOIN main.mark AS m ON m.\"table\" = '{table}' AND m.row = t.rowid"
+    )
+    return {row: (mark, tuple(values)) for row, mark, *values in found}
+
+
+def _differences(file: sqlite3.Connection, known: sqlite3.Connection) -> list[str]:
+    """Rows that were changed, added or removed, and whatever else is in the file, in words."""
+    if set(file.execute(_THINGS, (_MOST,))) != set(known.execute(_THINGS, (_MOST,))):
+        return ["the tables are others than were made"]
+    found: list[str] = []
+    for table in columns():
+        theirs, ours = _rows(file, table), _rows(known, table)
+        for row in sorted(theirs.keys() | ours.keys()):
+            # by what they look like: what is no number is not equal to itself
+            if repr(theirs.get(row)) != repr(ours.get(row)):
+                what = "added" if row not in ours else "removed" if row not in theirs else "changed"
+                found.append(f"{named_row(table, (ours.get(row) or theirs[row])[1])} was {what}")
+    marks = (one.execute("SELECT count(*) FROM main.mark").fetchone() for one in (file, known))
+    if not found and len(set(marks)) > 1:
+        found.append("the marks of rows")
+    return [*found[:_SHOWN], f"and {len(found) - _SHOWN} more"] if len(found) > _SHOWN else found
+
+
+def named_row(table: str, values: tuple[Any, ...]) -> str:
+    """What people know a row by; of the values, the first may do."""
+    known = dict(zip(columns()[table], values, strict=False))
+    name = next((known[one] for one in ("mutant", "id", "key", "file", "test") if one in known), values[0])
+    text = name if isinstance(name, str) else repr(name)
+    shown = repr(text[:_LONGEST].encode("utf-8", "replace").decode())[1:-1]
+    round = known.get("round") if table in ("outcome", "kept") else None
+    where = f" in round {round + 1}" if isinstance(round, int) and 0 <= round < _MOST_VERSIONS else ""
+    return f"{_WORDS.get(table, table)} {shown}{where}"
+
+
+# The file
+
+
+class Database:
+    """What is in a journal, in a database that nobody else can write; with the file of its writer.
+
+    Every method raises JournalError when the file cannot be read or written.
+
+    Attributes:
+        path: the file.
+        unmarked: rows that something else than Mutabot has written, in words; they are left out.
+        unstored: why rows could not be stored, one line each: all others are.
+        is_new: whether there was nothing in the file, and nothing is as yet.
+        lost: how often the file was deleted or replaced, in words, and was written again.
+        altered: rows of the file that somebody else changed, added or removed, and that were restored.
+    """
+
+    def __init__(self, path: Path, copy: sqlite3.Connection) -> None:
+        self.path, self.copy = path, copy
+        self.unmarked: list[str] = []
+        self.unstored: list[str] = []
+        self.lost: list[str] = []
+        self.altered: list[str] = []
+        self.is_new = False
+        self._file: sqlite3.Connection | None = None
+        self._lock: WriterLock | None = None
+        self._done: list[tuple[str, tuple[Any, ...]]] | None = None  # in a transaction
+        self._identity, self._version = (0, 0), -1
+
+    @classmethod
+    def to_read(cls, path: Path) -> Self:
+        """What is now in an existing journal of this version."""
+        if not path.is_file():
+            raise no_journal(path)
+        refuse_tracked(path)
+        with guarded(path):
+            with closing(connect_to_read(path)) as file:
+                found = cls(path, loaded(file))
+            with found.closed_on_error():
+                check_schema(path, found.copy)
+                found.remove_unmarked()
+                found.copy.execute("PRAGMA query_only = ON")
+        return found
+
+    @classmethod
+    def to_write(cls, path: Path, lock: WriterLock) -> Self:
+        """Open a journal to write it, whatever is in it; the file is made if there is none."""
+        with guarded(path):
+            file = connect(path)
+            try:
+                found = cls(path, loaded(file))
+            except BaseException:
+                file.close()
+                raise
+            found._file, found._lock = file, lock
+            with found.closed_on_error():
+                # the first transaction brings the tables into the file, with what is in them
+                found.is_new = not found.rows("SELECT count(*) FROM sqlite_master")[0][0]
+                if found.is_new:
+                    found.copy.executescript(TABLES)
+                else:
+                    found._know_file()
+                mark_rows(found.copy)
+        return found
+
+    def close(self) -> None:
+        """Close the file; the lock of a writer is given back."""
+        self.copy.close()
+        if self._file is not None and self._lock is not None:
+            self._file.close()
+            self._lock.release()
+
+    @contextmanager
+    def closed_on_error(self) -> Iterator[None]:
+        """Close the file if what is done meanwhile fails."""
+        try:
+            yield
+        except BaseException:
+            self.close()
+            raise
+
+    def rows(self, statement: str, *values: Any) -> list[Any]:
+        """What a question is answered with."""
+        with guarded(self.path):
+            return self.copy.execute(statement, _stored(values)).fetchall()
+
+    def write(self, statement: str, *values: Any) -> None:
+        """Carry out one statement; within ``transaction``, as a part of it."""
+        if self._done is None:
+            with self.transaction():
+                self.write(statement, *values)
+            return
+        given = _stored(values)
+        with guarded(self.path):
+            self.copy.execute(statement, given)
+        self._done.append((statement, given))
+
+    def add(self, statement: str, *values: Any) -> None:
+        """Add a row; one that cannot be stored takes no other with it."""
+        try:
+            self.write(statement, *values)
+        except JournalError as error:
+            if not isinstance(error.__cause__, _OF_ONE_ROW):
+                raise
+            self._not_stored(values, error.__cause__)
+        except _OF_ONE_ROW as error:
+            self._not_stored(values, error)
+
+    def _not_stored(self, values: tuple[Any, ...], error: BaseException) -> None:
+        what = ", ".join(str(value)[:100] for value in values[:2])
+        self.unstored.append(f"{what}: {type(error).__name__}: {error}")
+
+    @contextmanager
+    def transaction(self, *, whole: bool = False) -> Iterator[None]:
+        """What is written meanwhile takes effect together or not at all, in both databases.
+
+        Before, the file is compared with what was written if somebody else wrote, and row by row if it is to
+        be ``whole``; after, it is written again if it is not so.
+        """
+        assert self._file is not None
+        with guarded(self.path):
+            is_ours = False
+            with self._noted():
+                self._file.execute("BEGIN IMMEDIATE")  # from here on nobody else can write
+                is_ours = not self.is_new and self._is_ours(whole)
+            self.copy.execute("BEGIN")
+            try:
+                self._done = []
+                yield
+                if is_ours:
+                    is_ours = self._repeat_in_file(self._done)
+                self.copy.execute("COMMIT")
+            except BaseException:
+                self.copy.rollback()
+                raise
+            finally:
+                self._done = None
+                with suppress(sqlite3.Error):
+                    self._file.rollback()
+            if not is_ours:
+                self._restore()
+
+    def remove_unmarked(self) -> None:
+        """Drop what something else than Mutabot has written, and marks of rows that are gone."""
+        for table in columns():
+            rows = _rows(self.copy, table).items()
+            strange = {row: values for row, (mark, values) in rows if mark != mark_of(table, *values)}
+            gone = f'FROM mark WHERE "table" = ? AND row NOT IN (SELECT rowid FROM {table})'
+            count = self.rows(f"SELECT count(*) {gone}", table)[0][0]
+            for row, values in strange.items():
+                self._drop(f"DELETE FROM {table} WHERE rowid = ?", row)
+                self.unmarked.append(named_row(table, values))
+            if count or strange:
+                self._drop(f"DELETE {gone}", table)
+            if count:
+                word = _WORDS.get(table, table)
+                self.unmarked.append(f"{count} × {word} that {'is' if count == 1 else 'are'} gone")
+
+    def _drop(self, statement: str, value: Any) -> None:
+        if self._file is not None:
+            self.write(statement, value)
+        else:
+            self.copy.execute(statement, (value,))
+
+    def _repeat_in_file(self, done: list[tuple[str, tuple[Any, ...]]]) -> bool:
+        """Write into the file what was written; returns whether it is there."""
+        assert self._file is not None
+        with self._noted():
+            for statement, values in done:
+                self._file.execute(statement, values)
+            self._file.execute("COMMIT")
+            return True
+        return False
+
+    @contextmanager
+    def _noted(self) -> Iterator[None]:
+        """Go on without the file if it is not as it should be, and say so."""
+        try:
+            yield
+        except sqlite3.Error as error:
+            if any(text in str(error) for text in _OF_THE_DISK):
+                raise
+            if "locked" in str(error):
+                self.lost.append("was locked by something else")
+            else:
+                self.altered.append(f"the file cannot be written any more ({error})")
+
+    def _is_ours(self, whole: bool) -> bool:
+        """Whether the file holds what was written; says what does not. ``whole``: every row is looked at."""
+        assert self._file is not None
+        try:
+            is_there = _identity(self.path) == self._identity
+        except OSError:
+            is_there = False
+        if not is_there:
+            self.lost.append("was deleted or replaced")
+            return False
+        version = self._data_version()
+        found: list[str] = []
+        if whole or version != self._version:
+            try:
+                with closing(connect_to_read(self.path)) as file:
+                    found = _differences(file, self.copy)
+            except (sqlite3.Error, OSError) as error:
+                found = [f"the file cannot be read any more ({error})"]
+        self.altered += found
+        self._version = version
+        return not found
+
+    def _data_version(self) -> int:
+        """Changes when another connection changes something."""
+        assert self._file is not None
+        return int(self._file.execute("PRAGMA data_version").fetchone()[0])
+
+    def _know_file(self) -> None:
+        assert self._file is not None
+        mark_rows(self._file)
+        self._identity, self._version = _identity(self.path), self._data_version()
+
+    def _restore(self) -> None:
+        """Write the file anew, and put it in the place of whatever is there."""
+        assert self._file is not None
+        assert self._lock is not None
+        with suppress(sqlite3.Error):
+            self._file.close()
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        write_anew(self.copy, self.path)
+        self._lock.renew()
+        self._file, self.is_new = connect(self.path), False
+        self._know_file()
+
+
+def _stored(values: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Values of a row, with texts that can be stored."""
+    return tuple(printable(value) if isinstance(value, str) else value for value in values)
+
+
+def _identity(path: Path) -> tuple[int, int]:
+    found = path.lstat()
+    return found.st_dev, found.st_ino
+
+
+def check_schema(path: Path, connection: sqlite3.Connection) -> None:
+    """Raise JournalError if this is no journal of this version."""
+    found = set(connection.execute(_THINGS, (_MOST,)))
+    if not found:  # of a campaign that was killed before it had begun
+        raise no_journal(path)
+    tables = {name for kind, name, _ in found if kind == "table"}
+    if not {"meta", "outcome"} <= tables:
+        raise JournalError(f"{path} is a database, but not a journal of mutabot", path=str(path))
+    strange = sorted(f"{kind} {name}" for kind, name, _ in found - _made())
+    if "table meta" not in strange:
+        version = _version(connection)
+        # a version that cannot be read is one row that is damaged, if all tables are ours
+        if version != SCHEMA_VERSION and (version is not None or strange):
+            raise JournalError(
+                f"{path} was written by another version of mutabot (journal version {version or '?'}, "
+                f"this one reads {SCHEMA_VERSION}); run the campaign again",
+                path=str(path),
+                version=version,
+            )
+    if strange or _made() - found:
+        what = f"holds what no journal has ({', '.join(strange[:3])})" if strange else "lacks a table"
+        raise JournalError(
+            f"{path} {what}, so something else than mutabot has changed it; run the campaign again",
+            path=str(path),
+        )
+
+
+def _version(connection: sqlite3.Connection) -> int | None:
+    row = connection.execute("SELECT value FROM main.meta WHERE key = ?", (VERSION_KEY,)).fetchone()
+    with suppress(*UNFIT):
+        found = load(row[0]) if row is not None else None
+        return found if isinstance(found, int) and abs(found) < _MOST_VERSIONS else None
+    return None
+
+
+def no_journal(path: Path) -> JournalError:
+    """There is nothing there."""
+    return JournalError(f"{path}: there is no journal yet; `mutabot run` writes it", path=str(path))
+
+
+def make_way(path: Path) -> Path | None:
+    """Move aside what lies there and is no journal of this version; returns where to.
+
+    A journal of another version gets that as part of its name, so that no later campaign overwrites it;
+    a damaged one takes the place of the previous one. Raises JournalError for a file that is not ours.
+    """
+    for half in (path, previous_of(path)):  # of a campaign that was killed meanwhile
+        half.with_name(f"{half.name}.new").unlink(missing_ok=True)
+    if not path.exists():
+        return None
+    with path.open("rb") as file:
+        start = file.read(16)
+    if start and not start.startswith(b"SQLite format 3"):
+        raise JournalError(f"{path} is in the way: it is not a journal of mutabot", path=str(path))
+    kept = previous_of(path)
+    try:
+        with closing(connect(path)) as connection:
+            if connection.execute("SELECT 1 FROM sqlite_master").fetchone() is None:
+                return None  # of a campaign that was killed before it had begun
+            check_schema(path, connection)
+            if connection.execute("PRAGMA quick_check(1)").fetchone() == ("ok",):
+                return None
+    except JournalError as error:
+        if error.version is not None:
+            kept = path.with_name(f"{path.stem}.version-{error.version}{path.suffix}")
+    except sqlite3.OperationalError:
+        raise  # it is not the content that is wrong: a full disk, a folder that cannot be written
+    except sqlite3.DatabaseError:
+        pass
+    for suffix in _SUFFIXES:
+        old, new = path.with_name(path.name + suffix), kept.with_name(kept.name + suffix)
+        new.unlink(missing_ok=True)
+        if old.exists():
+            old.replace(new)
+    return kept

@@ -1,8 +1,22 @@
-"""What of mutabot lies in a project: journals, and folders with reports."""
+"""What of mutabot lies in a project, and who may write a journal: one campaign at a time.
+
+What a journal says is believed: outcomes in it are taken over, and gates are decided by it. One that git
+tracks was written by whoever wrote the commit, as by a stranger's pull request, which would judge itself. It
+is refused.
+"""
 
 from __future__ import annotations
 
+import fcntl
+import os
+import shutil
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+
+from mutabot.errors import JournalError
+from mutabot.repository import GitError, repository_of, tracked
 
 #: mutabot's folder in a project, and its journal
 HOME = ".mutabot"
@@ -24,3 +38,153 @@ def find_journal(project: Path) -> Path:
 def previous_of(journal: Path) -> Path:
     """Where the last complete campaign before a journal's is kept: ``journal.previous.sqlite``."""
     return journal.with_name(f"{journal.stem}.previous{journal.suffix}")
+
+
+def recordings_path(journal: Path) -> Path:
+    """Where the recordings of a journal's campaigns lie."""
+    return journal.with_name(f"{journal.stem}-evidence.sqlite")
+
+
+class WriterLock:
+    """Held by the one process that writes a journal; the system gives it back when that process dies."""
+
+    def __init__(self, journal: Path, descriptor: int) -> None:
+        self._journal = journal
+        self._descriptor: int | None = descriptor
+
+    @classmethod
+    def take(cls, journal: Path) -> WriterLock:
+        """Take the lock of a journal. Raises JournalError if another process holds it."""
+        descriptor = os.open(journal.with_name(journal.name + ".lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+        # A reader that looks whether somebody writes holds it for a moment, hence more than one try.
+        for _ in range(10):
+            try:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                time.sleep(0.02)
+            else:
+                return cls(journal, descriptor)
+        os.close(descriptor)
+        raise JournalError(f"{journal} is being written by another `mutabot run`", path=str(journal))
+
+    def renew(self) -> None:
+        """Take it again if its file is gone. Raises JournalError if another process has it by now."""
+        if self._descriptor is None:
+            return
+        try:
+            found = self._journal.with_name(self._journal.name + ".lock").stat()
+        except OSError:
+            found = None
+        held = os.fstat(self._descriptor)
+        if found is None or (found.st_dev, found.st_ino) != (held.st_dev, held.st_ino):
+            other = WriterLock.take(self._journal)
+            os.close(self._descriptor)
+            self._descriptor, other._descriptor = other._descriptor, None
+
+    def release(self) -> None:
+        """Give the lock back; a second time does nothing."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None
+
+
+def is_written(journal: Path) -> bool:
+    """Whether some process writes this journal now."""
+    try:
+        descriptor = os.open(journal.with_name(journal.name + ".lock"), os.O_RDONLY | os.O_CLOEXEC)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(descriptor)
+    return False
+
+
+@contextmanager
+def at_work(home: Path) -> Iterator[None]:
+    """Say that somebody works in mutabot's folder; the first to come removes what killed ones left there."""
+    try:
+        home.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(home, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except OSError as error:
+        raise JournalError(f"cannot write to {home}: {error.strerror}", path=str(home)) from error
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            pass
+        else:
+            for left_behind in home.glob("work-*"):
+                shutil.rmtree(left_behind, ignore_errors=True)
+        fcntl.flock(descriptor, fcntl.LOCK_SH)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+#: what SQLite keeps beside a file, and reads
+_BESIDE = ("", "-wal", "-shm", "-journal")
+#: as many links one after the other as Linux follows
+_LINKS = 40
+
+
+def refuse_tracked(journal: Path) -> None:
+    """Raise JournalError if git tracks a journal, a file beside it that belongs to it, or a link on the way.
+
+    Also if git cannot tell: then nobody knows where the journal comes from.
+    """
+    for path in _ways(Path(os.path.abspath(journal)), _LINKS):  # noqa: PTH100  # links stay links
+        found = _tracked_at(path, journal)
+        if found:
+            raise JournalError(_why(journal, path.parent, found), path=str(journal))
+
+
+def _tracked_at(path: Path, journal: Path) -> list[str]:
+    """What git tracks of the files that belong to the journal at ``path``, relative to its folder."""
+    folder = path.parent
+    names = [HOME] if folder.name == HOME else []
+    if names:
+        folder = folder.parent
+    else:
+        files = (path, recordings_path(path), previous_of(path), recordings_path(previous_of(path)))
+        names = [file.name + end for file in files for end in _BESIDE]
+        names.append(f"{path.stem}-suggestions.json")
+    if repository_of(folder) is None or not any(os.path.lexists(folder / name) for name in names):
+        return []
+    try:
+        return tracked(folder, *names)
+    except GitError as error:
+        why = f"nobody can tell whether {journal} came with the repository; then it is not used: {error}"
+        raise JournalError(why, path=str(journal)) from error
+
+
+def _ways(path: Path, left: int) -> Iterator[Path]:
+    """A path, and every link on the way to what it means, each in its real folder; at last where it leads."""
+    place = Path(path.anchor)
+    parts = path.parts[1:]
+    for index, part in enumerate(parts):
+        here = place / part
+        if part == "..":
+            place = place.parent
+        elif here.is_symlink() and left:
+            yield here
+            yield from _ways(Path(place, here.readlink(), *parts[index + 1 :]), left - 1)
+            return
+        else:
+            place = here
+    yield place
+
+
+def _why(journal: Path, folder: Path, names: list[str]) -> str:
+    first = names[0]
+    more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+    option = "-r " if folder.name == HOME else ""
+    what = HOME if option else first
+    return (
+        f"the journal {journal} is not used, since git tracks {first}{more}: whoever commits a journal "
+        f"decides what it says. Take it out of the repository with `git rm --cached {option}{what}`, add "
+        f"{HOME}/ to .gitignore, and keep journals for CI in a cache outside of the checkout"
+    )

@@ -11,29 +11,269 @@ reports show those that a campaign of other mutants leaves alone.
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import zlib
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from types import TracebackType
+from typing import Any, Self, TypeVar
 
+from mutabot.border.codec import from_data, to_data
 from mutabot.border.events import TestEnd
-from mutabot.journal.lock import WriterLock, refuse_tracked
-from mutabot.model import LeftOut, Mutant, Outcome
+from mutabot.border.storable import storable
+from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
 
-from .database import (
-    ADOPT,
-    ATTEMPT_KEY,
-    FINISHED_KEY,
-    KNOWN_BEFORE,
-    SCHEMA_VERSION,
-    TAKE,
-    VERSION_KEY,
-    guarded,
+from .database import LAST, SCHEMA_VERSION, VERSION_KEY, Database, guarded, make_way, named_row, write_anew
+from .files import WriterLock, previous_of, refuse_tracked
+from .records import (
+    ALTERED,
+    UNFIT,
+    BaselineTest,
+    ControlEnd,
+    Kept,
+    Row,
+    baseline_test_in,
+    control_in,
+    fact,
+    inflated,
+    known_in,
+    left_out_in,
+    load,
+    outcome_in,
+    planned_in,
+    round_in,
+    text_in,
 )
-from .reader import JournalReader
-from .records import ALTERED, Row
-from .store import Store, dump, keep_copy, make_way
+
+T = TypeVar("T")
+#: a key of meta that is the journal's own: why the campaign ended
+_FINISHED_KEY = "journal:finished"
+#: of a campaign that has not begun yet: why it ended, null as long as it has not
+_ATTEMPT_KEY = "journal:attempt"
+#: the tables of the baseline and the plan
+_PLAN = ("test", "mutant", "left_out", "source")
+#: from one campaign to the next
+_ADOPT = f"""
+INSERT OR REPLACE INTO known SELECT id, data, 1 FROM mutant;
+INSERT OR REPLACE INTO kept
+    SELECT mutant, round, verdict, "by", data, key FROM outcome
+    WHERE rowid IN ({LAST});
+DELETE FROM meta;
+DELETE FROM test;
+DELETE FROM mutant;
+DELETE FROM left_out;
+DELETE FROM source;
+DELETE FROM outcome;
+DELETE FROM control
+"""
+_OUTCOMES = f'SELECT mutant, round, verdict, "by", data, key, reused FROM outcome WHERE rowid IN ({LAST})'
+#: from one journal to another: what is asked there, and what is done with each row here; the first counts
+_TAKE = {
+    f"{_OUTCOMES} ORDER BY rowid":
+        "INSERT INTO outcome SELECT ?1, ?2, ?3, ?4, ?5, ?6, ?7 "
+        "WHERE NOT EXISTS (SELECT 1 FROM outcome WHERE mutant = ?1 AND round = ?2)",
+    "SELECT test_file, control, ok, detail FROM control ORDER BY rowid":
+        "INSERT INTO control SELECT ?1, ?2, ?3, ?4 WHERE NOT EXISTS "
+        "(SELECT 1 FROM control WHERE test_file = ?1 AND control = ?2 AND ok = ?3)",
+    "SELECT * FROM parts": "INSERT OR IGNORE INTO parts VALUES (?, ?)",
+    "SELECT * FROM text": "INSERT OR IGNORE INTO text VALUES (?, ?)",
+    "SELECT * FROM kept": "INSERT OR IGNORE INTO kept VALUES (?, ?, ?, ?, ?, ?)",
+}  # fmt: skip
+
+
+class JournalReader:
+    """The record of one campaign, to be read; use as a context manager.
+
+    Every method raises JournalError when the file cannot be read.
+
+    Attributes:
+        path: the file.
+    """
+
+    def __init__(self, store: Database) -> None:
+        self.path, self._store = store.path, store
+        self._unfit: dict[str, None] = {}
+
+    @property
+    def set_aside(self) -> list[str]:
+        """Rows that were not written by Mutabot, or that hold what cannot be, in words: nobody believes them.
+
+        What a row holds is looked at when it is read.
+        """
+        return [*self._store.unmarked, *self._unfit]
+
+    @staticmethod
+    def open(path: Path) -> JournalReader:
+        """Open an existing journal. It may be written meanwhile."""
+        return JournalReader(Database.to_read(path))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file; the lock of a writer is given back."""
+        self._store.close()
+
+    # What the campaign was and how it ended
+
+    def meta(self) -> dict[str, Any]:
+        """What the campaign said about itself."""
+        found = {}
+        for key, text in self._store.rows("SELECT key, value FROM meta"):
+            if isinstance(key, str) and not key.startswith("journal:"):
+                with self._checked("meta", key):
+                    found[key] = fact(key, load(text))
+        return {key: value for key, value in found.items() if value is not None}
+
+    @property
+    def vocabulary(self) -> Vocabulary | None:
+        """The vocabulary of the campaign, if it was written down."""
+        data = self.meta().get("vocabulary")
+        return from_data(Vocabulary, data) if data is not None else None
+
+    @property
+    def finished(self) -> str | None:
+        """Why the campaign ended; None while it runs and after it was killed."""
+        with self._checked("meta", _FINISHED_KEY):
+            rows = self._store.rows("SELECT value FROM meta WHERE key = ?", _FINISHED_KEY)
+            return str(load(rows[0][0])) if rows else None
+        return None
+
+    @property
+    def attempt(self) -> str | None:
+        """Why a later campaign ended before it had begun; empty if it was killed or is about to begin.
+
+        None if there was no such campaign.
+        """
+        rows = self._store.rows("SELECT value FROM meta WHERE key = ?", _ATTEMPT_KEY)
+        with self._checked("meta", _ATTEMPT_KEY):
+            return str(load(rows[0][0]) or "") if rows else None
+        return ""
+
+    # The baseline and the plan
+
+    def tests(self) -> list[BaselineTest]:
+        """The tests of the baseline in the order they were added."""
+        return self._all("test", baseline_test_in)
+
+    def controls(self) -> list[ControlEnd]:
+        """The controls in the order they were added."""
+        return self._all("control", control_in)
+
+    def mutants(self) -> list[Mutant]:
+        """The planned mutants by number."""
+        return self._all("mutant", planned_in, "ORDER BY number, rowid")
+
+    def left_out(self) -> list[LeftOut]:
+        """What the plan leaves out, in its order."""
+        return self._all("left_out", left_out_in)
+
+    def source(self, file: str) -> str | None:
+        """The text of a mutated file at the time of the campaign, or None if it was not written down."""
+        rows = self._store.rows("SELECT text FROM source WHERE file = ?", file)
+        with self._checked("source", file):
+            return text_in(rows[0][0]) if rows else None
+        return None
+
+    # Outcomes
+
+    def outcomes(self) -> list[Outcome]:
+        """The last outcome of each (mutant, round), in the order they came."""
+        return self._all("outcome", outcome_in, f"WHERE rowid IN ({LAST}) ORDER BY rowid")
+
+    def rounds_known(self) -> dict[str, int]:
+        """In how many rounds each mutant has an outcome; those without any are missing."""
+        return dict(self._store.rows("SELECT mutant, count(DISTINCT round) FROM outcome GROUP BY mutant"))
+
+    def reused(self) -> set[tuple[str, int]]:
+        """The mutants and rounds whose outcomes were taken over from an earlier campaign."""
+        return set(self._store.rows(f"SELECT mutant, round FROM outcome WHERE reused AND rowid IN ({LAST})"))
+
+    # Earlier campaigns
+
+    def kept(self) -> dict[tuple[str, int], Kept]:
+        """The last outcome of each mutant and round that earlier campaigns found, if it can be reused."""
+        return self._of_rows("kept", "SELECT mutant, round, verdict, data, key FROM kept")
+
+    def found(self) -> dict[tuple[str, int], Kept]:
+        """The same, with those that the last campaign itself found or knew."""
+        return self.kept() | self._of_rows(
+            "outcome",
+            f"SELECT mutant, round, verdict, data, key FROM outcome WHERE rowid IN ({LAST})",
+        )
+
+    def row(self, mutant: str, round: int) -> Row | None:
+        """One of those that were ``found``; None if it holds what no outcome can."""
+        for table, condition in (("outcome", "ORDER BY rowid DESC"), ("kept", "")):
+            rows = self._store.rows(
+                f'SELECT verdict, "by", data, key FROM {table} '
+                f"WHERE mutant = ? AND round = ? AND key != '' {condition} LIMIT 1",
+                mutant, round,
+            )  # fmt: skip
+            for verdict, by, text, key in rows:
+                with self._checked(table, mutant, round):
+                    outcome_in(mutant, round, verdict, by, text)
+                    return Row(mutant, round, verdict, by, text, key)
+                return None
+        raise KeyError((mutant, round))
+
+    def _of_rows(self, table: str, question: str) -> dict[tuple[str, int], Kept]:
+        rows = self._store.rows(
+            "SELECT mutant, round, key, verdict NOT IN ('error', 'unstable') AND data NOT LIKE ?, verdict "
+            f"FROM ({question}) WHERE key != ''",
+            f"%{os.strerror(errno.ENOSPC)}%",
+        )
+        found = {}
+        for mutant, round, key, sound, verdict in rows:
+            with self._checked(table, mutant, round):
+                found[text_in(mutant), round_in(round)] = Kept(text_in(key), bool(sound), Verdict(verdict))
+        return found
+
+    def kept_outcomes(self) -> list[Outcome]:
+        """All that earlier campaigns found, also what cannot be reused."""
+        return self._all("kept", outcome_in)
+
+    def known(self) -> list[tuple[Mutant, bool]]:
+        """Mutants of earlier campaigns, and whether something has changed since that they depend on."""
+        return self._all("known", known_in)
+
+    def parts(self, digest: str) -> dict[str, str] | None:
+        """What a digest in a key stands for, or None if that is not known any more."""
+        rows = self._store.rows("SELECT data FROM parts WHERE digest = ?", digest)
+        with self._checked("parts", digest):
+            return from_data(dict[str, str], load(rows[0][0])) if rows else None
+        return None
+
+    def text(self, digest: str) -> bytes | None:
+        """What stood in a Python file with this digest, or None if that is not known any more."""
+        rows = self._store.rows("SELECT data FROM text WHERE digest = ?", digest)
+        with self._checked("text", digest):
+            return inflated(rows[0][0]) if rows else None
+        return None
+
+    def _all(self, table: str, read: Callable[..., T], which: str = "ORDER BY rowid") -> list[T]:
+        """What the rows of a table hold, from all their columns."""
+        found = []
+        for row in self._store.rows(f"SELECT * FROM {table} {which}"):
+            with self._checked(table, *row):
+                found.append(read(*row))
+        return found
+
+    @contextmanager
+    def _checked(self, table: str, *values: Any) -> Iterator[None]:
+        """Leave a row that holds what cannot be, and go on with the next; the first values name it."""
+        try:
+            yield
+        except UNFIT:
+            self._unfit[f"{named_row(table, values)}"] = None
 
 
 class Journal(JournalReader):
@@ -48,7 +288,7 @@ class Journal(JournalReader):
         unstored: why rows of this campaign could not be stored, one line each: all others are.
     """
 
-    def __init__(self, store: Store, moved: Path | None, *, waits: bool) -> None:
+    def __init__(self, store: Database, moved: Path | None, *, waits: bool) -> None:
         super().__init__(store)
         self.moved = moved
         self.lost, self.altered, self.unstored = store.lost, store.altered, store.unstored
@@ -78,16 +318,19 @@ class Journal(JournalReader):
             lock = WriterLock.take(path)
             try:
                 moved = make_way(path)
-                store = Store.to_write(path, lock)
+                store = Database.to_write(path, lock)
             except BaseException:
                 lock.release()
                 raise
-            journal = cls(store, moved, waits=not store.is_new)
-            with store.closed_on_error():
-                if journal._waits:
-                    journal._wait()
-                else:
-                    journal._begin(meta)
+        journal = cls(store, moved, waits=not store.is_new)
+        with store.closed_on_error():
+            if journal._waits:
+                # the campaign before has ended, whatever became of it; this one may fail to begin
+                if journal.finished is None:
+                    journal.set_meta(_FINISHED_KEY, "killed")
+                journal.set_meta(_ATTEMPT_KEY, None)
+            else:
+                journal._begin(meta)
         return journal
 
     def begin(self, meta: Mapping[str, Any], *, fresh: bool = False) -> None:
@@ -99,43 +342,38 @@ class Journal(JournalReader):
         if not self._waits:
             return  # nothing was there before
         if self.finished == "complete":
-            keep_copy(self._store)
+            with guarded(self.path):
+                write_anew(self._store.copy, previous_of(self.path))
         self._begin(meta)
         self._waits = False
         if fresh:
             self._store.write("UPDATE kept SET key = ''")
 
-    def _wait(self) -> None:
-        """The campaign before this one has ended, whatever became of it; the next may fail to begin."""
-        if self.finished is None:
-            self._store.put(FINISHED_KEY, "killed")
-        self._store.put(ATTEMPT_KEY, None)
-
     def _begin(self, meta: Mapping[str, Any]) -> None:
-        with self._store.transaction() as execute:
+        with self._store.transaction():
             if self._waits:
                 self._store.remove_unmarked()  # before any of it is believed
-                for statement in ADOPT.split(";"):
-                    execute(statement)
-            self._store.put(VERSION_KEY, SCHEMA_VERSION)
-            for key, value in meta.items():
-                self._store.put(key, value)
+                for statement in _ADOPT.split(";"):
+                    self._store.write(statement)
+            for key, value in {VERSION_KEY: SCHEMA_VERSION, **meta}.items():
+                self.set_meta(key, value)
 
     # What the campaign was and how it ended
 
     def set_meta(self, key: str, value: Any) -> None:
         """Add or replace one fact about the campaign."""
-        self._store.put(key, value)
+        self._store.write("INSERT OR REPLACE INTO meta VALUES (?, ?)", key, _dump(value))
 
     def finish(self, reason: str) -> None:
         """Note that the campaign has ended: ``complete``, ``interrupted`` or why it stopped.
 
         If it has not even begun, the journal stays that of the one before, and tells about the attempt.
         """
-        self._store.check()
-        if self._store.altered:
-            self._store.put(ALTERED, [*(self.meta().get(ALTERED) or []), *self._store.altered])
-        self._store.put(ATTEMPT_KEY if self._waits else FINISHED_KEY, reason)
+        with self._store.transaction(whole=True):
+            pass  # what is not as it was written is written again
+        if self.altered:
+            self.set_meta(ALTERED, [*(self.meta().get(ALTERED) or []), *self.altered])
+        self.set_meta(_ATTEMPT_KEY if self._waits else _FINISHED_KEY, reason)
 
     # The baseline and the plan
 
@@ -143,7 +381,7 @@ class Journal(JournalReader):
         """Add one test of the baseline; the same test again replaces it."""
         self._store.add(
             "INSERT OR REPLACE INTO test VALUES (?, ?, ?, ?, ?)",
-            round, repetition, test.test, test.outcome, dump(test),
+            round, repetition, test.test, test.outcome, _dump(test),
         )  # fmt: skip
 
     def add_control(self, test_file: str, control: str, ok: bool, detail: str = "") -> None:
@@ -162,22 +400,21 @@ class Journal(JournalReader):
         ``sources`` holds the text of the files that mutants stand in, by their name in the spans, so that
         reports show what was mutated and not what became of it since.
         """
-        with self._store.transaction() as execute:
-            for table in ("mutant", "left_out", "source"):
-                execute(f"DELETE FROM {table}")
+        with self._store.transaction():
+            for table in _PLAN[1:]:
+                self._store.write(f"DELETE FROM {table}")
             for mutant in mutants:
-                execute("INSERT INTO mutant VALUES (?, ?, ?)", mutant.number, mutant.id, dump(mutant))
+                row = mutant.number, mutant.id, _dump(mutant)
+                self._store.write("INSERT INTO mutant VALUES (?, ?, ?)", *row)
             for item in left_out:
-                execute("INSERT INTO left_out VALUES (?, ?, ?)", item.id, item.reason, dump(item))
+                self._store.write("INSERT INTO left_out VALUES (?, ?, ?)", item.id, item.reason, _dump(item))
             for file, text in (sources or {}).items():
-                execute("INSERT INTO source VALUES (?, ?)", file, text)
+                self._store.write("INSERT INTO source VALUES (?, ?)", file, text)
 
     def keep_planned(self, mutants: Collection[str]) -> None:
         """Leave only these mutants in the plan."""
-        with self._store.transaction() as execute:
-            for (mutant,) in execute("SELECT id FROM mutant").fetchall():
-                if mutant not in mutants:
-                    execute("DELETE FROM mutant WHERE id = ?", mutant)
+        with self._store.transaction():
+            self._drop_others("mutant", "id", mutants)
 
     # Outcomes
 
@@ -189,13 +426,19 @@ class Journal(JournalReader):
         self._store.add(
             "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?, 0)",
             outcome.mutant, outcome.round, outcome.verdict.value, outcome.by.value if outcome.by else None,
-            dump(outcome), key,
+            _dump(outcome), key,
         )  # fmt: skip
 
     def add_parts(self, parts: Mapping[str, Mapping[str, str]]) -> None:
         """Write down what digests in keys stand for."""
         for digest, data in parts.items():
-            self._store.add("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, dump(data))
+            self._store.add("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, _dump(data))
+
+    def add_texts(self, texts: Mapping[str, bytes]) -> None:
+        """Write down what stands in Python files, by the digest."""
+        with self._store.transaction():
+            for digest, text in texts.items():
+                self._store.write("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, zlib.compress(text))
 
     def forget_keys(self) -> None:
         """Never reuse what this campaign has found itself."""
@@ -205,65 +448,66 @@ class Journal(JournalReader):
 
     def take_over(self, rows: Iterable[Row]) -> None:
         """Add outcomes of earlier campaigns."""
-        with self._store.transaction() as execute:
+        with self._store.transaction():
             for row in rows:
-                execute(
-                    "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?, ?)",
+                self._store.write(
+                    "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?, 1)",
                     row.mutant, row.round, row.verdict, row.by, row.data, row.key,
-                    KNOWN_BEFORE,
                 )  # fmt: skip
-
-    def add_texts(self, texts: Mapping[str, bytes]) -> None:
-        """Write down what stands in Python files, by the digest."""
-        with self._store.transaction() as execute:
-            for digest, text in texts.items():
-                execute("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, zlib.compress(text))
 
     def forget(self, mutants: Iterable[str]) -> None:
         """Never reuse what earlier campaigns found about these mutants."""
-        with self._store.transaction() as execute:
+        with self._store.transaction():
             for mutant in mutants:
-                execute("UPDATE kept SET key = '' WHERE mutant = ?", mutant)
+                self._store.write("UPDATE kept SET key = '' WHERE mutant = ?", mutant)
 
     def set_known(self, known: Iterable[tuple[Mutant, bool]]) -> None:
         """Write down the mutants of earlier campaigns that the program still has."""
-        with self._store.transaction() as execute:
-            execute("DELETE FROM known")
+        with self._store.transaction():
+            self._store.write("DELETE FROM known")
             for mutant, outdated in known:
-                execute("INSERT INTO known VALUES (?, ?, ?)", mutant.id, dump(mutant), int(outdated))
+                self._store.write(
+                    "INSERT INTO known VALUES (?, ?, ?)", mutant.id, _dump(mutant), int(outdated)
+                )
+
+    def tidy(self, mutants: Collection[str]) -> None:
+        """Forget what earlier campaigns found about other mutants, and what nothing refers to."""
+        with self._store.transaction():
+            self._drop_others("kept", "mutant", mutants)
+            keys = self._store.rows("SELECT key FROM kept UNION SELECT key FROM outcome")
+            self._drop_others("parts", "digest", {digest for (key,) in keys for digest in key.split()})
+            trees = {key.split()[3] for (key,) in keys if len(key.split()) > 3}
+            parts = [self.parts(tree) or {} for tree in trees]
+            self._drop_others("text", "digest", {digest for one in parts for digest in one.values()})
+
+    def _drop_others(self, table: str, column: str, kept: Collection[str]) -> None:
+        for (value,) in self._store.rows(f"SELECT DISTINCT {column} FROM {table}"):
+            if value not in kept:
+                self._store.write(f"DELETE FROM {table} WHERE {column} = ?", value)
 
     # Shards
 
     def take_plan(self, other: JournalReader) -> None:
         """Take over the plan of another journal, its baseline and the texts, whole or not at all."""
-        with self._store.transaction() as execute:
-            for table in ("test", "mutant", "left_out", "source"):
-                execute(f"DELETE FROM {table}")
+        with self._store.transaction():
+            for table in _PLAN:
+                self._store.write(f"DELETE FROM {table}")
                 for row in other._store.rows(f"SELECT * FROM {table} ORDER BY rowid"):
-                    execute(f"INSERT INTO {table} VALUES ({', '.join('?' * len(row))})", *row)
+                    self._store.write(f"INSERT INTO {table} VALUES ({', '.join('?' * len(row))})", *row)
 
     def take_outcomes(self, other: JournalReader) -> None:
         """Take over what another journal has found and knows of earlier campaigns; what is there stays."""
-        with self._store.transaction() as execute:
-            for question, statement in TAKE.items():
+        with self._store.transaction():
+            for question, statement in _TAKE.items():
                 for row in other._store.rows(question):
-                    execute(statement, *row)
+                    self._store.write(statement, *row)
 
-    def tidy(self, mutants: Iterable[str]) -> None:
-        """Forget what earlier campaigns found about other mutants, and what nothing refers to."""
-        with self._store.transaction() as execute:
-            known = set(mutants)
-            for (mutant,) in execute("SELECT DISTINCT mutant FROM kept").fetchall():
-                if mutant not in known:
-                    execute("DELETE FROM kept WHERE mutant = ?", mutant)
-            keys = execute("SELECT key FROM kept UNION SELECT key FROM outcome").fetchall()
-            needed = {digest for (key,) in keys for digest in key.split()}
-            for (digest,) in execute("SELECT digest FROM parts").fetchall():
-                if digest not in needed:
-                    execute("DELETE FROM parts WHERE digest = ?", digest)
-            trees = {key.split()[3] for (key,) in keys if len(key.split()) > 3}
-            rows = (execute("SELECT data FROM parts WHERE digest = ?", tree).fetchone() for tree in trees)
-            texts = {digest for row in rows if row is not None for digest in json.loads(row[0]).values()}
-            for (digest,) in execute("SELECT digest FROM text").fetchall():
-                if digest not in texts:
-                    execute("DELETE FROM text WHERE digest = ?", digest)
+
+def _dump(value: Any) -> str:
+    """A value as JSON that can be stored."""
+    try:
+        text = json.dumps(to_data(value), ensure_ascii=False, default=str)
+        text.encode()
+    except (ValueError, RecursionError):  # what no other process said: the names of files, for instance
+        return json.dumps(storable(value, str), ensure_ascii=False)
+    return text

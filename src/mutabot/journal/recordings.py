@@ -14,6 +14,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from .database import connect, connect_to_read, guarded, loaded
+from .files import recordings_path
 
 _TABLE = """
 CREATE TABLE IF NOT EXISTS recording (
@@ -31,11 +32,6 @@ class Rank(IntEnum):
     OTHER = 0
     SURVIVOR = 1
     ORIGINAL = 2
-
-
-def recordings_path(journal: Path) -> Path:
-    """Where the recordings of a journal's campaigns lie."""
-    return journal.with_name(f"{journal.stem}-evidence.sqlite")
 
 
 class Recordings:

@@ -12,7 +12,7 @@ from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.run import run_campaign
 from mutabot.campaign.workers.task import Task, death
 from mutabot.errors import MutabotError
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.journal import JournalReader
 from mutabot.model import By, Verdict
 from mutabot.suggestion.checks import Check
 from mutabot.suggestion.edits import edited

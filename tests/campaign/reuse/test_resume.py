@@ -492,7 +492,7 @@ def test_a_full_disk_stops_the_campaign_and_keeps_what_is_there(
 
     def fill(self: Journal, outcome: Outcome, *, key: str) -> None:
         if len(self.outcomes()) == 3:
-            connection = self._store._file._file
+            connection = self._store._file
             pages = connection.execute("PRAGMA page_count").fetchone()[0]
             connection.execute(f"PRAGMA max_page_count = {pages}")
             outcome = Outcome(outcome.mutant, outcome.round, outcome.verdict, message="x" * 100_000)

@@ -220,8 +220,8 @@ class Dependencies:
     def everything(self) -> Parts:
         """All that any outcome depends on, but for what a mutant does."""
         return {
-            **self.files,
             **self.common,
+            **self.files,
             **{k: v for one in self._operations.values() for k, v in one.items()},
         }
 

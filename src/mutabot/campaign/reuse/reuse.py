@@ -10,8 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from mutabot.campaign.request import Progress, Request
-from mutabot.journal.journal import Journal
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import Row
 from mutabot.model import Mutant, Verdict
 

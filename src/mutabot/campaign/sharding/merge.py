@@ -12,10 +12,8 @@ from mutabot.campaign.plan.plan import renumbered
 from mutabot.campaign.reuse.keys import changes
 from mutabot.errors import MergeError
 from mutabot.frozen import frozen
-from mutabot.journal.files import HOME, JOURNAL
-from mutabot.journal.journal import Journal
-from mutabot.journal.lock import is_written, refuse_tracked
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.files import HOME, JOURNAL, is_written, refuse_tracked
+from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.recordings import Recordings
 from mutabot.journal.records import (
     ALTERED,

@@ -30,10 +30,8 @@ from mutabot.campaign.reuse.snapshot import (
 )
 from mutabot.errors import JournalError, UsageError
 from mutabot.frozen import frozen
-from mutabot.journal.files import find_journal
-from mutabot.journal.journal import Journal
-from mutabot.journal.lock import refuse_tracked
-from mutabot.journal.reader import JournalReader
+from mutabot.journal.files import find_journal, refuse_tracked
+from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import SINCE, Since
 from mutabot.model import Mutant
 
