@@ -11,7 +11,6 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import closing, suppress
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -235,16 +234,6 @@ def test_readers_see_each_outcome_at_once_while_the_writer_is_active(path: Path)
     assert not is_written(path)
 
 
-@pytest.mark.parametrize("round", [1 << 64, object(), None], ids=["64 bits", "no type of SQLite's", "none"])
-def test_a_row_that_cannot_be_stored_takes_no_other_with_it(path: Path, round: Any) -> None:
-    with Journal.create(path, meta={}) as journal:
-        for each in (0, round, 2):
-            journal.add_outcome(Outcome("m", each, Verdict.SURVIVED))
-        assert [one.partition(",")[0] for one in journal.unstored] == ["m"]
-    with Journal.open(path) as reader:
-        assert [one.round for one in reader.outcomes()] == [0, 2]
-
-
 def test_texts_that_are_no_utf_8_are_stored_and_found_again(path: Path) -> None:
     with Journal.create(path, meta={"root": "/tmp/\udcff"}) as journal:
         journal.add_outcome(
@@ -253,7 +242,6 @@ def test_texts_that_are_no_utf_8_are_stored_and_found_again(path: Path) -> None:
         journal.add_control("tests/t\udcff.py", "identity", ok=True, detail="\udcff")
         journal.add_test(0, 0, TestEnd("t\udcff", "passed"))
         journal.set_plan([], [], sources={"mission\udcff.py": "x = '\udcff'"})
-        assert not journal.unstored
     with Journal.open(path) as reader:
         assert [one.mutant for one in reader.outcomes()] == ["mission\\udcff.py"]
         assert reader.outcomes()[0].example == (1, "\\udcfe")

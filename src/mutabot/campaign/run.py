@@ -41,8 +41,6 @@ from .campaign import Campaign, Sink
 from .evidence import Evidence, recorded, without_recording
 from .request import Progress, Request
 
-#: rows that could not be stored, as far as they are told one by one
-_UNSTORED = 5
 #: what else decides how a campaign ends, beside the user's own files
 _VERSIONS = ("pytest", "wrapt", "pytest-bdd")
 
@@ -143,17 +141,13 @@ def _run(
 
 
 def _end(journal: Journal, part: Plan, request: Request, progress: Progress, *, is_whole: bool) -> str:
-    """How the campaign has ended, by what is in the journal. What could not be stored is told."""
+    """How the campaign has ended, by what is in the journal."""
     known = journal.rounds_known()
-    for text in journal.unstored[:_UNSTORED]:
-        progress.note(f"the journal cannot hold this row: {text}")
-    if len(journal.unstored) > _UNSTORED:
-        progress.note(f"nor can it hold {len(journal.unstored) - _UNSTORED} more rows")
     if not is_whole:
         return OUT_OF_TIME
     alone, _ = apart(part.mutants)  # of ladders, not every mutant is run
     is_known = all(known.get(mutant.id, 0) >= request.rounds for mutant in alone)
-    return "complete" if is_known and not journal.unstored else INCOMPLETE
+    return "complete" if is_known else INCOMPLETE
 
 
 def _note_others(journal: Journal, progress: Progress) -> None:

@@ -57,11 +57,6 @@ CREATE TABLE mark (
 LAST = "SELECT max(rowid) FROM outcome GROUP BY mutant, round"
 #: key of meta that says which version the journal has
 VERSION_KEY = "journal:version"
-#: what Python and SQLite raise because of one row, and not because of the file
-_OF_ONE_ROW = (
-    sqlite3.DataError, sqlite3.InterfaceError, sqlite3.ProgrammingError, sqlite3.IntegrityError,
-    OverflowError, ValueError, TypeError,
-)  # fmt: skip
 #: what SQLite says where it is the disk that cannot take what is written, and not the file that is wrong
 _OF_THE_DISK = ("full", "readonly", "disk I/O", "unable to open")
 #: what a database consists of while somebody has it open
@@ -268,7 +263,6 @@ class Database:
     Attributes:
         path: the file.
         unmarked: rows that something else than Mutabot has written, in words; they are left out.
-        unstored: why rows could not be stored, one line each: all others are.
         is_new: whether there was nothing in the file, and nothing is as yet.
         lost: how often the file was deleted or replaced, in words, and was written again.
         altered: rows of the file that somebody else changed, added or removed, and that were restored.
@@ -277,7 +271,6 @@ class Database:
     def __init__(self, path: Path, copy: sqlite3.Connection) -> None:
         self.path, self.copy = path, copy
         self.unmarked: list[str] = []
-        self.unstored: list[str] = []
         self.lost: list[str] = []
         self.altered: list[str] = []
         self.is_new = False
@@ -353,21 +346,6 @@ class Database:
         with guarded(self.path):
             self.copy.execute(statement, given)
         self._done.append((statement, given))
-
-    def add(self, statement: str, *values: Any) -> None:
-        """Add a row; one that cannot be stored takes no other with it."""
-        try:
-            self.write(statement, *values)
-        except JournalError as error:
-            if not isinstance(error.__cause__, _OF_ONE_ROW):
-                raise
-            self._not_stored(values, error.__cause__)
-        except _OF_ONE_ROW as error:
-            self._not_stored(values, error)
-
-    def _not_stored(self, values: tuple[Any, ...], error: BaseException) -> None:
-        what = ", ".join(str(value)[:100] for value in values[:2])
-        self.unstored.append(f"{what}: {type(error).__name__}: {error}")
 
     @contextmanager
     def transaction(self, *, whole: bool = False) -> Iterator[None]:

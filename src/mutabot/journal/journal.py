@@ -285,13 +285,12 @@ class Journal(JournalReader):
         moved: where what lay in its place was moved to, if that was no journal of this version.
         lost: how often the file was deleted or replaced while it was written, in words; it was written again.
         altered: what somebody else changed in the file meanwhile, in words; it was written again.
-        unstored: why rows of this campaign could not be stored, one line each: all others are.
     """
 
     def __init__(self, store: Database, moved: Path | None, *, waits: bool) -> None:
         super().__init__(store)
         self.moved = moved
-        self.lost, self.altered, self.unstored = store.lost, store.altered, store.unstored
+        self.lost, self.altered = store.lost, store.altered
         self._waits = waits  # for its campaign to begin: until then it is that of the one before
 
     @classmethod
@@ -379,14 +378,14 @@ class Journal(JournalReader):
 
     def add_test(self, round: int, repetition: int, test: TestEnd) -> None:
         """Add one test of the baseline; the same test again replaces it."""
-        self._store.add(
+        self._store.write(
             "INSERT OR REPLACE INTO test VALUES (?, ?, ?, ?, ?)",
             round, repetition, test.test, test.outcome, _dump(test),
         )  # fmt: skip
 
     def add_control(self, test_file: str, control: str, ok: bool, detail: str = "") -> None:
         """Add the end of one control mutant."""
-        self._store.add("INSERT INTO control VALUES (?, ?, ?, ?)", test_file, control, int(ok), detail)
+        self._store.write("INSERT INTO control VALUES (?, ?, ?, ?)", test_file, control, int(ok), detail)
 
     def set_plan(
         self,
@@ -423,7 +422,7 @@ class Journal(JournalReader):
 
         ``key`` is what it depends on; the empty key says that nobody knows, and that it is not to be reused.
         """
-        self._store.add(
+        self._store.write(
             "INSERT INTO outcome VALUES (?, ?, ?, ?, ?, ?, 0)",
             outcome.mutant, outcome.round, outcome.verdict.value, outcome.by.value if outcome.by else None,
             _dump(outcome), key,
@@ -432,7 +431,7 @@ class Journal(JournalReader):
     def add_parts(self, parts: Mapping[str, Mapping[str, str]]) -> None:
         """Write down what digests in keys stand for."""
         for digest, data in parts.items():
-            self._store.add("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, _dump(data))
+            self._store.write("INSERT OR IGNORE INTO parts VALUES (?, ?)", digest, _dump(data))
 
     def add_texts(self, texts: Mapping[str, bytes]) -> None:
         """Write down what stands in Python files, by the digest."""

@@ -179,15 +179,15 @@ def test_shards_of_other_files_are_refused_by_their_names(campaigns: Path, tmp_p
     with pytest.raises(MergeError) as error:
         merge([campaigns / "1", path], target, root=root, room=ROOM)
     assert "mission.py changed; tests/test_mission.py changed" in str(error.value)
-    assert "the number of rounds is 1 in the one, 2 in the other" in str(error.value)
+    assert "rounds is 1, was 2" in str(error.value)
     assert not target.exists()
 
 
 @pytest.mark.parametrize(
     ("key", "inner", "value", "told"),
     [
-        ("seed", "", 5, "the seed is 5 in the one, 1 in the other"),
-        ("families", "", ["robot"], "the families is robot in the one, robot, graded in the other"),
+        ("shard", "depends", {"seed": "5"}, "seed is 5, was 1"),
+        ("shard", "depends", {"families": "robot"}, "families is robot, was robot, graded"),
         ("shard", "of", 3, "one is of 3 shards, the other of 2"),
         ("shard", "depends", None, "ended in its baseline, or files changed meanwhile"),
     ],
@@ -198,7 +198,8 @@ def test_shards_of_different_plans_are_refused_by_what_differs(
     shutil.copytree(campaigns / "2", tmp_path / "2")
     with edited(tmp_path / "2" / "journal.sqlite") as connection:
         (text,) = connection.execute("SELECT value FROM meta WHERE key = ?", (key,)).fetchone()
-        new = {**json.loads(text), inner: value} if inner else value
+        old = json.loads(text)
+        new = {**old, inner: {**old[inner], **value} if isinstance(value, dict) else value}
         connection.execute("UPDATE meta SET value = ? WHERE key = ?", (json.dumps(new), key))
     with pytest.raises(MergeError) as error:
         merge([campaigns / "1", tmp_path / "2"], tmp_path / "m.sqlite", root=tmp_path, room=ROOM)

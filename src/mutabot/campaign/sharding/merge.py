@@ -17,7 +17,6 @@ from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.recordings import Recordings
 from mutabot.journal.records import (
     ALTERED,
-    DRAWING,
     FACTS,
     FLAKY,
     REPEATS,
@@ -28,15 +27,10 @@ from mutabot.journal.records import (
 )
 from mutabot.model import Mutant
 
-#: facts of a campaign that decide which outcomes it has, and their names on the command line
-_FACTS = {
-    "seed": "the seed",
-    "rounds": "the number of rounds",
-    "families": "the families",
-    DRAWING: "the sample",
-}
-#: facts that are told; the rest is counted
+#: differences that are told; the rest is counted
 _SHOWN = 5
+#: how a campaign ends that lacks something
+_INCOMPLETE = "not all shards are there"
 
 
 @frozen
@@ -87,7 +81,7 @@ def refuse_strangers(parts: Sequence[Part]) -> None:
                 f"it was about: run it again with --shard {part.shard.number}/{part.shard.of} or leave it out"
             )
     for part in others:
-        differing = list(_differing(first, part))
+        differing = _differing(first, part)
         if differing:
             more = f"; and {len(differing) - _SHOWN} more" if len(differing) > _SHOWN else ""
             raise MergeError(
@@ -96,40 +90,15 @@ def refuse_strangers(parts: Sequence[Part]) -> None:
             )
 
 
-def _differing(old: Part, new: Part) -> Iterator[str]:
+def _differing(old: Part, new: Part) -> list[str]:
     if old.shard.of != new.shard.of:
-        yield f"one is of {new.shard.of} shards, the other of {old.shard.of}"
-    for key, name in _FACTS.items():
-        before, now = old.meta.get(key), new.meta.get(key)
-        if before != now:
-            yield f"{name} is {_short(now)} in the one, {_short(before)} in the other"
-    told = changes(_without_facts(old), _without_facts(new))
-    yield from told
-    if not told:  # else they differ for that reason
-        yield from _other_mutants(old, new)
-
-
-def _without_facts(part: Part) -> Mapping[str, str]:
-    return {name: value for name, value in (part.shard.depends or {}).items() if name not in _FACTS}
-
-
-def _other_mutants(old: Part, new: Part) -> Iterator[str]:
-    before, now = ({one.id: one.number for one in part.mutants} for part in (old, new))
-    for some, others, where in ((now, before, new), (before, now, old)):
-        extra = [name for name in some if name not in others]
-        if extra:
-            yield f"{len(extra)} mutants are planned in {where.path} alone, such as {extra[0]}"
-    if before.keys() == now.keys() and before != now:
-        yield "the mutants have other numbers"
-
-
-def _short(value: Any) -> str:
-    text = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
-    return text if len(text) <= 60 else f"{text[:60]}…"
-
-
-#: how a campaign ends that lacks something
-_INCOMPLETE = "not all shards are there"
+        return [f"one is of {new.shard.of} shards, the other of {old.shard.of}"]
+    told = changes(old.shard.depends or {}, new.shard.depends or {})
+    before, now = ({(one.id, one.number) for one in part.mutants} for part in (old, new))
+    others = sorted(before ^ now)
+    if others and not told:  # else they differ for that reason
+        told = [f"{len(others)} mutants are planned in one of them alone, such as {others[0][0]}"]
+    return told
 
 
 def merge(paths: Sequence[Path], target: Path, *, root: Path, room: int) -> list[str]:
@@ -202,28 +171,19 @@ def _missing(parts: Sequence[Part]) -> Iterator[str]:
             "the merged journal runs them alone"
         )
     for part in parts:
+        again = f"run it again with `mutabot run --shard {part.shard.number}/{of}`"
         if part.journal.set_aside:
-            yield (
-                f"{part.words} holds what mutabot has not written, or what is damaged "
-                f"({part.journal.set_aside[0]}): run it again with "
-                f"`mutabot run --shard {part.shard.number}/{of}`, and merge again"
-            )
+            row = part.journal.set_aside[0]
+            yield f"{part.words} holds what mutabot has not written, or what is damaged ({row}): {again}"
         ended = part.journal.finished or "killed"
         if ended != "complete":
-            lacking = _lacking(part, rounds)
+            own = set(part.shard.mutants)
+            alone = {one.id for one in part.mutants if one.number in own and not one.ladder}
+            lacking = len(alone) * rounds - sum(one.mutant in alone for one in part.journal.outcomes())
             yield (
-                f"{part.words} is not complete ({ended}), {lacking}: run it again with "
-                f"`mutabot run --shard {part.shard.number}/{of}` and its journal, and merge again"
+                f"{part.words} is not complete ({ended}), {lacking} outcomes are missing: {again} and its "
+                "journal, and merge again"
             )
-
-
-def _lacking(part: Part, rounds: int) -> str:
-    """How many outcomes a shard lacks; of ladders nobody knows how many it takes."""
-    own = set(part.shard.mutants)
-    alone = {one.id for one in part.mutants if one.number in own and not one.ladder}
-    done = sum(one.mutant in alone for one in part.journal.outcomes())
-    ladders = any(one.number in own and one.ladder for one in part.mutants)
-    return f"{len(alone) * rounds - done} outcomes are missing{', and some of ladders' if ladders else ''}"
 
 
 def _meta(parts: Sequence[Part]) -> dict[str, Any]:
@@ -255,29 +215,23 @@ def _summed(said: Sequence[Any]) -> Any:
     return [item for one in said for item in one] if isinstance(first, list) else sum(said)
 
 
-def _known(journal: Journal, parts: Sequence[Part]) -> list[tuple[Any, bool]]:
-    """Mutants of earlier campaigns beside the plan: what shards say of them counts."""
+def _known(journal: Journal, parts: Sequence[Part]) -> list[tuple[Mutant, bool]]:
+    """Mutants of earlier campaigns beside the plan: what the last shard says of them counts."""
     planned = parts[0].mutants
-    ids = {one.id for one in planned}
-    found = {one.id: (one, outdated) for one, outdated in journal.known()}
-    for part in parts:
-        found.update((one.id, (one, outdated)) for one, outdated in part.journal.known())
-    left = [(one, outdated) for name, (one, outdated) in found.items() if name not in ids]
-    is_outdated = {one.id: outdated for one, outdated in left}
-    return [(one, is_outdated[one.id]) for one in renumbered([one for one, _ in left], planned)]
+    readers = [journal, *(part.journal for part in parts)]
+    found = {one.id: (one, outdated) for part in readers for one, outdated in part.known()}
+    for one in planned:
+        found.pop(one.id, None)
+    return [(one, found[one.id][1]) for one in renumbered([one for one, _ in found.values()], planned)]
 
 
 def _merge_recordings(
     stack: ExitStack, parts: Sequence[Part], target: Path, room: int, known: set[str]
 ) -> None:
-    found = [Recordings.to_read(part.path, copied=_is_same(part.path, target)) for part in parts]
+    is_there = target.exists()  # a shard may lie where the whole is to lie
+    found = [Recordings.to_read(part.path, copied=is_there and part.path.samefile(target)) for part in parts]
     opened = [stack.enter_context(one) for one in found if one is not None]
     if opened:
         mutants = known | {one.id for one in parts[0].mutants}
         with Recordings.to_write(target, room) as recordings:
             recordings.take(opened, mutants)
-
-
-def _is_same(path: Path, target: Path) -> bool:
-    """Whether a shard lies where the whole is to lie."""
-    return target.exists() and path.samefile(target)

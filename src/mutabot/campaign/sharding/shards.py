@@ -16,6 +16,7 @@ from hashlib import blake2b
 from mutabot.border.codec import to_data
 from mutabot.campaign.baseline.baseline import Baseline, cost
 from mutabot.campaign.plan.plan import Plan
+from mutabot.campaign.request import Request
 from mutabot.campaign.reuse.keys import Dependencies
 from mutabot.frozen import frozen
 from mutabot.journal.journal import Journal
@@ -126,9 +127,15 @@ def write_shard(
         dependencies: None if they are not known yet, or files change.
     """
     if shard is not None:
-        depends = dict(dependencies.everything) if dependencies is not None else None
+        depends = {**dependencies.everything, **_asked(dependencies.request)} if dependencies else None
         said = ShardOf(shard.number, shard.of, tuple(one.number for one in part.mutants), depends)
         journal.set_meta(SHARD, to_data(said))
+
+
+def _asked(request: Request) -> dict[str, str]:
+    """What else decides which outcomes a campaign has."""
+    sample = request.sample.text if request.sample is not None else "none"
+    return {"rounds": str(request.rounds), "families": ", ".join(request.families), "sample": sample}
 
 
 def _item(name: str, mutants: list[Mutant], baseline: Baseline) -> Item:
