@@ -227,7 +227,7 @@ def measure(given: argparse.Namespace, folder: Path) -> dict[str, Any]:
             runs = [(one.task.key.round, one.task.key.repetition, one.ends) for one in results]
             evidence.begin(runs, plan.mutants)
         state = State.now(request, before, Snapshot.take(root, before), None)
-        dependencies = Dependencies(request, campaign.baseline, campaign.baseline.tests[0], state)
+        dependencies = Dependencies(request, campaign.baseline, state)
         recorder.told.clear()
         began = time.monotonic()
         run_trials(campaign, [(one, 0) for one in plan.mutants], Sink(journal))

@@ -109,7 +109,6 @@ class Planted:
         order: which comes first among the mutants of its provider, and of those that are numbered with it;
             what is equal keeps its order.
         does: what it does beyond what its id says, as plain data: its outcomes depend on it.
-        mentions: program text that it brings, whose names it may reach.
         choice: the alternative in the program text that it is.
         in_process: what puts it in place before each test.
     """
@@ -118,7 +117,6 @@ class Planted:
     reason: str | None = None
     order: tuple[int, ...] = ()
     does: Any = None
-    mentions: str = ""
     choice: Choice | None = None
     in_process: InProcess | None = None
 

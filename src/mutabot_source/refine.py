@@ -33,7 +33,6 @@ def planted_of(place: TextPlace, index: int, reason: str | None = None) -> Plant
         _mutant_of(place, alternative),
         reason,
         does=to_data(alternative),
-        mentions=alternative.template,
         choice=Choice(place.number, index),
     )
 

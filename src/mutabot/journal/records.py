@@ -443,33 +443,30 @@ def fact(key: str, value: Any) -> Any:
     if value is None or key not in FACTS:
         return value
     found = from_data(FACTS[key], value)
-    if key == "rounds" and not 0 < value <= MOST_ROUNDS:
-        raise ValueError
-    if isinstance(found, ShardOf) and not 1 <= found.number <= found.of <= MOST_SHARDS:
-        raise ValueError
-    if isinstance(found, Reaching) and not all(
-        0 <= index < len(found.tests) for indexes in found.sites.values() for index in indexes
-    ):
-        raise ValueError
-    if isinstance(found, Budgeted) and not (
-        min(found.run, found.cut_off) >= 0 and found.run + found.cut_off <= found.planned
-    ):
-        raise ValueError
-    if key in ("started", "seconds") and not 0 <= value <= _LATEST:
+    match found:
+        case int() if key == "rounds":
+            is_fine = 0 < found <= MOST_ROUNDS
+        case int() | float() if key in ("started", "seconds"):
+            is_fine = 0 <= found <= _LATEST
+        case ShardOf():
+            is_fine = 1 <= found.number <= found.of <= MOST_SHARDS
+        case Reaching():
+            indexes = {index for some in found.sites.values() for index in some}
+            is_fine = indexes.issubset(range(len(found.tests)))
+        case Budgeted():
+            is_fine = min(found.run, found.cut_off) >= 0 and found.run + found.cut_off <= found.planned
+        case _:
+            is_fine = True
+    if not is_fine:
         raise ValueError
     return value
 
 
-def is_round(value: Any) -> bool:
-    """Whether this can be the number of a round."""
-    return isinstance(value, int) and 0 <= value < MOST_ROUNDS
-
-
 def round_in(value: Any) -> int:
     """The number of a round, or of a repetition."""
-    if not is_round(value):
+    if not isinstance(value, int) or not 0 <= value < MOST_ROUNDS:
         raise ValueError
-    return int(value)
+    return value
 
 
 def text_in(value: Any) -> str:
@@ -487,26 +484,24 @@ def agreed(value: T, *pairs: tuple[Any, Any]) -> T:
     return value
 
 
-def mutant_in(text: Any) -> Mutant:
-    """A mutant."""
+def mutant_in(text: Any, *pairs: tuple[str, Any]) -> Mutant:
+    """A mutant, if its attributes are those of the columns beside it."""
     found = from_data(Mutant, load(text))
     span = found.site.span
     for number in (found.number, span.line, span.end_line, span.column, span.end_column):
         _check_number(number)
     _check_number(found.magnitude, least=-math.inf)
-    return found
+    return agreed(found, *((getattr(found, name), value) for name, value in pairs))
 
 
 def planned_in(number: Any, name: Any, text: Any) -> Mutant:
-    """A mutant of the plan, if it is that of the columns beside it."""
-    found = mutant_in(text)
-    return agreed(found, (found.number, number), (found.id, name))
+    """A mutant of the plan."""
+    return mutant_in(text, ("number", number), ("id", name))
 
 
 def known_in(name: Any, text: Any, outdated: Any) -> tuple[Mutant, bool]:
     """A mutant of an earlier campaign, and whether something has changed that it depends on."""
-    found = mutant_in(text)
-    return agreed(found, (found.id, name)), outdated != 0
+    return mutant_in(text, ("id", name)), outdated != 0
 
 
 def left_out_in(name: Any, reason: Any, text: Any) -> LeftOut:
