@@ -12,7 +12,7 @@ import ast
 import builtins
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from types import CodeType
 from typing import Any
 
@@ -23,6 +23,7 @@ from .text import loading
 #: the built-in name of the bytes, one for each function
 RAN = "__mutabot_ran__"
 _STARTS = {"subprocess.Popen", "os.posix_spawn", "os.system", "os.fork", "os.forkpty", "os.exec"}
+_FOREIGN = {"uname", "git", "ldconfig", "lsb_release", "nvidia-smi"}
 #: decorators of functions whose results are kept
 _KEPT = {"cache", "lru_cache", "cached_property"}
 #: what makes objects that nobody can change, or that tests do not depend on
@@ -40,7 +41,12 @@ class ExecutedUnits:
 
     Args:
         root: absolute path of the project.
+
+    Attributes:
+        is_optional: loaders that compile in a way of their own may do so.
     """
+
+    is_optional = True
 
     def __init__(self, root: str) -> None:
         self._root = os.path.join(os.path.realpath(root), "")
@@ -50,6 +56,8 @@ class ExecutedUnits:
         self._tests: set[_PLACES] = set()
         self._common: set[_PLACES] = set()
         self._test: set[_PLACES] = set()
+        self._held: dict[str, set[_PLACES]] = {}
+        self._shared: Collection[str] = ()
         self._loaded: set[str] = set()
         self._in_call = self._leaves = self._has_objects = False
 
@@ -88,10 +96,11 @@ class ExecutedUnits:
         """A test begins, before its fixtures."""
         self._test.clear()
 
-    def begin_call(self, *, keeps: bool) -> None:
-        """The fixtures of the test are set up; ``keeps``: some of them outlive it."""
+    def begin_call(self, shared: Collection[str]) -> None:
+        """The fixtures of the test are set up; ``shared``: those that outlive it."""
         self._common |= self._take()
-        self._in_call, self._leaves = True, keeps
+        self._in_call, self._leaves, self._shared = True, False, shared
+        self._test.update(*(self._held.get(one, ()) for one in shared))
 
     def end_call(self) -> None:
         """The fixtures of the test are next to be taken down."""
@@ -102,6 +111,8 @@ class ExecutedUnits:
         self._test |= found
         if leaves:
             self._common |= found - self._tests
+        for one in self._shared:
+            self._held.setdefault(one, set()).update(found - self._tests)
         self._in_call = False
 
     def of_test(self, *, alone: bool = False) -> Executed:
@@ -128,7 +139,7 @@ class ExecutedUnits:
 
     def _name(self, path: str) -> str | None:
         """The path of a file of the project, relative to it; None for others."""
-        real = os.path.realpath(path)
+        real = os.path.realpath(path) if not path.startswith("<") else path
         if not real.startswith(self._root) or "/site-packages/" in real or "/.mutabot/" in real:
             return None
         return real[len(self._root) :]
@@ -154,9 +165,7 @@ class ExecutedUnits:
             self._ran.append(0)
             if node.lineno in keeping:
                 self._keeping.add(number)
-            for inner in ast.walk(node):
-                if isinstance(inner, ast.FunctionDef | ast.AsyncFunctionDef):
-                    _mark(inner, number)
+            _mark(node, number)  # what is defined in it may be sent to processes that know no marks
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event == "open":
@@ -172,9 +181,17 @@ class ExecutedUnits:
                 if name is not None and name not in self._loaded:
                     self._common.add((name, WHOLE))
         elif event in _STARTS:
-            who = sys._getframe(1).f_globals.get("__name__", "")
-            if not str(who).startswith("mutabot."):
+            who = str(sys._getframe(1).f_globals.get("__name__", ""))
+            if not who.startswith("mutabot.") and not _is_foreign(event, arguments):
                 self._common.add((ALL_FILES, WHOLE))
+
+
+def _is_foreign(event: str, arguments: tuple[Any, ...]) -> bool:
+    """Whether a program is started that runs no code of the project, as libraries do to know their system."""
+    if event != "subprocess.Popen" or not arguments[1]:
+        return False
+    executable = arguments[0] or (arguments[1] if isinstance(arguments[1], str | bytes) else arguments[1][0])
+    return os.path.basename(os.fsdecode(executable)) in _FOREIGN
 
 
 def _mark(function: ast.FunctionDef | ast.AsyncFunctionDef, number: int) -> None:

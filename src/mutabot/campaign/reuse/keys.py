@@ -33,7 +33,7 @@ from mutabot.campaign.request import Request
 from mutabot.frozen import frozen
 from mutabot.model import Mutant, Outcome, Vocabulary
 
-from .snapshot import _HASH, State, _digest_of, digest_of, read
+from .snapshot import _HASH, State, _digest_of, counts_by_name, digest_of, read
 
 #: what something is made of: names, and a digest or a plain value for each
 Parts = Mapping[str, str]
@@ -242,7 +242,7 @@ class Dependencies:
         found = {
             name: " ".join(map(str, lines)) if name in self.texts else self.notes.get(name, "")
             for name, lines in executed.items()
-            if name in self.texts or name == ALL_FILES or name not in self.files
+            if name in self.texts or (name not in self.files and counts_by_name(name))
         }
         return self._stored({**found, **({ALL_FILES: "0"} if ALL_FILES in executed else {})})
 

@@ -16,7 +16,10 @@ from typing import Protocol
 
 
 class Step(Protocol):
-    """Something that changes source files on their way."""
+    """Something that changes source files on their way.
+
+    One with an attribute ``is_optional`` leaves files alone whose loader compiles them in a way of its own.
+    """
 
     def wants(self, path: str) -> bool:
         """Whether it has anything to do with a file."""
@@ -64,7 +67,8 @@ def compile_tree(tree: ast.Module, path: str) -> CodeType:
 
 def _get_code(self: SourceFileLoader, fullname: str) -> CodeType | None:
     path = self.get_filename(fullname)
-    steps = [step for step in _steps if step.wants(path)]
+    is_plain = type(self).source_to_code is SourceFileLoader.source_to_code
+    steps = [step for step in _steps if step.wants(path) and (is_plain or not hasattr(step, "is_optional"))]
     while steps:
         source = self.get_data(path)
         try:
