@@ -213,5 +213,5 @@ class _ModuleLevel(ast.NodeTransformer):
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.ClassDef | None:
         had = len(node.body)
         self.generic_visit(node)
-        own = [one for one in node.body if not isinstance(getattr(one, "value", None), ast.Constant)]
+        own = [one for one in node.body if not isinstance(one, ast.Expr)]  # a docstring is one
         return None if len(node.body) < had and not own and not node.decorator_list else node
