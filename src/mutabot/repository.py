@@ -1,4 +1,4 @@
-"""Which files git tracks, asked of git itself: it alone reads every repository. Nothing is written."""
+"""Git, asked by its own program: it alone reads every repository. Nothing is written, not even the index."""
 
 from __future__ import annotations
 
@@ -43,14 +43,19 @@ def unignored(folder: Path) -> list[str]:
 
 
 def _listed(folder: Path, *options: str) -> list[str]:
-    environment = {name: value for name, value in os.environ.items() if name not in _OF_A_REPOSITORY}
-    environment |= {"GIT_OPTIONAL_LOCKS": "0", "LC_ALL": "C"}
-    command = ["git", "-C", os.fspath(folder), "ls-files", "-z", *options]
-    try:
-        done = subprocess.run(command, capture_output=True, check=False, env=environment)
-    except OSError as error:
-        raise GitError(f"git cannot be started: {error.strerror}") from error
+    done = git(folder, "ls-files", "-z", *options)
     if done.returncode:
         said = os.fsdecode(done.stderr).strip().splitlines()
         raise GitError(f"git says: {said[0] if said else f'exit code {done.returncode}'}")
     return list(dict.fromkeys(os.fsdecode(name) for name in done.stdout.split(b"\0") if name))
+
+
+def git(folder: Path, *command: str) -> subprocess.CompletedProcess[bytes]:
+    """What git says about the repository that a folder lies in. Raises GitError if it cannot be started."""
+    environment = {name: value for name, value in os.environ.items() if name not in _OF_A_REPOSITORY}
+    environment |= {"GIT_OPTIONAL_LOCKS": "0", "LC_ALL": "C"}
+    words = ["git", "-C", os.fspath(folder), *command]
+    try:
+        return subprocess.run(words, capture_output=True, check=False, env=environment)
+    except OSError as error:
+        raise GitError(f"git cannot be started: {error.strerror}") from error

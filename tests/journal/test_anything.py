@@ -6,7 +6,6 @@ import json
 import random
 import shutil
 import sqlite3
-import zlib
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
@@ -27,7 +26,7 @@ from mutabot.errors import JournalError
 from mutabot.exit_codes import ExitCode
 from mutabot.journal.database import columns, decode, mark_of
 from mutabot.journal.journal import Journal, JournalReader
-from mutabot.journal.records import REACHING, inflated
+from mutabot.journal.records import REACHING
 from mutabot.report.format import Material, format_of
 from mutabot.report.terminal.campaign import print_results
 from mutabot.report.terminal.console import make_console
@@ -263,9 +262,3 @@ def test_commands_work_with_what_is_left(
     else:
         assert code == ExitCode.FINE
         assert "gripper.command" in printed.out
-
-
-def test_what_a_compressed_text_becomes_has_an_end() -> None:
-    assert inflated(zlib.compress(b"import robot")) == b"import robot"
-    with pytest.raises(ValueError, match="more than"):
-        inflated(zlib.compress(bytes((1 << 28) + 1)))

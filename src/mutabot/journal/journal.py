@@ -14,7 +14,6 @@ from __future__ import annotations
 import errno
 import json
 import os
-import zlib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -36,9 +35,9 @@ from .records import (
     Kept,
     Row,
     baseline_test_in,
+    bytes_in,
     control_in,
     fact,
-    inflated,
     known_in,
     left_out_in,
     load,
@@ -256,7 +255,7 @@ class JournalReader:
         """What stood in a Python file with this digest, or None if that is not known any more."""
         rows = self._store.rows("SELECT data FROM text WHERE digest = ?", digest)
         with self._checked("text", digest):
-            return inflated(rows[0][0]) if rows else None
+            return bytes_in(rows[0][0]) if rows else None
         return None
 
     def _all(self, table: str, read: Callable[..., T], which: str = "ORDER BY rowid") -> list[T]:
@@ -437,7 +436,7 @@ class Journal(JournalReader):
         """Write down what stands in Python files, by the digest."""
         with self._store.transaction():
             for digest, text in texts.items():
-                self._store.write("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, zlib.compress(text))
+                self._store.write("INSERT OR IGNORE INTO text VALUES (?, ?)", digest, text)
 
     def forget_keys(self) -> None:
         """Never reuse what this campaign has found itself."""

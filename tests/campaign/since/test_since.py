@@ -208,8 +208,10 @@ def test_an_unknown_revision_is_an_error_before_anything_runs(project: Project, 
     assert not [line for line in project.progress.lines if "baseline" in line]
 
 
-def test_what_is_no_repository_and_what_is_shallow_say_what_to_do(project: Project, tmp_path: Path) -> None:
-    outside = tmp_path / "outside"
+def test_what_is_no_repository_and_what_is_shallow_say_what_to_do(
+    project: Project, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    outside = tmp_path_factory.mktemp("elsewhere") / "outside"
     shutil.copytree(project.folder, outside, ignore=shutil.ignore_patterns(".git"))
     project.edit("mission.py", lambda text: text + "\n")
     git(project.folder, "commit", "-qam", "after")
@@ -217,7 +219,6 @@ def test_what_is_no_repository_and_what_is_shallow_say_what_to_do(project: Proje
     with pytest.raises(UsageError, match="fetch-depth: 0"):
         Revision.find(tmp_path / "shallow", "HEAD~1")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path))
         with pytest.raises(UsageError, match="is in no repository of git"):
             Revision.find(outside, "HEAD")
         patch.setenv("PATH", "")

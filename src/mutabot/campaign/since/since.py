@@ -1,14 +1,11 @@
 """Since a revision: which mutants the changes can have altered, and what is taken over of the others.
 
-A revision is seen as a campaign would have seen it: its files, configuration and vocabulary. Git is asked by
-its own program: it is where there are revisions, and nothing else reads all repositories. Nothing is ever
-written, not even the index.
+A revision is seen as a campaign would have seen it. Git is asked by its own program: it is where there are
+revisions, and nothing else reads all repositories.
 """
 
 from __future__ import annotations
 
-import os
-import subprocess
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -34,6 +31,7 @@ from mutabot.journal.files import find_journal, refuse_tracked
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import SINCE, Since
 from mutabot.model import Mutant
+from mutabot.repository import GitError, git, unignored
 
 _OPTION = "--since"
 
@@ -61,16 +59,15 @@ class Revision:
     def find(cls, project: Path, ref: str) -> Revision:
         """Look it up. Raises UsageError, saying what to do."""
         project = project.resolve()
-        top = Path(
-            _asked(project, "rev-parse", "--show-toplevel", why=f"{project} is in no repository of git")
-        )
+        try:
+            top = Path(_text(project, "rev-parse", "--show-toplevel").removesuffix("\n"))
+        except _FailedError as error:
+            hint = "without a revision, `mutabot run` itself runs what has changed"
+            raise UsageError(f"{_OPTION}: {project} is in no repository of git ({error}); {hint}") from error
         commit = _commit(project, ref)
-        told = _git(top, "diff", "--name-status", "--no-renames", "-z", commit, "--").decode(
-            "utf-8", "replace"
-        )
-        words = told.split("\0")[:-1]
+        words = _text(top, "diff", "--name-status", "--no-renames", "-z", commit, "--").split("\0")[:-1]
         changed = {name: status != "A" for status, name in zip(words[::2], words[1::2], strict=True)}
-        for name in _words(top, "ls-files", "--others", "--exclude-standard", "-z"):
+        for name in unignored(top):
             changed.setdefault(name, False)
         return cls(project, top.resolve(), ref, commit, changed)
 
@@ -121,49 +118,37 @@ class Revision:
 def _commit(project: Path, ref: str) -> str:
     if ref.startswith("-"):
         raise UsageError(f"{_OPTION} {ref}: that is no name of a revision")
-    done = _run(project, "rev-parse", "--verify", "--quiet", f"{ref}^{{commit}}")
-    if done.returncode == 0:
-        return done.stdout.decode().strip()
-    if _git(project, "rev-parse", "--is-shallow-repository").strip() == b"true":
-        raise UsageError(
-            f"{_OPTION} {ref}: this clone is shallow and does not hold that revision; fetch it: `git fetch "
-            f"--unshallow`, in GitHub Actions `fetch-depth: 0` of actions/checkout, in GitLab `GIT_DEPTH: 0`"
-        )
-    hint = f"; `git fetch origin {ref}` and origin/{ref}?" if "/" not in ref else ""
-    raise UsageError(f"{_OPTION} {ref}: git knows no such revision{hint}")
+    try:
+        return _text(project, "rev-parse", "--verify", "--quiet", f"{ref}^{{commit}}").strip()
+    except _FailedError as error:
+        if _text(project, "rev-parse", "--is-shallow-repository").strip() == "true":
+            raise UsageError(
+                f"{_OPTION} {ref}: this clone is shallow and does not hold that revision; fetch it: `git "
+                "fetch --unshallow`, in GitHub Actions `fetch-depth: 0` of actions/checkout, in GitLab "
+                "`GIT_DEPTH: 0`"
+            ) from error
+        hint = f"; `git fetch origin {ref}` and origin/{ref}?" if "/" not in ref else ""
+        raise UsageError(f"{_OPTION} {ref}: git knows no such revision{hint}") from error
 
 
-def _asked(folder: Path, *question: str, why: str) -> str:
-    done = _run(folder, *question)
-    if done.returncode:
-        said = done.stderr.decode("utf-8", "replace").strip()
-        if "dubious ownership" in said:
-            raise UsageError(f"{_OPTION}: git refuses {folder}: {said.splitlines()[0]}")
-        raise UsageError(f"{_OPTION}: {why}; without one, `mutabot run` itself runs what has changed")
-    return done.stdout.decode("utf-8", "surrogateescape").removesuffix("\n")
+class _FailedError(UsageError):
+    """Git has failed."""
 
 
-def _words(folder: Path, *command: str) -> list[str]:
-    """What git says, ended by zeros."""
-    return _git(folder, *command).decode("utf-8", "surrogateescape").split("\0")[:-1]
+def _text(folder: Path, *command: str) -> str:
+    return _git(folder, *command).decode("utf-8", "surrogateescape")
 
 
 def _git(folder: Path, *command: str) -> bytes:
-    done = _run(folder, *command)
+    """What git says. Raises UsageError if it says nothing."""
+    try:
+        done = git(folder, *command)
+    except GitError as error:
+        raise UsageError(f"{_OPTION} needs git: {error}") from error
     if done.returncode:
         said = done.stderr.decode("utf-8", "replace").strip()
-        raise UsageError(f"{_OPTION}: git {command[0]} failed: {said or f'exit code {done.returncode}'}")
+        raise _FailedError(f"{_OPTION}: git {command[0]}: {said or f'exit code {done.returncode}'}")
     return done.stdout
-
-
-def _run(folder: Path, *command: str) -> subprocess.CompletedProcess[bytes]:
-    environment = {**os.environ, "GIT_OPTIONAL_LOCKS": "0", "LC_ALL": "C"}
-    try:
-        return subprocess.run(
-            ["git", "-C", str(folder), *command], capture_output=True, check=False, env=environment
-        )
-    except OSError as error:
-        raise UsageError(f"{_OPTION} needs git, which cannot be started: {error.strerror}") from error
 
 
 def _then(revision: Revision, campaign: Campaign, now: Dependencies) -> Dependencies:
