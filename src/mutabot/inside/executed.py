@@ -13,7 +13,7 @@ import builtins
 import os
 import sys
 from collections.abc import Collection, Iterable, Iterator
-from types import CodeType
+from types import CodeType, FrameType
 from typing import Any
 
 from mutabot.border.units import ALL_FILES, MODULE, WHOLE, Executed, functions_of, is_test_file, last_name
@@ -168,22 +168,27 @@ class ExecutedUnits:
             _mark(node, number)  # what is defined in it may be sent to processes that know no marks
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+        """Something happens that may matter beside what is executed; see ``sys.addaudithook``."""
         if event == "open":
             path, _, flags = arguments
             if self._in_call and isinstance(path, str | bytes) and not flags & (os.O_WRONLY | os.O_TRUNC):
                 name = self._name(os.fsdecode(path))
-                if name is not None:
+                if name is not None and not _is_by_us():
                     self._test.add((name, WHOLE))
-        elif event == "exec":
-            code = arguments[0]
-            if isinstance(code, CodeType):
-                name = self._name(code.co_filename)
-                if name is not None and name not in self._loaded:
-                    self._common.add((name, WHOLE))
-        elif event in _STARTS:
-            who = str(sys._getframe(1).f_globals.get("__name__", ""))
-            if not who.startswith("mutabot.") and not _is_foreign(event, arguments):
-                self._common.add((ALL_FILES, WHOLE))
+        elif event == "exec" and isinstance(arguments[0], CodeType):
+            name = self._name(arguments[0].co_filename)
+            if name is not None and name not in self._loaded:
+                self._common.add((name, WHOLE))
+        elif event in _STARTS and not _is_by_us() and not _is_foreign(event, arguments):
+            self._common.add((ALL_FILES, WHOLE))
+
+
+def _is_by_us() -> bool:
+    """Whether it is Mutabot that does what is heard of, be it by modules that read program text."""
+    frame: FrameType | None = sys._getframe(2)
+    while frame is not None and frame.f_globals.get("__name__") in ("linecache", "tokenize", "codecs"):
+        frame = frame.f_back
+    return frame is not None and str(frame.f_globals.get("__name__", "")).startswith("mutabot.")
 
 
 def _is_foreign(event: str, arguments: tuple[Any, ...]) -> bool:
