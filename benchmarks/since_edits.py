@@ -132,7 +132,8 @@ def compare(
     (found, reused), (right, _) = outcomes_of(folder), outcomes_of(whole)
     if kind == "new test":  # a test that does not reach a mutant is not asked
         for outcome in (*found.values(), *right.values()):
-            del outcome["tests"], outcome["compared"]
+            outcome.pop("tests", None)
+            outcome.pop("compared", None)
     for pair in sorted(found.keys() | right.keys()):
         if found.get(pair) != right.get(pair):
             one, other = found.get(pair) or {}, right.get(pair) or {}
