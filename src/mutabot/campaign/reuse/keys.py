@@ -27,7 +27,7 @@ from typing import Any
 import mutabot
 from mutabot.border.codec import to_data
 from mutabot.border.job import Idle
-from mutabot.border.units import ALL_FILES, Executed, File, is_test_file, together
+from mutabot.border.units import ALL_FILES, WHOLE, Executed, File, is_test_file, together
 from mutabot.campaign.baseline.baseline import Baseline
 from mutabot.campaign.request import Request
 from mutabot.frozen import frozen
@@ -157,7 +157,8 @@ class Dependencies:
         self.parts: dict[str, Parts] = {}
         self._told = 0
         self._idle: dict[int, Executed] = {}
-        self._differing: dict[Any, list[str]] = {}
+        self._made: dict[tuple[int, ...], tuple[tuple[object, ...], list[str]]] = {}
+        self._groups: dict[tuple[str, ...], tuple[str, ...]] = {}
         code = {name: digest for name, digest in self.files.items() if name in self.texts}
         self.tree = Tree(code, lambda name, digest: self.texts.get(name))
         self._tree = self._stored(code)
@@ -198,7 +199,7 @@ class Dependencies:
             parts: what a digest stands for.
             tree: the Python files that a digest stands for.
         """
-        common, place, own, files, executed = key.split()
+        common, place, own, files, executed = (*key.split(), *[""] * 5)[:5]  # a journal may hold anything
         found_in = self.tree if files == self._tree else tree(files)
         units = parts(executed)
         lines = (
@@ -212,7 +213,7 @@ class Dependencies:
             own,
             found_in,
             found_in,
-            None if units is None else {k: tuple(map(int, v.split())) for k, v in lines.items()},
+            None if units is None else {name: _lines(value) for name, value in lines.items()},
             {k: v for k, v in (units or {}).items() if k not in lines},
         )
 
@@ -283,7 +284,8 @@ class Dependencies:
         if is_known:
             found = [*found, *changes(was.place, self.place(mutant, round, *self.asked(was)))]
         if was.common is not self.common:
-            found = [*found, *self._changes(was.common)]
+            common = was.common
+            found = [*found, *self._once(lambda: changes(common, self.common), common)]
         if is_known and was.own != self.own(mutant, round) and not found:
             found = ["the calls return something else"]
         return found
@@ -319,24 +321,23 @@ class Dependencies:
         tests = self._baseline.tests_reaching(round, mutant)
         return together([*(ends[test] for test in tests), self._idle[round]])
 
-    def _changes(self, common: Parts) -> list[str]:
-        key = id(common)
-        if key not in self._differing:
-            self._differing[key] = changes(common, self.common)
-        return self._differing[key]
+    def _once(self, made: Callable[[], list[str]], *of: object) -> list[str]:
+        """What is made of these objects, made once. They are kept: no other may get the place of one."""
+        key = tuple(map(id, of))
+        if key not in self._made:
+            self._made[key] = of, made()
+        return self._made[key][1]
 
     def _differing_units(self, was: Was, mutant: Mutant, round: int) -> list[str]:
-        is_all = was.executed is None or ALL_FILES in was.executed
-        tests = self._baseline.tests_reaching(round, mutant) if is_all else ()
-        key = id(was.tree), id(was.found_in), id(was.executed), tests
-        if key not in self._differing:
+        def differing() -> list[str]:
             names = self._names_of_all(was.tree, tests) if is_all else _names(was)
             notes = {name: self.notes.get(name, self.files.get(name, "")) for name in was.notes}
-            self._differing[key] = [
-                *_differing(names, was.tree, self.tree),
-                *changes(was.notes, notes),
-            ]
-        return self._differing[key]
+            return [*_differing(names, was.tree, self.tree), *changes(was.notes, notes)]
+
+        is_all = was.executed is None or ALL_FILES in was.executed
+        tests = self._baseline.tests_reaching(round, mutant) if is_all else ()
+        together = self._groups.setdefault(tests, tests)
+        return self._once(differing, was.tree, was.found_in, was.executed, was.notes, together)
 
     def _names_of_all(self, tree: Tree, tests: Iterable[str]) -> dict[str, set[str] | None]:
         """All units that there were or are, bar those of other tests."""
@@ -381,6 +382,13 @@ class Dependencies:
 def _function_of(test: str) -> str:
     """The qualified name of a test's function."""
     return ".".join(part.partition("[")[0] for part in test.split("::")[1:])
+
+
+def _lines(text: str) -> tuple[int, ...]:
+    try:
+        return tuple(map(int, text.split()))
+    except ValueError:
+        return (WHOLE,)
 
 
 def _names(was: Was) -> dict[str, set[str] | None]:
