@@ -6,7 +6,7 @@ from textwrap import dedent
 
 import pytest
 
-from mutabot.border.units import MODULE, WHOLE, File, together
+from mutabot.model.units import MODULE, WHOLE, File, together
 
 TEXT = """
     import functools

@@ -14,14 +14,14 @@ from pathlib import Path
 
 import pytest
 
-from analysis import samples
-from mutabot.border.events import TestEnd
 from mutabot.errors import JournalError
 from mutabot.journal.database import SCHEMA_VERSION, connect, guarded
 from mutabot.journal.files import is_written, previous_of
 from mutabot.journal.journal import Journal
 from mutabot.journal.records import Kept
 from mutabot.model import By, Outcome, Verdict
+from mutabot.model.events import TestEnd
+from results import samples
 
 KILLED = Outcome("m", 0, Verdict.KILLED, By.CHECK, test="t", example=(1, -1), divergence=("a", "b"))
 

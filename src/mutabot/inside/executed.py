@@ -3,7 +3,7 @@
 Files are compiled with one more statement at the beginning of each function, which sets a byte. That takes a
 tenth of the time that a trace function takes (14 ns a call instead of 165), and works alike in all versions
 of Python. What is executed in the call phase of a test belongs to that test, everything else to all tests
-after it. So does the call phase of a test that may leave something behind. See ``border.units``.
+after it. So does the call phase of a test that may leave something behind. See ``model.units``.
 """
 
 from __future__ import annotations
@@ -16,9 +16,8 @@ from collections.abc import Collection, Iterable, Iterator
 from types import CodeType, FrameType
 from typing import Any
 
-from mutabot.border.units import ALL_FILES, MODULE, WHOLE, Executed, functions_of, is_test_file, last_name
-
-from .text import loading
+from mutabot.model.units import ALL_FILES, MODULE, WHOLE, Executed, functions_of, is_test_file, last_name
+from mutabot.runtime.program_text import loading
 
 #: the built-in name of the bytes, one for each function
 RAN = "__mutabot_ran__"

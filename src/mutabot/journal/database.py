@@ -21,8 +21,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Self
 
-from mutabot.border.storable import printable
 from mutabot.errors import JournalError
+from mutabot.model.codec import printable
 
 from .files import WriterLock, previous_of, refuse_tracked
 from .records import UNFIT, load

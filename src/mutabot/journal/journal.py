@@ -20,10 +20,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeVar
 
-from mutabot.border.codec import from_data, to_data
-from mutabot.border.events import TestEnd
-from mutabot.border.storable import storable
 from mutabot.model import LeftOut, Mutant, Outcome, Verdict, Vocabulary
+from mutabot.model.codec import from_data, storable, to_data
+from mutabot.model.events import TestEnd
 
 from .database import LAST, SCHEMA_VERSION, VERSION_KEY, Database, guarded, make_way, named_row, write_anew
 from .files import WriterLock, previous_of, refuse_tracked

@@ -9,10 +9,10 @@ from dataclasses import field
 from hashlib import blake2b
 from typing import Any, TypeVar
 
-from mutabot.border.codec import from_data
-from mutabot.border.events import TestEnd
 from mutabot.frozen import frozen
 from mutabot.model import By, LeftOut, Mutant, Outcome, Verdict, Vocabulary
+from mutabot.model.codec import from_data
+from mutabot.model.events import TestEnd
 from mutabot.model.outcome import same_end
 
 #: keys of the journal's meta

@@ -305,7 +305,7 @@ class Outcome:
         figures: of a survivor, figures of merit that differ from the original's by more than their tolerance.
         confirmed: whether the whole suite says so too, of what was found without tests that do not reach the
             mutant; None if none was left out, or not before the test that decided.
-        executed: units of the project's files that were executed until then, see ``border.units``; None if
+        executed: units of the project's files that were executed until then, see ``model.units``; None if
             that is not known. The journal keeps it in the outcome's key.
     """
 

@@ -10,9 +10,8 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from mutabot.border.codec import to_data
 from mutabot.campaign.campaign import Campaign
-from mutabot.campaign.plan.plan import Plan
+from mutabot.campaign.plan import Plan
 from mutabot.campaign.request import Progress, Request
 from mutabot.campaign.reuse.keys import Dependencies, Tree, Was, tool_table
 from mutabot.campaign.reuse.reuse import GONE, Pair, Reused, in_short
@@ -31,6 +30,7 @@ from mutabot.journal.files import find_journal, refuse_tracked
 from mutabot.journal.journal import Journal, JournalReader
 from mutabot.journal.records import SINCE, Since
 from mutabot.model import Mutant
+from mutabot.model.codec import to_data
 from mutabot.repository import GitError, git, unignored
 
 _OPTION = "--since"

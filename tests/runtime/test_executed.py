@@ -1,0 +1,118 @@
+"""What is executed is recorded: by test, for all tests after it, or for all files where that is not known."""
+
+from __future__ import annotations
+
+import pytest
+
+from mutabot.campaign.run import at_it, begin
+from mutabot.model.units import ALL_FILES, File
+from tests.campaign.project import Quiet, request_for, write_project
+
+NAMES = ("mission.py", "robot.py", "tests/test_mission.py")
+MISSION = """
+    from functools import cache
+
+    def left(arm):
+        arm.move_by(0.2)
+
+    def right(arm):
+        arm.move_by(far())
+        return arm.position()
+
+    @cache
+    def far():
+        return half(0.6)
+
+    def half(x):
+        return x / 2
+
+    def unused():
+        pass
+"""
+TESTS = """
+    import subprocess
+    import sys
+    import mission
+    import pytest
+    from pathlib import Path
+    from robot import Arm
+
+    def made():
+        return Arm()
+
+    @pytest.fixture(scope="module")
+    def shared():
+        return made()
+
+    def test_left():
+        mission.left(Arm())
+
+    def test_right():
+        assert mission.right(Arm()) > 0
+
+    def test_shared(shared):
+        mission.left(shared)
+
+    def test_reads():
+        assert Path(__file__).with_name("goals.txt").read_text()
+
+    def test_shared_again(shared):
+        assert shared.x > 0
+
+    def test_starts():
+        subprocess.run([sys.executable, "-c", ""], check=True)
+"""
+
+
+@pytest.fixture(scope="module")
+def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
+    """What tests of a project execute in the baseline, in the order of the file."""
+    folder = write_project(
+        tmp_path_factory.mktemp("executed"), MISSION, TESTS, more={"tests/goals.txt": "0.5\n"}
+    )
+    request = request_for(folder, engine="replay")
+    with at_it(request, Quiet()) as opened:
+        campaign, _ = begin(request, opened, Quiet())
+    files = {name: File(name, (folder / name).read_bytes()) for name in NAMES}
+    found: dict[str, set[str]] = {}
+    for (_, test), end in campaign.baseline.ends.items():
+        assert end.executed is not None
+        units = found.setdefault(test.rpartition("::")[2], set())
+        for name, lines in end.executed.items():
+            known = files[name].names_at(lines) if name in files else {""}
+            units |= {f"{name}:{unit}" for unit in (known if known is not None else {"whole"})}
+    return found
+
+
+def of(test: set[str], file: str = "mission.py") -> set[str]:
+    return {unit.partition(":")[2] for unit in test if unit.startswith(f"{file}:")}
+
+
+def test_a_test_depends_on_what_it_executes_and_on_what_runs_at_import(executed: dict[str, set[str]]) -> None:
+    assert of(executed["test_left"]) == {"", "left"}
+    assert of(executed["test_left"], "robot.py") == {"", "Arm.__init__", "Arm.move_by"}
+    assert of(executed["test_left"], NAMES[2]) == {"", "test_left"}
+
+
+def test_what_is_cached_counts_for_all_later_tests(executed: dict[str, set[str]]) -> None:
+    assert of(executed["test_right"]) == {"", "right", "far", "half"}
+    assert of(executed["test_shared"]) == {"", "right", "far", "half", "left"}
+    assert "test_right" not in of(executed["test_shared"], NAMES[2])
+
+
+def test_what_others_do_with_a_shared_fixture_counts_for_all_that_have_it(
+    executed: dict[str, set[str]],
+) -> None:
+    assert "left" in of(executed["test_shared_again"])
+    assert "left" not in of(executed["test_reads"])
+    assert {"made", "shared"} <= of(executed["test_shared_again"], NAMES[2])
+
+
+def test_a_file_that_is_opened_counts(executed: dict[str, set[str]]) -> None:
+    assert "tests/goals.txt:" in executed["test_reads"]
+    assert "tests/goals.txt:" not in executed["test_shared_again"]
+
+
+def test_of_tests_that_start_processes_nothing_is_known(executed: dict[str, set[str]]) -> None:
+    assert f"{ALL_FILES}:" in executed["test_starts"]
+    assert f"{ALL_FILES}:" not in executed["test_shared_again"]
