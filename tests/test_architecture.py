@@ -34,14 +34,14 @@ ALLOWED = {
         "errors", "extensions", "families", "faults", "model", "languages", "border", "settings",
         "operators", "vocabulary", "journal", "evidence", "repository",
     },
-    "proposal": {"errors", "extensions", "model", "border", "settings", "vocabulary", "campaign"},
-    "suggestion": {"errors", "model", "border", "journal", "campaign", "analysis"},
+    "init": {"errors", "extensions", "model", "border", "settings", "vocabulary", "campaign"},
+    "suggest": {"errors", "model", "border", "journal", "campaign", "analysis"},
     "analysis": {"exit_codes", "errors", "families", "model", "border", "vocabulary", "journal", "evidence"},
     "report": {"errors", "extensions", "model", "border", "vocabulary", "journal", "analysis", "evidence"},
     "__main__": {"cli"},
     "cli": {
         "exit_codes", "errors", "extensions", "families", "limits", "model", "border", "settings",
-        "vocabulary", "journal", "campaign", "proposal", "suggestion", "analysis", "report",
+        "vocabulary", "journal", "campaign", "init", "suggest", "analysis", "report",
     },
 }  # fmt: skip
 FILES = files()

@@ -34,7 +34,7 @@ def init(
     ] = None,
 ) -> None:
     """Run the tests once, look at what the program calls, and propose a configuration and a vocabulary."""
-    from mutabot.proposal import propose
+    from mutabot.init import propose
 
     for line in propose(context.obj, program or [], tell=lambda text: typer.echo(text, err=True)):
         echo(line)

@@ -114,7 +114,7 @@ def suggest(
     from mutabot.analysis.suggested import keep_suggestions
     from mutabot.report.terminal.console import make_console
     from mutabot.report.terminal.suggested import print_suggestions
-    from mutabot.suggestion import suggest as find_checks
+    from mutabot.suggest import suggest as find_checks
 
     path = find_journal(context.obj)
     results = results_at(path)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.proposal import propose
+from mutabot.init import propose
 from mutabot.vocabulary import load
 
 DRIVER = """

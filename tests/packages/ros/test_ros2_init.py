@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mutabot.proposal import propose
+from mutabot.init import propose
 from mutabot.vocabulary import load
 
 pytest.importorskip("rclpy", reason="no ROS 2 in this environment (requirements-ros2.lock)")

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from mutabot.proposal.commands import MESSAGES, commands_of, is_read, patterns_of, tells_commands
+from mutabot.init.commands import MESSAGES, commands_of, is_read, patterns_of, tells_commands
 
 from .compared import with_compared
 from .guess import Guess, Setting, guess_argument, guess_elements, guess_reading, is_complete

@@ -8,7 +8,7 @@ from statistics import NormalDist, fmean, stdev
 
 import pytest
 
-from mutabot.suggestion.checks import (
+from mutabot.suggest.checks import (
     CONFIDENCE,
     FREE,
     NORMAL,
@@ -20,7 +20,7 @@ from mutabot.suggestion.checks import (
     tolerance_factor,
     unseen,
 )
-from mutabot.suggestion.suggest import smallest_cover
+from mutabot.suggest.suggest import smallest_cover
 
 
 @pytest.mark.parametrize("count", [8, 25, 60])

@@ -14,10 +14,10 @@ from mutabot.campaign.workers.task import Task, death
 from mutabot.errors import MutabotError
 from mutabot.journal.reader import JournalReader
 from mutabot.model import By, Verdict
-from mutabot.suggestion.checks import Check
-from mutabot.suggestion.edits import edited
-from mutabot.suggestion.project import Project
-from mutabot.suggestion.style import Place
+from mutabot.suggest.checks import Check
+from mutabot.suggest.edits import edited
+from mutabot.suggest.project import Project
+from mutabot.suggest.style import Place
 
 from .project import copy_of
 

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from mutabot.proposal.compared import with_compared
-from mutabot.proposal.guess import Guess, Setting, guess_argument, guess_reading
-from mutabot.proposal.observed import Part, SeenCall, SeenCommand
+from mutabot.init.compared import with_compared
+from mutabot.init.guess import Guess, Setting, guess_argument, guess_reading
+from mutabot.init.observed import Part, SeenCall, SeenCommand
 
 #: names of arguments that hold a text command
 MESSAGES = frozenset({"message", "command", "cmd", "msg", "text", "line", "order"})

@@ -8,11 +8,11 @@ from dataclasses import replace
 from typing import Any
 
 from mutabot.model.values.steps import step_of
-from mutabot.suggestion.checks import Band, Check, Expected, band_of, is_number, rounded
-from mutabot.suggestion.measure import Measured, Read
-from mutabot.suggestion.project import Project
-from mutabot.suggestion.readings import HAND, PROBE, WAY, Reading
-from mutabot.suggestion.style import Place
+from mutabot.suggest.checks import Band, Check, Expected, band_of, is_number, rounded
+from mutabot.suggest.measure import Measured, Read
+from mutabot.suggest.project import Project
+from mutabot.suggest.readings import HAND, PROBE, WAY, Reading
+from mutabot.suggest.style import Place
 
 from .readings import watch_of
 

@@ -9,9 +9,9 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from mutabot.init.guess import Guess, Setting, Table, guess_argument, guess_elements, guess_reading
+from mutabot.init.named.seen import Part, Use
 from mutabot.model.named import Form
-from mutabot.proposal.guess import Guess, Setting, Table, guess_argument, guess_elements, guess_reading
-from mutabot.proposal.named.seen import Part, Use
 
 Meant = dict[str, Guess]
 

@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 
 from mutabot.errors import UsageError
+from mutabot.init import propose
+from mutabot.init.guess import Setting, guess_argument, guess_reading
 from mutabot.model import Kind, Mode
-from mutabot.proposal import propose
-from mutabot.proposal.guess import Setting, guess_argument, guess_reading
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 

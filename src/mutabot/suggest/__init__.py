@@ -1,5 +1,5 @@
 """Suggesting checks that kill survivors, proven by running them."""
 
-from mutabot.suggestion.suggest import suggest
+from mutabot.suggest.suggest import suggest
 
 __all__ = ["suggest"]

@@ -10,7 +10,7 @@ import ast
 from collections.abc import Sequence
 
 from mutabot.frozen import frozen
-from mutabot.suggestion.project import Project
+from mutabot.suggest.project import Project
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 

@@ -16,10 +16,10 @@ from mutabot.campaign.engines.controls import run_controls
 from mutabot.campaign.engines.fresh import task
 from mutabot.campaign.request import Progress, Request
 from mutabot.model import Mutant, Probe
-from mutabot.suggestion.edits import edited
-from mutabot.suggestion.project import Project
-from mutabot.suggestion.readings import ORACLE, PROBE, Reading, of_objects, readings_at
-from mutabot.suggestion.style import Addition, Place
+from mutabot.suggest.edits import edited
+from mutabot.suggest.project import Project
+from mutabot.suggest.readings import ORACLE, PROBE, Reading, of_objects, readings_at
+from mutabot.suggest.style import Addition, Place
 
 from .project import copy_of
 from .readings import Command, commands_of

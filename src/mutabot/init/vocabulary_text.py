@@ -7,12 +7,12 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from mutabot.init.compared import Unreached
+from mutabot.init.guess import Guess, is_complete
+from mutabot.init.named.entries import Described, Entry
+from mutabot.init.observed import Part, SeenCall
+from mutabot.init.operations import Proposal
 from mutabot.model import ANY
-from mutabot.proposal.compared import Unreached
-from mutabot.proposal.guess import Guess, is_complete
-from mutabot.proposal.named.entries import Described, Entry
-from mutabot.proposal.observed import Part, SeenCall
-from mutabot.proposal.operations import Proposal
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 #: the longest text that is shown as an example

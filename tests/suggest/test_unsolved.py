@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from mutabot.model import Mutant, Role, Site, Span
-from mutabot.suggestion.candidates import candidates
-from mutabot.suggestion.measure import Measured
-from mutabot.suggestion.project import Project
-from mutabot.suggestion.readings import PROBE, Reading
-from mutabot.suggestion.style import Place
-from mutabot.suggestion.suggest import why_unsolved
+from mutabot.suggest.candidates import candidates
+from mutabot.suggest.measure import Measured
+from mutabot.suggest.project import Project
+from mutabot.suggest.readings import PROBE, Reading
+from mutabot.suggest.style import Place
+from mutabot.suggest.suggest import why_unsolved
 
 SITE = Site(Span("mission.py", 1, 0, 1, 5, "run"), "arm.go", 1, Role.PROGRAM)
 MUTANT = Mutant(1, "robot", "skip", SITE, "robot:go", None, None, "", "arm.go: do nothing")

@@ -25,9 +25,9 @@ from typing import Any, TypeGuard
 
 from mutabot.analysis.thresholds.ladders import lower_limit
 from mutabot.frozen import frozen
-from mutabot.suggestion.measure import Read
-from mutabot.suggestion.readings import WAY, Reading
-from mutabot.suggestion.style import Addition, Place, equal, within
+from mutabot.suggest.measure import Read
+from mutabot.suggest.readings import WAY, Reading
+from mutabot.suggest.style import Addition, Place, equal, within
 
 #: of all runs of the original, how many the band holds, and how sure that is
 CONTENT, CONFIDENCE = 0.99999, 0.95

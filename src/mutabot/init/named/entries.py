@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from mutabot.init.compared import Unreached
+from mutabot.init.guess import Guess
+from mutabot.init.named.meanings import Place, is_nothing, meaning
 from mutabot.model.named import Form
-from mutabot.proposal.compared import Unreached
-from mutabot.proposal.guess import Guess
-from mutabot.proposal.named.meanings import Place, is_nothing, meaning
 
 from .seen import Part, Use
 

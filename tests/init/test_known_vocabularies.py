@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from mutabot.campaign.check import check
-from mutabot.proposal import propose
+from mutabot.init import propose
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
 from tests.campaign.project import Quiet, request_for

@@ -8,11 +8,11 @@ import pytest
 
 from mutabot.campaign.request import Request
 from mutabot.settings.configuration import load_configuration
-from mutabot.suggestion.checks import Check, Expected, band_of
-from mutabot.suggestion.project import Project, diff_of
-from mutabot.suggestion.prove import texts_with
-from mutabot.suggestion.readings import PROBE, WAY, Reading, commands_of, watch_of
-from mutabot.suggestion.style import OTHER, place_of
+from mutabot.suggest.checks import Check, Expected, band_of
+from mutabot.suggest.project import Project, diff_of
+from mutabot.suggest.prove import texts_with
+from mutabot.suggest.readings import PROBE, WAY, Reading, commands_of, watch_of
+from mutabot.suggest.style import OTHER, place_of
 from mutabot.vocabulary import load
 
 from .projects import STYLES, make, passes, patched

@@ -8,9 +8,9 @@ import libcst as cst
 from libcst.codemod import CodemodContext
 from libcst.codemod.visitors import AddImportsVisitor
 
-from mutabot.suggestion.project import Project
-from mutabot.suggestion.readings import fixture, helper, watcher
-from mutabot.suggestion.style import OTHER, UNITTEST, Addition, Place
+from mutabot.suggest.project import Project
+from mutabot.suggest.readings import fixture, helper, watcher
+from mutabot.suggest.style import OTHER, UNITTEST, Addition, Place
 
 _AT_END = "from mutabot.inside.readings.noted import at_end as _mutabot_at_end"
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mutabot.errors import ConfigurationError, UsageError
+from mutabot.init.commands import commands_of, tells_commands
+from mutabot.init.vocabulary_text import vocabulary_text
 from mutabot.model import ANY
-from mutabot.proposal.commands import commands_of, tells_commands
-from mutabot.proposal.vocabulary_text import vocabulary_text
 from mutabot.vocabulary import load
 
 from .compared import Unreached, compared_with, unreached
