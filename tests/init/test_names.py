@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from mutabot.init.named.entries import entries, unused
-from mutabot.init.named.meanings import Place, meaning
-from mutabot.init.named.seen import Part, uses
-from mutabot.init.vocabulary_text import entry_text, vocabulary_text
-from mutabot.inside.watching.named import Parts, type_of
+from mutabot.border.watch import Part, Seen, Use, Values
+from mutabot.init.messages import Place, entries, meaning, unused
+from mutabot.init.observe import merged
+from mutabot.init.text import entry_text, vocabulary_text
+from mutabot.inside.watching.values import look, type_of
 from mutabot.model.named import Form
 from mutabot.vocabulary import load
 
@@ -23,26 +22,28 @@ VECTOR, TWIST = "geometry_msgs/Vector3", "geometry_msgs/Twist"
 
 def part(path: str, *within: tuple[str, str], kind: str = "float64", values: Any = (0.5,)) -> Part:
     length = len(values[0]) if isinstance(values[0], list) else None
-    return Part(path, within, kind, tuple(values), length)
+    return Part(path, type=kind, within=within, values=list(values), length=length, count=1)
 
 
-def raw_part(path: str, within: list[tuple[str, str]], kind: str, values: list[Any]) -> dict[str, Any]:
-    return {"path": path, "within": within, "type": kind, "values": values, "length": None, "count": 1}
+def raw_part(path: str, within: list[tuple[str, str]], kind: str, values: list[Any]) -> Part:
+    return Part(path, type=kind, within=tuple(within), values=values, count=1)
 
 
-def raw(form: str, name: str, **more: Any) -> dict[str, Any]:
-    nothing = {"type": "", "times": 0, "parts": []}
-    usual = {"of_tests": False, "is_called_back": False, "sites": [["mission.py", 7, 1]]}
-    return {"form": form, "name": name, **usual, "written": nothing, "read": nothing, **more}
+def raw(form: str, name: str, **more: Any) -> Use:
+    usual: dict[str, Any] = {"of_tests": False, "is_called_back": False, "sites": {"mission.py:7": 1}}
+    return Use(Form(form), name, **{**usual, **more})
 
 
-def passed(kind: str, *parts: dict[str, Any]) -> dict[str, Any]:
-    return {"type": kind, "times": 1, "parts": list(parts)}
+def passed(kind: str, *parts: Part) -> Values:
+    return Values(1, kind, {part.path: part for part in parts})
+
+
+def uses(several: list[Use]) -> list[Use]:
+    return merged(Seen(uses=several)).uses
 
 
 def place(form: Form, name: str, *, is_written: bool = False) -> Place:
-    (use,) = uses([raw(form, name)])
-    return Place.of(use, (), is_written=is_written)
+    return Place.of(raw(form, name), Values(), is_written=is_written)
 
 
 MOVED = {"kind": "translation", "axis": "y", "unit": "m"}
@@ -50,39 +51,35 @@ SPEED = {"kind": "speed", "axis": "y", "unit": "m/s"}
 
 
 @pytest.mark.parametrize(
-    ("name", "sent", "table", "checks"),
+    ("name", "sent", "table"),
     [
-        ("/goal", part("p.y", (POSE, "position"), (POINT, "y")), {**MOVED, "mode": "to"}, ["mode"]),
-        ("/arm/move_by", part("p.y", (POINT, "y")), {**MOVED, "mode": "by"}, []),
-        ("/cmd_vel", part("l.y", (TWIST, "linear"), (VECTOR, "y")), SPEED, []),
-        ("/arm/move_by", part("l.y", (TWIST, "linear"), (VECTOR, "y")), {**MOVED, "mode": "by"}, []),
+        ("/goal", part("p.y", (POSE, "position"), (POINT, "y")), {**MOVED, "mode": "to"}),
+        ("/arm/move_by", part("p.y", (POINT, "y")), {**MOVED, "mode": "by"}),
+        ("/cmd_vel", part("l.y", (TWIST, "linear"), (VECTOR, "y")), SPEED),
+        ("/arm/move_by", part("l.y", (TWIST, "linear"), (VECTOR, "y")), {**MOVED, "mode": "by"}),
         (
             "/cmd_vel",
             part("a.z", (TWIST, "angular"), (VECTOR, "z")),
             {"kind": "speed", "axis": "z", "unit": "rad/s"},
-            [],
         ),
-        ("/goal", part("o", (POSE, "orientation"), kind=ROTATION), {"kind": "quaternion"}, []),
-        ("/arm/wait", part("data", ("std_msgs/Float64", "data")), {"kind": "duration", "unit": "s"}, []),
+        ("/goal", part("o", (POSE, "orientation"), kind=ROTATION), {"kind": "quaternion"}),
+        ("/arm/wait", part("data", ("std_msgs/Float64", "data")), {"kind": "duration", "unit": "s"}),
         (
             "/lamp",
             part("data", ("std_msgs/Bool", "data"), kind="bool", values=(True,)),
             {"kind": "output", "values": [False, True]},
-            [],
         ),
         (
             "/gripper/close",
             part("data", ("std_srvs/SetBoolRequest", "data"), kind="bool", values=(True,)),
             {"kind": "opening", "values": [False, True]},
-            [],
         ),
     ],
 )
-def test_what_is_sent_means_what_ros_says(
-    name: str, sent: Part, table: dict[str, Any], checks: list[str]
-) -> None:
+def test_what_is_sent_means_what_ros_says(name: str, sent: Part, table: dict[str, Any]) -> None:
     (guess,) = meaning(sent, place(Form.PUBLISH, name, is_written=True)).values()
-    assert (guess.table, guess.checks) == (table, checks)
+    assert guess.table == table
+    assert guess.is_sure
 
 
 @pytest.mark.parametrize(
@@ -134,15 +131,16 @@ def test_poses_and_joints_of_a_vendor_are_told_by_the_names_of_services() -> Non
     line = meaning(pose, place(Form.CALL, "/arm/move_line", is_written=True))
     assert {path: guess.table.get("unit") for path, guess in line.items()} == {
         "pose[0:3]": "mm",
-        "pose[3:6]": None,
+        "pose[3:6]": "rad",
     }
+    assert line["pose[3:6]"].questions
     angles = part("pose", ("arm_msgs/MoveRequest", "pose"), values=([0.1, 0.2, 0.3, 0.4, 0.5, 0.6],))
     joint = meaning(angles, place(Form.CALL, "/arm/move_joint", is_written=True))
     assert joint["pose[0:6]"].table["axis"] == "j1..j6"
     assert joint["pose[0:6]"].table["unit"] == "rad"
 
 
-def everything() -> list[dict[str, Any]]:
+def everything() -> list[Use]:
     flag = raw_part("data", [("std_srvs/SetBoolRequest", "data")], "bool", [True])
     success = raw_part("success", [("std_srvs/SetBoolResponse", "success")], "bool", [True])
     stamped = "geometry_msgs/PoseStamped"
@@ -150,7 +148,7 @@ def everything() -> list[dict[str, Any]]:
     frame = raw_part("header.frame_id", header, "string", ["base"])
     x = raw_part("pose.position.x", [(stamped, "pose"), (POSE, "position"), (POINT, "x")], "float64", [0.5])
     turn = raw_part("pose.orientation", [(stamped, "pose"), (POSE, "orientation")], ROTATION, [])
-    odd = raw_part("speed", [("vendor_msgs/Odd", "speed")], "float32", [math.inf, 3.0])
+    odd = raw_part("speed", [("vendor_msgs/Odd", "speed")], "float32", [3.0])
     reached = raw_part("code", [("vendor_msgs/Go_Result", "code")], "int8", [1])
     to = raw_part("target", [("vendor_msgs/Go_Goal", "target")], "float64", [0.25])
     return [
@@ -167,7 +165,7 @@ def everything() -> list[dict[str, Any]]:
         raw("parameter", "/robot", read=passed("str", raw_part("", [], "str", ["left", "right"]))),
         raw("parameter", "/use_sim_time", read=passed("bool", raw_part("", [], "bool", [True]))),
         raw("tick", "Mission.on_time"),
-        raw("sleep", "/mission_4711_1700000000000", sites=[["mission.py", 9, 12]]),
+        raw("sleep", "/mission_4711_1700000000000", sites={"mission.py:9": 12}),
         raw("transform", "base → tool", read=passed("geometry_msgs/TransformStamped")),
         raw("receive", "/tests/wait", of_tests=True, read=passed(stamped, x)),
         raw("receive", "/tests/hear", of_tests=True, is_called_back=True, read=passed(stamped, x)),
@@ -203,10 +201,10 @@ def test_what_is_guessed_and_what_nothing_tells_stands_there() -> None:
         'topic = "/arm/goal"',
         'direction = "publish"',
         'type = "geometry_msgs/PoseStamped"',
-        'fields."header.frame_id" = { kind = "frame_id" }  # guess; seen: "base"',
+        'fields."header.frame_id" = { kind = "frame_id" }  # seen: "base"',
         'fields."pose.position.x" = { kind = "translation", axis = "x", unit = "m", frame = "base", '
-        'mode = "to" }  # guess; check the mode; seen: 0.5',
-        'fields."pose.orientation" = { kind = "quaternion" }  # guess',
+        'mode = "to" }  # seen: 0.5',
+        'fields."pose.orientation" = { kind = "quaternion" }',
     ]
     assert texts["/odd"].splitlines()[-1] == "# nothing tells what this means: fields.speed (float32; 3)"
     assert texts["/gripper/close"].splitlines()[-1].startswith('# refused = { path = "success"')
@@ -242,6 +240,8 @@ def test_what_is_set_up_and_never_used_is_told() -> None:
 
 
 class Time:
+    __slots__ = ("nsecs", "secs")
+
     def __init__(self, secs: int = 0, nsecs: int = 0) -> None:
         self.secs, self.nsecs = secs, nsecs
 
@@ -281,9 +281,9 @@ class Flag:
 
 
 def test_messages_of_both_generations_are_described_without_their_packages() -> None:
-    parts = Parts()
-    parts.see(Path1())
-    found = {one["path"]: (one["type"], one["values"]) for one in parts.data()["parts"]}
+    parts = Values()
+    look(parts, Path1(), message=True)
+    found = {path: (one.type, one.values) for path, one in parts.parts.items()}
     assert found == {
         "header.stamp": ("time", [2.5]),
         "header.frame_id": ("string", ["base"]),
@@ -292,6 +292,6 @@ def test_messages_of_both_generations_are_described_without_their_packages() -> 
         "headers[-1].frame_id": ("string", ["base"]),
     }
     assert type_of(Flag()) == f"{__name__.partition('.')[0]}/Flag"
-    flag = Parts()
-    flag.see(Flag())
-    assert flag.data()["parts"][0]["within"] == [(type_of(Flag()), "data")]
+    flag = Values()
+    look(flag, Flag(), message=True)
+    assert flag.parts["data"].within == ((type_of(Flag()), "data"),)

@@ -15,6 +15,7 @@ import pytest
 from mutabot.errors import UsageError
 from mutabot.init import propose
 from mutabot.init.guess import Setting, guess_argument, guess_reading
+from mutabot.init.words import words_of
 from mutabot.model import Kind, Mode
 from mutabot.settings.configuration import load_configuration
 from mutabot.vocabulary import load
@@ -179,7 +180,6 @@ def test_arguments_get_kind_axis_unit_and_mode_from_their_names(proposed: tuple[
         "dy": (Kind.TRANSLATION, "y", "m", Mode.BY),
         "yaw_deg": (Kind.ROTATION, "z", "deg", Mode.BY),
     }
-    assert move.current == "robot:Arm.pose"
     assert move.refusals == ("errors:OutOfReach",)
 
 
@@ -215,20 +215,21 @@ def test_values_come_from_what_the_program_sends_and_compares_with(proposed: tup
     assert found["robot:Gripper.open"].opposite == "robot:Gripper.close"
 
 
-def test_every_guess_is_marked_and_shows_values_that_were_seen(proposed: tuple[Path, str]) -> None:
+def test_lines_show_values_that_were_seen_and_what_is_unsure_is_a_question(
+    proposed: tuple[Path, str],
+) -> None:
     text = (proposed[0] / "robot.toml").read_text()
-    for line in text.splitlines():
-        if line.startswith(("arguments", "result", "current", "opposite", "refusals")):
-            assert "# guess" in line
     assert "[[operation]]  # seen: 2 calls, first at mission.py:21" in text
     assert "seen: 0.1, 0" in text
-    assert "# arguments.speed  # seen: 0.5" in text
+    speed = 'arguments.speed = { kind = "speed", unit = "m/s" }  # question: the unit: m/s, cm/s, mm/s'
+    assert f"# {speed}" in text
     assert '# call = "robot:log"\n# arguments.text  # seen: "done"' in text  # named, but not proposed
+    assert "with 12 operations and 1 question" in proposed[1]
 
 
 def test_calls_that_no_test_reaches_are_named(proposed: tuple[Path, str]) -> None:
     text = (proposed[0] / "robot.toml").read_text()
-    unreached = text.partition("# Calls that no test reaches")[2].splitlines()[1:]
+    unreached = text.partition("# No test reaches these calls")[2].splitlines()[1:]
     assert unreached == ["#   mission.py:34  self.arm.turn_by"]
 
 
@@ -271,7 +272,10 @@ def test_text_commands_become_patterns(tmp_path: Path) -> None:
     assert set(patterns) == {"pick", "release", "lift/{height:g}", "drop/{height:g}", "turn/{angle:g}"}
     assert patterns["pick"].opposite == "release"
     assert patterns["lift/{height:g}"].opposite == "drop/{height:g}"
-    assert patterns["lift/{height:g}"].arguments[0].axis == "z"
+    turn = patterns["turn/{angle:g}"].arguments[0]
+    assert (turn.axis, turn.unit, turn.mode) == (None, "deg", Mode.BY)
+    asked = '{ kind = "translation", axis = "z", unit = "m", mode = "by" }'
+    assert f"# question: the unit: m, cm, mm? {asked}" in (tmp_path / "robot.toml").read_text()
     assert not found["link:read"].command
     assert [one.values for one in found["link:read"].patterns[0].result] == [("red", "blue")]
 
@@ -294,7 +298,11 @@ VENDOR = """
         @staticmethod
         def beep(): ...
 
+    class Space:
+        low, high = [-1.0, -1.0], [1.0, 1.0]
+
     class Env:
+        action_space = Space()
         def step(self, action): return [0.1, 0.2], 1.0, False, False, {"success": 0.0}
 
     class Client:
@@ -371,10 +379,9 @@ def test_a_program_below_src_is_found_and_made_importable(vendor: Path) -> None:
         ("Robot.movej", [(f"joints[{n}]", Kind.ROTATION, f"j{n + 1}", "rad", Mode.TO) for n in range(6)]),
         (
             "Robot.movel",
-            [(f"tpose[{n}]", Kind.TRANSLATION, "xyz"[n], "m", Mode.TO) for n in range(3)]
-            + [(f"tpose[{n + 3}]", Kind.ROTATION, "xyz"[n], "rad", Mode.TO) for n in range(3)],
+            [(f"tpose[{n}]", Kind.TRANSLATION, "xyz"[n], "m", Mode.TO) for n in range(3)],
         ),
-        ("Robot.speedl", []),
+        ("Robot.speedl", [("min_time", Kind.DURATION, None, "s", None)]),
         ("Robot.set_digital_out", [("val", Kind.OUTPUT, None, None, None)]),
         ("Robot.dock", []),
         (
@@ -385,7 +392,7 @@ def test_a_program_below_src_is_found_and_made_importable(vendor: Path) -> None:
                 ("theta", Kind.ROTATION, None, "deg", Mode.TO),
             ],
         ),
-        ("Robot.set_gripper_mm", [("width", Kind.OPENING, None, "m", None)]),
+        ("Robot.set_gripper_mm", []),
         ("Env.step", [(f"action[{n}]", Kind.OUTPUT, None, None, None) for n in range(2)]),
         ("stop", []),
     ],
@@ -402,8 +409,7 @@ def test_a_pose_that_is_read_is_understood(vendor: Path, target: str) -> None:
     found = operations(vendor)[f"vendor:Robot.{target}"]
     assert not found.command
     assert [(one.kind, one.axis, one.unit) for one in found.result] == [
-        *((Kind.POSITION, axis, "m") for axis in "xyz"),
-        *((Kind.ORIENTATION, axis, "rad") for axis in "xyz"),
+        (Kind.POSITION, axis, "m") for axis in "xyz"
     ]
 
 
@@ -411,7 +417,11 @@ def test_what_cannot_be_told_is_a_comment_with_its_reason(vendor: Path) -> None:
     text = (vendor / "robot.toml").read_text()
     assert '# call = "vendor:Client.close_later"' in text
     assert "it returns a coroutine but is no coroutine function" in text
-    assert "# arguments.velocities  # seen: [0, 0, -0.1, 0, 0, 0]" in text
+    assert '# arguments."velocities[0:6]" = { kind = "speed", unit = "…" }  # question: the unit' in text
+    assert (
+        '# arguments."tpose[3:6]" = { kind = "rotation_vector", unit = "rad" }  # question: a rotation'
+        in text
+    )
     assert "isoformat" not in text  # of the standard library
 
 
@@ -572,46 +582,77 @@ def test_the_command_writes_both_files_and_nothing_else(project: Path) -> None:
     assert {path.name for path in after - before} == {"mutabot.toml", "robot.toml"}
 
 
+MOVED = {"kind": "translation", "unit": "m"}
+
+
 @pytest.mark.parametrize(
-    ("name", "words", "expected"),
+    ("name", "called", "doc", "expected"),
     [
-        ("x", "arm_move_to", {"kind": "translation", "axis": "x", "unit": "m", "mode": "to"}),
-        ("dz_mm", "arm_move", {"kind": "translation", "axis": "z", "unit": "mm", "mode": "by"}),
-        ("theta_z", "arm_rotate", {"kind": "rotation", "axis": "z", "unit": "deg", "mode": "by"}),
-        ("angle_rad", "arm_turn", {"kind": "rotation", "unit": "rad", "mode": "by"}),
-        ("j3", "arm_move_joints", {"kind": "rotation", "axis": "j3", "unit": "deg", "mode": "to"}),
-        ("height", "lift_by", {"kind": "translation", "axis": "z", "unit": "m", "mode": "by"}),
-        ("seconds", "wait", {"kind": "duration", "unit": "s"}),
-        ("milliseconds", "wait", {"kind": "duration", "unit": "ms"}),
-        ("width", "gripper_move", {"kind": "opening", "unit": "m", "range": [0.0, 0.1]}),
-        ("position", "gripper_move", {"kind": "opening", "unit": "fraction", "range": [0.0, 1.0]}),
-        ("value", "io_set_digital_output", {"kind": "output", "values": [False, True]}),
-        ("speed", "arm_move", {}),
-        ("name", "arm_move", {}),
+        ("x", "move_to", "In m.", {**MOVED, "axis": "x", "mode": "to"}),
+        ("dz_mm", "move", "", {"kind": "translation", "axis": "z", "unit": "mm", "mode": "by"}),
+        ("x", "move_up", "Fly x cm up.", {"kind": "translation", "axis": "z", "unit": "cm", "mode": "by"}),
+        ("x", "set_speed", "Set the speed to x cm/s.", {"kind": "speed", "unit": "cm/s"}),
+        (
+            "x",
+            "rotate_clockwise",
+            "By x degrees.",
+            {"kind": "rotation", "axis": "z", "unit": "deg", "mode": "by"},
+        ),
+        ("angle_rad", "turn", "", {"kind": "rotation", "unit": "rad", "mode": "by"}),
+        ("j3", "moveJoints", "Degrees.", {"kind": "rotation", "axis": "j3", "unit": "deg", "mode": "to"}),
+        ("height", "lift_by", "In metres.", {**MOVED, "axis": "z", "mode": "by"}),
+        ("seconds", "wait", "", {"kind": "duration", "unit": "s"}),
+        ("milliseconds", "wait", "", {"kind": "duration", "unit": "ms"}),
+        ("weight", "setPayload", "", {"kind": "mass", "unit": "kg"}),
+        ("name", "move", "", {}),
+        ("timeout", "wait", "", {}),
+        ("code", "set_position", "", {}),
     ],
 )
-def test_an_argument_is_guessed_from_its_name(name: str, words: str, expected: dict[str, Any]) -> None:
-    assert guess_argument(name, Setting(words)).table == expected
+def test_the_verb_decides_what_an_argument_is(
+    name: str, called: str, doc: str, expected: dict[str, Any]
+) -> None:
+    guess = guess_argument(name, Setting(words_of(called), doc=doc, names=frozenset({name})))
+    expected = {**expected, "unit": "kg"} if expected.get("kind") == "mass" else expected
+    assert guess.table == expected
+    assert guess.is_sure == (bool(expected) and expected["kind"] != "mass")
+
+
+@pytest.mark.parametrize(
+    ("name", "called", "values", "asked"),
+    [
+        ("x", "move", (0.5,), 'a target (mode = "to") or a change (mode = "by")?'),
+        ("x", "move_to", (3,), "the unit: m, cm, mm?"),
+        ("width", "gripper_move", (0.05,), "what is fully closed, what is fully open? in which unit"),
+        ("speed", "move_to", (0.5,), "the unit: m/s, cm/s"),
+    ],
+)
+def test_what_nothing_tells_is_asked(name: str, called: str, values: tuple[Any, ...], asked: str) -> None:
+    guess = guess_argument(name, Setting(words_of(called), values=values))
+    assert guess.questions[0].startswith(asked)
 
 
 @pytest.mark.parametrize(
     ("name", "setting", "expected"),
     [
-        ("z", Setting(""), {"kind": "position", "axis": "z", "unit": "m"}),
-        ("roll", Setting(""), {"kind": "orientation", "axis": "x", "unit": "deg"}),
-        ("j1", Setting(""), {"kind": "angle", "axis": "j1", "unit": "deg"}),
-        ("read", Setting("distance_sensor_read"), {"kind": "distance", "unit": "m"}),
-        ("height_mm", Setting("read_height"), {"kind": "distance", "unit": "mm"}),
-        ("is_closed", Setting("gripper"), {"kind": "flag"}),
+        ("z", Setting(doc="In m."), {"kind": "position", "axis": "z", "unit": "m"}),
+        ("roll", Setting(doc="Degrees."), {"kind": "orientation", "axis": "x", "unit": "deg"}),
+        ("j1", Setting(values=(0.5,)), {"kind": "angle", "axis": "j1", "unit": "rad"}),
+        ("read_distance", Setting(values=(0.5,)), {"kind": "distance", "unit": "m"}),
+        ("height_mm", Setting(("read", "height")), {"kind": "distance", "unit": "mm"}),
+        ("is_closed", Setting(owner=("gripper",)), {"kind": "flag"}),
         (
             "colour",
-            Setting("", annotation="Literal['red', 'blue']"),
+            Setting(annotation="Literal['red', 'blue']"),
             {"kind": "label", "values": ["red", "blue"]},
         ),
-        ("name", Setting("log"), {}),
+        ("name", Setting(("log",)), {}),
+        ("code", Setting(("get", "position"), values=(0,)), {}),
+        ("y", Setting(("get", "y"), ("xbox", "controller"), values=(0.5,)), {}),
+        ("is_error", Setting(("is", "error"), ("modbus", "response"), values=(False,)), {}),
     ],
 )
-def test_a_reading_is_guessed_from_its_name(name: str, setting: Setting, expected: dict[str, Any]) -> None:
+def test_a_reading_is_what_its_name_says(name: str, setting: Setting, expected: dict[str, Any]) -> None:
     assert guess_reading(name, setting).table == expected
 
 
@@ -644,7 +685,7 @@ def test_programs_that_the_tests_start_as_processes_are_watched_there(tmp_path: 
         """,
     }
     told = "\n".join(propose(write(tmp_path, files)))
-    assert "calls 1 callables" in told
+    assert "calls 1 callable," in told
     (found,) = operations(tmp_path).values()
     assert (found.target, [one.name for one in found.arguments]) == ("robot:Arm.move_by", ["x"])
 
@@ -676,7 +717,9 @@ def test_objects_that_are_called_and_have_no_name_are_reached(tmp_path: Path) ->
     }
     propose(write(tmp_path, files))
     text = (tmp_path / "robot.toml").read_text(encoding="utf-8")
-    assert text.partition("no test reaches")[2].splitlines()[1:] == ["#   mission.py:12  self.park"]
+    assert text.partition("No test reaches these calls")[2].splitlines()[1:] == [
+        "#   mission.py:12  self.park"
+    ]
 
 
 STAND_INS = {
@@ -719,5 +762,5 @@ def test_where_the_tests_stand_in_for_the_robot_methods_are_proposed(tmp_path: P
     assert set(operations) == {"*:*.move_by", "robot:Lamp.set_output", "*:*.rotate"}
     assert str(operations["*:*.move_by"].signature) == "(dx, speed=0.1)"
     assert [one.name for one in operations["*:*.rotate"].arguments] == ["yaw_deg"]
-    said = "the tests hand in mocks or fakes: move_by, rotate count for whatever object has them (method = …)"
-    assert said in lines
+    assert "seen on mocks or fakes, proposed as what they stand for: robot:Lamp.set_output" in lines
+    assert "seen on mocks or fakes, proposed for any object that has them: move_by, rotate" in lines

@@ -8,9 +8,11 @@ from typing import Any
 
 import pytest
 
+from mutabot.border.watch import Call
 from mutabot.campaign.check import check
 from mutabot.init import propose
-from mutabot.inside.watching.described import ToldApart
+from mutabot.inside.watching.callee import any_method
+from mutabot.inside.watching.watch import _command, _Seen
 from mutabot.model import Kind
 from mutabot.vocabulary import load
 from tests.campaign.project import Quiet, request_for
@@ -110,8 +112,8 @@ def test_check_accepts_commands_that_nodes_tell_apart(project: Path) -> None:
 
 
 def test_more_names_than_a_list_of_commands_has_are_given_up() -> None:
-    apart = ToldApart()
+    seen = _Seen(any_method("send"), Call("*:*.send"), is_coroutine=False)
     for number in range(30):
-        apart.see(None, "link:send", {"channel": number, "value": 1})
-    assert apart.by == ""
-    assert not apart.commands
+        _command(seen, None, {"channel": number, "value": 1})
+    assert seen.call.told_by == ""
+    assert not seen.call.commands

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
-from mutabot.init.compared import with_compared
-from mutabot.init.guess import Guess, Setting, guess_argument, guess_reading
-from mutabot.init.observed import Part, SeenCall, SeenCommand
+from mutabot.border.watch import Call, Command, Part
+
+from .guess import Guess, Setting, guess_argument, guess_reading
+from .layout import with_compared
+from .words import words_of
 
 #: names of arguments that hold a text command
 MESSAGES = frozenset({"message", "command", "cmd", "msg", "text", "line", "order"})
@@ -20,26 +21,26 @@ _OPPOSITES = (
     ("grasp", "release"), ("open", "close"), ("on", "off"), ("forward", "back"), ("left", "right"),
     ("start", "stop"),
 )  # fmt: skip
-_MEANINGS = (
-    (
-        ("lift", "drop", "raise", "lower", "up", "down"),
-        {"kind": "translation", "axis": "z", "unit": "m", "mode": "by"},
-    ),
-    (
-        ("turn", "rotate", "yaw", "left", "right"),
-        {"kind": "rotation", "axis": "z", "unit": "deg", "mode": "by"},
-    ),
-    (("move", "forward", "back", "go", "shift"), {"kind": "translation", "unit": "m", "mode": "by"}),
-    (("wait", "sleep", "pause"), {"kind": "duration", "unit": "s"}),
-)
+_FIELDS = {"lift": "height", "drop": "height", "turn": "angle", "rotate": "angle", "wait": "seconds"}
+_READS = re.compile(r"(?:^|_)(?:read|get)", re.IGNORECASE)
+#: arguments that say how to write rather than what
+_HOW = frozenset({"timeout", "wait", "device_id", "slave", "unit", "no_response_expected", "count", "qos"})
+#: more different numbers than these are no settings, but a scale
+_MOST_VALUES = 5
 
 
 def patterns_of(texts: Sequence[str]) -> list[tuple[str, Guess]]:
     """Notations that take these texts, each with what its only field means (empty without a field)."""
-    notations = dict.fromkeys(_notation(text) for text in texts if text.strip())
+    notations: dict[str, list[float]] = {}
+    for text in filter(str.strip, texts):
+        numbers = [float(number) for number in _NUMBER.findall(text)]
+        notations.setdefault(_notation(text), []).extend(numbers)
     found = []
-    for notation in notations:
-        guess = _meaning(notation)
+    for notation, numbers in notations.items():
+        guess = Guess()
+        if len(_FIELD.findall(notation)) == 1:
+            words = words_of(_FIELD.sub("", notation))
+            guess = guess_argument("value", Setting(words, values=numbers))
         opposite = _opposite(notation, list(notations))
         if opposite is not None:
             guess.table["opposite"] = opposite
@@ -52,28 +53,11 @@ def _notation(text: str) -> str:
         return text
     words = re.findall(r"[a-z]+", text.lower())
     name = next((word for word in words if word not in ("to", "by")), "value")
-    fields = iter(range(1, 100))
     literal = text.replace("{", "{{").replace("}", "}}")
     if len(_NUMBER.findall(literal)) == 1:
-        return _NUMBER.sub(lambda _: "{" + _field_name(name) + ":g}", literal)
+        return _NUMBER.sub(lambda _: "{" + _FIELDS.get(name, "value") + ":g}", literal)
+    fields = iter(range(1, 100))
     return _NUMBER.sub(lambda _: f"{{value{next(fields)}:g}}", literal)
-
-
-def _field_name(word: str) -> str:
-    return {"lift": "height", "drop": "height", "turn": "angle", "rotate": "angle", "wait": "seconds"}.get(
-        word, "value"
-    )
-
-
-def _meaning(notation: str) -> Guess:
-    if len(_FIELD.findall(notation)) != 1:
-        return Guess()
-    words = set(re.findall(r"[a-z]+", _FIELD.sub("", notation).lower()))
-    for names, table in _MEANINGS:
-        if words & set(names):
-            absolute = "mode" in table and "to" in words
-            return Guess({**table, **({"mode": "to"} if absolute else {})}, ["unit and mode"])
-    return Guess()
 
 
 def _opposite(notation: str, known: Sequence[str]) -> str | None:
@@ -85,94 +69,69 @@ def _opposite(notation: str, known: Sequence[str]) -> str | None:
     return None
 
 
-_READS = re.compile(r"(?:^|_)(?:read|get)", re.IGNORECASE)
-#: arguments that say how to write rather than what
-_HOW = frozenset({"timeout", "wait", "device_id", "slave", "unit", "no_response_expected", "count", "qos"})
-#: more different numbers than these are no settings, but a scale
-_MOST_VALUES = 5
-
-
-def tells_commands(call: SeenCall) -> bool:
+def tells_commands(call: Call) -> bool:
     """Whether there are commands, and their texts look like names of something."""
     if not call.commands:
         return False
-    return call.told_by != "self" or len(call.commands) > 1 or "=" in call.commands[0].text
+    return call.told_by != "self" or len(call.commands) > 1 or "=" in next(iter(call.commands))
 
 
-def is_read(call: SeenCall) -> bool:
+def is_read(call: Call) -> bool:
     """Whether its commands read."""
     return _READS.search(call.name) is not None
 
 
-def commands_of(call: SeenCall, groups: Sequence[Sequence[Any]] = ()) -> list[tuple[str, Guess]]:
+def commands_of(call: Call, groups: Sequence[Sequence[Any]] = ()) -> list[tuple[str, Guess]]:
     """Each command as a notation, with what is written beside it or read.
 
     ``groups``: constants that the program compares one and the same thing with.
     """
     found = []
-    for command in call.commands:
-        table = _read(command, groups) if is_read(call) else _written(command)
-        notation = command.text.replace("{", "{{").replace("}", "}}")
-        found.append((notation, Guess(table, [], _seen(command, is_read(call)))))
+    for text, command in call.commands.items():
+        table = _read(text, command, groups) if is_read(call) else _written(text, command)
+        notation = text.replace("{", "{{").replace("}", "}}")
+        found.append((notation, Guess(table, note=_seen(command, is_read(call)))))
     return found
 
 
-def _written(command: SeenCommand) -> dict[str, Any]:
+def _written(text: str, command: Command) -> dict[str, Any]:
     tables = {}
-    for name, parts in command.arguments.items():
-        for part in parts:
-            if name not in _HOW and part.path == name and part.always:
-                table = _value(command, name, part)
-                if table:
-                    tables[name] = table
+    for name, values in command.arguments.items():
+        part = values.parts.get(name)
+        table = _value(text, part) if name not in _HOW and part is not None and values.always(part) else {}
+        if table:
+            tables[name] = table
     return {"arguments": tables} if tables else {}
 
 
-def _value(command: SeenCommand, name: str, part: Part) -> dict[str, Any]:
+def _value(text: str, part: Part) -> dict[str, Any]:
     """What a written value means: as the node is called, else as its values look."""
     values = list(part.values)
     if part.length is not None or not values or any(isinstance(value, str) for value in values):
         return {}
     if all(isinstance(value, bool) for value in values):
         return {"kind": "output", "values": [False, True]}
-    guess = guess_argument(_last_word(command.text), _setting(command, part))
-    if guess.table.get("kind") in ("translation", "rotation", "duration"):
+    words = words_of(text)
+    guess = guess_argument((words or ("",))[-1], Setting((*words[:-1], "set"), values=values))
+    if guess.is_sure and guess.table["kind"] in ("translation", "rotation", "duration"):
         return guess.table
-    if 2 <= len(values) <= _MOST_VALUES:
-        return {"kind": "output", "values": values}
-    if len(values) > _MOST_VALUES:
-        return {"kind": "output", "range": [float(min(values)), float(max(values))]}
-    return {}
+    return {"kind": "output", "values": values} if 2 <= len(values) <= _MOST_VALUES else {}
 
 
-def _read(command: SeenCommand, groups: Sequence[Sequence[Any]]) -> dict[str, Any]:
-    part = next((part for part in command.result if part.path == "" and part.always), None)
-    if part is None or part.length is not None or not part.values:
+def _read(text: str, command: Command, groups: Sequence[Sequence[Any]]) -> dict[str, Any]:
+    part = command.result.parts.get("")
+    if part is None or not command.result.always(part) or part.length is not None or not part.values:
         return {}
     if part.type == "bool":
         return {"result": {"kind": "flag"}}
-    setting = replace(_setting(command, part), constants=with_compared(part.values, groups))
-    guess = guess_reading(_last_word(command.text), setting)
-    is_complete = guess.table.get("kind") != "label" or "values" in guess.table
-    return {"result": guess.table} if guess.table and is_complete else {}
-
-
-def _setting(command: SeenCommand, part: Part) -> Setting:
+    words = words_of(text)
     annotation = "str" if part.type == "str" else ""
-    return Setting("_".join(_words(command.text)), "", annotation, part.values)
+    setting = Setting(words, annotation=annotation, values=with_compared(part.values, groups))
+    guess = guess_reading((words or ("",))[-1], setting)
+    return {"result": guess.table} if guess.is_sure else {}
 
 
-def _last_word(text: str) -> str:
-    """The name at the end of a node's id: ``speed`` of ``ns=2;s=Belt.Speed``."""
-    return (_words(text) or [""])[-1]
-
-
-def _words(text: str) -> Sequence[str]:
-    parts = re.split(r"[^A-Za-z0-9]+", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", text))
-    return [part.lower() for part in parts if part]
-
-
-def _seen(command: SeenCommand, reads: bool) -> str:
-    parts = command.result if reads else [part for parts in command.arguments.values() for part in parts]
-    shown = [str(value) for part in parts for value in part.values]
+def _seen(command: Command, reads: bool) -> str:
+    several = [command.result] if reads else list(command.arguments.values())
+    shown = [str(value) for values in several for part in values.parts.values() for value in part.values]
     return ", ".join(shown[:4]) + (", …" if len(shown) > 4 else "")

@@ -1,55 +1,48 @@
-"""Guessing what arguments and results mean from their names, annotations and docstrings.
+"""What arguments and results mean, from their names, docstrings and values: told, or asked.
 
-The elements of a sequence are joint angles, a pose, an action.
+The verb of the callable decides first: the argument of ``set_speed(x)`` is a speed, that of ``move_up(x)``
+a distance along z. A guess with questions becomes a comment in the draft.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
+
+from .words import (
+    DIRECTIONS,
+    GRIPPER,
+    HOUSEKEEPING,
+    INPUTS,
+    KINDS,
+    MODES,
+    OUTPUT,
+    REPLIES,
+    SUBJECTS,
+    TURNS,
+    UNITS,
+    VERBS,
+    first,
+    noun_of,
+    units_in,
+    words_of,
+)
 
 #: a quantity as a vocabulary writes it
 Table = dict[str, Any]
 
-_AXIS = re.compile(r"(?P<delta>d|delta_|offset_)?(?P<axis>[xyz])")
-_TURN = re.compile(r"(?:d|delta_)?(?:theta|rot|rotation|angle|euler|r|a|w)_?(?P<axis>[xyz])")
+_AXIS = re.compile(r"(?P<delta>d|delta_?|offset_?)?(?P<axis>[xyz])\d?")
+_TURN = re.compile(r"(?:d|delta_?)?(?:theta|rot|rotation|angle|euler|r|w)_?(?P<axis>[xyz])")
 _NAMED_TURNS = {"yaw": "z", "pitch": "y", "roll": "x", "heading": "z"}
-_TURNS = frozenset({"angle", "theta", "rotation", "degrees", "deg", "radians", "rad", "turn"})
-_JOINT = re.compile(r"(?:j|joint_?|q|axis_?|a)(?P<number>[1-9]|1[0-2])")
-_HEIGHTS = frozenset({"height", "depth", "lift", "drop"})
-_LENGTHS = frozenset({"distance", "length", "dist", "step", "amount", "travel"})
-_TIMES = frozenset(
-    {"seconds", "secs", "sec", "duration", "delay", "dwell", "pause", "milliseconds", "time", "t"}
-)
-_OPENINGS = frozenset(
-    {"position", "opening", "width", "pos", "fraction", "value", "state", "command", "percent"}
-)
-_SWITCHES = frozenset(
-    {"on", "state", "enabled", "value", "val", "signal", "level", "active", "closed", "open", "grip"}
-)
-_UNIT_WORDS = {
-    "mm": "mm", "millimetre": "mm", "millimeter": "mm", "cm": "cm", "centimetre": "cm", "centimeter": "cm",
-    "m": "m", "metre": "m", "meter": "m", "metres": "m", "meters": "m",
-    "deg": "deg", "degree": "deg", "degrees": "deg", "°": "deg",
-    "rad": "rad", "radian": "rad", "radians": "rad",
-    "s": "s", "sec": "s", "second": "s", "seconds": "s",
-    "ms": "ms", "millisecond": "ms", "milliseconds": "ms",
-}  # fmt: skip
-_UNITS_OF = {"length": ("m", "cm", "mm"), "angle": ("deg", "rad"), "time": ("s", "ms")}
-_RELATIVE = re.compile(
-    r"(?:^|_)(?:by|relative|rel|offset|shift|jog|translate|rotate|turn|forward|back|lift|drop|delta)"
-)
-_ABSOLUTE = re.compile(
-    r"(?:^|_)(?:to|absolute|abs|goto|target|set|move[ljpc]|servo[ljc]|[ljp]_?move|ptp|lin)(?:_|$)"
-)
-_GRIPPER = re.compile(r"grip|(?:^|_)hand(?:_|$)|finger|claw|jaw|vacuum|suction")
-_OUTPUT = re.compile(r"output|digital|signal|valve|relay|lamp|coil|(?:^|_)io(?:_|$)|(?:^|_)do(?:_|$)")
-
-
+_JOINT = re.compile(r"(?:j|joint_?|q|axis_?)(?P<number>[1-9]|1[0-2])")
 #: more different numbers than these are no settings, but a scale
 _MOST_VALUES = 5
+_MOST_JOINTS = 12
+#: longer texts, and more of them, are no labels
+_LONGEST_LABEL, _MOST_LABELS = 30, 6
+_ACTIONS = frozenset({"action", "actions", "act", "a", "u", "ctrl"})
 
 
 @dataclass
@@ -58,13 +51,18 @@ class Guess:
 
     Attributes:
         table: the quantity; empty if nothing could be guessed.
-        checks: what the user should look at.
-        seen: values that were seen, in words; empty if they are shown elsewhere.
+        questions: what the user must answer before it counts.
+        note: how it was told, where that was by the size of values.
     """
 
     table: Table = field(default_factory=dict)
-    checks: list[str] = field(default_factory=list)
-    seen: str = ""
+    questions: list[str] = field(default_factory=list)
+    note: str = ""
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether it can stand in the vocabulary as it is."""
+        return bool(self.table) and not self.questions
 
 
 @dataclass(frozen=True)
@@ -72,271 +70,317 @@ class Setting:
     """Where a name stands.
 
     Attributes:
-        words: names of the callable, its class and module, in lower case.
-        doc: docstrings of the callable and its class.
+        words: words of the callable's own name.
+        owner: words of its class and module.
+        doc: docstrings of the callable and its class, or of the class that holds the value.
         annotation: type as written, or empty.
-        constants: values that were seen, and what the program compares them with.
+        values: values that were seen, and what the program compares them with.
+        names: the names of all arguments.
+        relative: what an argument ``relative`` said; None if there is none or it said both.
     """
 
-    words: str
+    words: tuple[str, ...] = ()
+    owner: tuple[str, ...] = ()
     doc: str = ""
     annotation: str = ""
-    constants: Sequence[Any] = ()
+    values: Sequence[Any] = ()
+    names: frozenset[str] = frozenset()
+    relative: bool | None = None
 
-
-def is_complete(guess: Guess) -> bool:
-    """Whether a vocabulary takes it as it is: a label needs all its values."""
-    return guess.table.get("kind") != "label" or "values" in guess.table
+    @property
+    def is_of_gripper(self) -> bool:
+        """Whether the callable or its class is about a gripper."""
+        return bool(GRIPPER & {*self.words, *self.owner})
 
 
 def guess_argument(name: str, setting: Setting) -> Guess:
-    """What an argument means; an empty guess if its name says nothing."""
-    stem, unit = split_unit(name.lower())
-    if _GRIPPER.search(setting.words) and stem in _OPENINGS | _SWITCHES:
-        return _opening(stem, unit, setting)
-    if (_OUTPUT.search(setting.words) and stem in _SWITCHES) or _is_switch(stem, setting):
-        return _switch(setting)
-    motion = _motion(stem)
+    """What an argument means; an empty guess if neither the callable's name nor its own tells."""
+    words, unit = _without_unit(words_of(name))
+    noun = noun_of(words)
+    if noun == "none" or any(isinstance(value, str) for value in setting.values):
+        return _chosen(setting)
+    is_open = noun in ("generic", "place", "opening", "switch", "ratio", "length")
+    if setting.is_of_gripper and is_open:
+        return _opening(noun, unit, name, setting)
+    if _are_truth(setting):
+        is_output = noun == "switch" or (noun == "generic" and OUTPUT & {*setting.words, *setting.owner})
+        return Guess({"kind": "output", "values": [False, True]}) if is_output else Guess()
+    if OUTPUT & {*setting.words, *setting.owner} and noun in ("generic", "switch"):
+        return _output(setting)
+    stem = "_".join(words)
+    motion = _by_verb(noun, stem, setting) or _by_name(noun, stem)
     if motion is not None:
-        kind, axis, relative = motion
-        return moved(kind, axis, relative, unit, setting)
-    if stem in _TIMES and "timeout" not in name:
-        unit = "ms" if "milli" in stem else unit
-        return measured({"kind": "duration"}, "time", unit, setting)
+        return _moved(*motion, unit, name, setting)
+    subject = noun_of(setting.words)
+    if (
+        noun not in KINDS
+        and noun in ("generic", "place", "")
+        and subject in KINDS
+        and len(setting.names) <= 1
+    ):
+        noun = subject
+    if noun in KINDS:
+        kind, _, dimension = KINDS[noun]
+        return measured({"kind": kind}, dimension, unit, name, setting)
     return Guess()
 
 
-def guess_reading(name: str, setting: Setting) -> Guess:
-    """What a result, or the part of it with this name, means."""
-    stem, unit = split_unit(name.lower())
-    motion = _motion(stem)
-    if motion is not None and stem not in _LENGTHS | _HEIGHTS:
-        kind, axis, _ = motion
-        if axis is not None and axis.startswith("j"):
-            return measured({"kind": "angle", "axis": axis}, "angle", unit, setting)
-        turned = kind == "rotation"
-        table = {"kind": "orientation" if turned else "position", **({"axis": axis} if axis else {})}
-        return measured(table, "angle" if turned else "length", unit, setting)
-    return _plain_reading(stem, unit, setting)
+def _by_verb(noun: str, stem: str, setting: Setting) -> tuple[str, str | None, str | None] | None:
+    """Kind, axis and mode where the callable's verb decides, whatever its only number is called."""
+    verb, subject = first(VERBS, setting.words), noun_of(setting.words)
+    is_axis = _AXIS.fullmatch(stem) is not None
+    is_vector = len({"x", "y", "z", "dx", "dy", "dz"} & setting.names) > 1
+    if (noun in ("generic", "") or is_axis) and subject in SUBJECTS and verb is None and not is_vector:
+        return KINDS[subject][0], stem if is_axis and stem != "x" else None, None
+    if verb in (None, "duration") or is_vector or noun not in ("generic", "length", "angle", "") or (
+        noun == "" and not is_axis
+    ):  # fmt: skip
+        return None
+    if verb == "rotation":
+        return "rotation", "z" if TURNS & set(setting.words) else None, None
+    axis = first(DIRECTIONS, setting.words)
+    is_named = axis is not None or noun in ("length", "generic")
+    return ("translation", axis, None) if is_named and not (is_axis and axis is None) else None
 
 
-def _plain_reading(stem: str, unit: str | None, setting: Setting) -> Guess:
-    words = set(re.split(r"[_\W]+", f"{stem} {setting.words}"))
-    if setting.annotation == "bool" or re.match(r"(is|has|can)_", stem):
-        return Guess({"kind": "flag"})
-    if setting.annotation.startswith("Literal") or words & {
-        "color",
-        "colour",
-        "label",
-        "kind",
-        "type",
-        "category",
-    }:
-        return _label(setting)
-    if setting.annotation == "str":
-        return _label(setting)
-    if words & {"angle", "joint", "heading"}:
-        return measured({"kind": "angle"}, "angle", unit, setting)
-    if words & {"distance", "range", "gap", "height", "width", "length", "depth", "ultrasonic", "lidar"}:
-        return measured({"kind": "distance"}, "length", unit, setting)
-    return Guess()
-
-
-def _motion(stem: str) -> tuple[str, str | None, bool | None] | None:
-    """Kind, axis and whether it is relative, where the name alone shows a motion."""
+def _by_name(noun: str, stem: str) -> tuple[str, str | None, str | None] | None:
+    """Kind, axis and mode where the name alone shows a motion."""
     if match := _AXIS.fullmatch(stem):
-        return "translation", match["axis"], True if match["delta"] else None
+        return "translation", match["axis"], "by" if match["delta"] else None
     if match := _TURN.fullmatch(stem):
         return "rotation", match["axis"], None
     if match := _JOINT.fullmatch(stem):
-        return "rotation", f"j{match['number']}", False
-    if stem in _NAMED_TURNS or stem.removeprefix("d") in _NAMED_TURNS:
-        return "rotation", _NAMED_TURNS.get(stem) or _NAMED_TURNS[stem[1:]], None
-    if stem in _TURNS:
+        return "rotation", f"j{match['number']}", "to"
+    turned = stem if stem in _NAMED_TURNS else stem.removeprefix("d")
+    if turned in _NAMED_TURNS:
+        return "rotation", _NAMED_TURNS[turned], None if turned == stem else "by"
+    if noun == "angle":
         return "rotation", None, None
-    if stem in _HEIGHTS:
-        return "translation", "z", None
-    return ("translation", None, True) if stem in _LENGTHS else None
+    return (
+        ("translation", "z", None)
+        if noun == "height"
+        else ("translation", None, "by")
+        if noun == "length"
+        else None
+    )
 
 
-def moved(kind: str, axis: str | None, relative: bool | None, unit: str | None, setting: Setting) -> Guess:
-    """A commanded motion; ``relative`` and ``unit`` are None where the name does not tell."""
+def _moved(
+    kind: str, axis: str | None, mode: str | None, unit: str | None, name: str, setting: Setting
+) -> Guess:
+    """A commanded motion, or what a setter sets."""
     table: Table = {"kind": kind, **({"axis": axis} if axis else {})}
-    guess = measured(table, "angle" if kind == "rotation" else "length", unit, setting)
-    mode = {True: "by", False: "to", None: None}[relative]
-    if mode is None and _ABSOLUTE.search(setting.words) and not re.search(r"_by(?:_|$)", setting.words):
-        mode = "to"
-    elif mode is None and (_RELATIVE.search(setting.words) or "relative" in setting.doc.lower()):
-        mode = "by"
+    if kind not in ("translation", "rotation"):
+        return measured(table, kind, unit, name, setting)
+    guess = measured(table, "angle" if kind == "rotation" else "length", unit, name, setting)
+    mode = mode or _mode(setting)
     if mode is None:
-        guess.checks.append("mode")
+        guess.questions.insert(0, 'a target (mode = "to") or a change (mode = "by")?')
     guess.table["mode"] = mode or "to"
     return guess
 
 
-def measured(table: Table, dimension: str, unit: str | None, setting: Setting) -> Guess:
-    """A quantity with a unit: as its name or a docstring says, else as its values look."""
-    fitting = _UNITS_OF[dimension]
-    if unit not in fitting:
-        said = [_UNIT_WORDS.get(word) for word in re.findall(r"[^\W\d_]+|°", setting.doc.lower())]
-        unit = next((one for one in said if one in fitting), None)
-    if unit is not None:
+def _mode(setting: Setting) -> str | None:
+    if setting.relative is not None:
+        return "by" if setting.relative else "to"
+    told = {MODES[word] for word in setting.words if word in MODES}
+    if len(told) == 1 or "by" in setting.words:
+        return "by" if "by" in setting.words else told.pop()
+    said = {word for word in ("relative", "absolute") if re.search(rf"\b{word}", setting.doc.lower())}
+    return {"relative": "by", "absolute": "to"}[said.pop()] if len(said) == 1 else None
+
+
+def measured(table: Table, dimension: str, unit: str | None, name: str, setting: Setting) -> Guess:
+    """A quantity with a unit: as its name or a docstring says, else as its values show."""
+    fitting = UNITS[dimension]
+    if unit in fitting:
         return Guess({**table, "unit": unit})
-    return Guess({**table, "unit": _unit_by_size(dimension, setting.constants) or fitting[0]}, ["unit"])
+    said = units_in(_about(name, setting.doc), dimension) or units_in(setting.doc, dimension)
+    if len(said) == 1 or len(fitting) == 1:
+        return Guess({**table, "unit": said[0] if said else fitting[0]})
+    shown = _unit_by_size(dimension, setting.values) if not said else None
+    if shown is not None:
+        return Guess({**table, "unit": shown}, note="unit told by the values")
+    return Guess({**table, "unit": (said or fitting)[0]}, [f"the unit: {', '.join(said or fitting)}?"])
+
+
+def _about(name: str, doc: str) -> str:
+    """The lines of a docstring that speak of an argument."""
+    lines, found = doc.splitlines(), []
+    for index, line in enumerate(lines):
+        if re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line):
+            follows = lines[index + 1] if index + 1 < len(lines) else ""
+            found += [
+                line,
+                "" if re.match(r"\s*(?:[:@]|[-*] |\w+\s*(?:\([^)]*\))?:|$)", follows) else follows,
+            ]
+    return "\n".join(found)
 
 
 def _unit_by_size(dimension: str, values: Sequence[Any]) -> str | None:
-    """The unit that numbers of this size usually have: no arm reaches 10 m, nor turns by 7 rad."""
-    numbers = [abs(one) for one in values if isinstance(one, int | float) and not isinstance(one, bool)]
+    """The unit that numbers of this size have: no arm reaches 10 m, and 1.57 are no degrees."""
+    numbers = [
+        abs(one) for one in _flat(values) if isinstance(one, int | float) and not isinstance(one, bool)
+    ]
     largest = max(numbers, default=0.0)
+    is_whole = all(float(number).is_integer() for number in numbers)
     if dimension == "length":
-        return "mm" if largest > 10 else None
+        return "m" if 0 < largest < 2 and not is_whole else None if largest < 100 else "mm"
     if dimension == "angle":
-        is_whole = all(float(number).is_integer() for number in numbers)
-        return "rad" if 0 < largest <= 6.5 and not is_whole else None
-    return "ms" if largest > 60 else None
+        return "deg" if largest > 6.5 else "rad" if largest > 0 and not is_whole else None
+    if dimension == "time":
+        return "s" if 0 < largest <= 60 else None
+    return None
 
 
-def _opening(stem: str, unit: str | None, setting: Setting) -> Guess:
-    if setting.annotation == "bool":
+def _flat(values: Sequence[Any]) -> list[Any]:
+    return [one for value in values for one in (value if isinstance(value, list) else [value])]
+
+
+def _opening(noun: str, unit: str | None, name: str, setting: Setting) -> Guess:
+    if _are_truth(setting):
         return Guess({"kind": "opening", "values": [False, True]})
-    values = _distinct(setting.constants)
-    if _are_numbers(values) and (len(values) > _MOST_VALUES or any(value < 0 for value in values)):
-        return Guess(_ranged("output", values), ["range"])
-    if len(values) >= 2:
-        table: Table = {"kind": "opening", "values": values}
-        if _are_numbers(values) and any(value > 1 for value in values):
-            return Guess({**table, "unit": unit if unit in ("mm", "cm", "m") else "percent"}, ["unit"])
-        return Guess(table)
-    if unit is not None or stem == "width":
-        return Guess(
-            {"kind": "opening", "unit": unit or "m", "range": [0.0, _stroke(unit or "m")]}, ["range"]
-        )
-    if _are_numbers(values) and any(value > 1 for value in values):
-        return Guess(
-            _ranged("output", [0, 255, *values] if values[0] > 100 else [0, 100, *values]), ["range"]
-        )
-    return Guess({"kind": "opening", "range": [0.0, 1.0], "unit": "fraction"}, ["range"])
+    values = _distinct(setting.values)
+    is_scale = len(values) > _MOST_VALUES or any(
+        value < 0 for value in values if isinstance(value, int | float)
+    )
+    if len(values) >= 2 and not is_scale and all(value in (0, 1) for value in values):
+        return Guess({"kind": "opening", "values": values})
+    said = [unit] if unit else units_in(_about(name, setting.doc), "length")
+    table: Table = {"kind": "opening", **({"unit": said[0]} if said else {}), "range": ["…", "…"]}
+    asked = "what is fully closed, what is fully open?"
+    return Guess(table, [asked if said else f"{asked} in which unit (fraction, percent, mm, m)?"])
 
 
-def _ranged(kind: str, values: Sequence[Any]) -> Table:
-    return {"kind": kind, "range": [float(min(values)), float(max(values))]}
+def _output(setting: Setting) -> Guess:
+    values = _distinct(setting.values)
+    if len(values) >= 2 and len(values) <= _MOST_VALUES:
+        return Guess({"kind": "output", "values": values})
+    if values and all(value in (0, 1) for value in values):
+        return Guess({"kind": "output", "values": [0, 1]})
+    return Guess({"kind": "output", "values": ["…", "…"]}, ["which values can it have?"])
 
 
-def _stroke(unit: str) -> float:
-    return {"m": 0.1, "cm": 10.0, "mm": 100.0}.get(unit, 1.0)
+def _chosen(setting: Setting) -> Guess:
+    literal = re.fullmatch(r"Literal\[(.*)\]", setting.annotation)
+    values = re.findall(r"'([^']*)'", literal[1]) if literal else []
+    return Guess({"kind": "output", "values": values}) if len(values) >= 2 else Guess()
 
 
-def _is_switch(stem: str, setting: Setting) -> bool:
-    return setting.annotation == "bool" and stem in _SWITCHES
-
-
-def _switch(setting: Setting) -> Guess:
-    values = _distinct(setting.constants)
-    if setting.annotation == "bool" or len(values) < 2:
-        return Guess(
-            {"kind": "output", "values": [False, True]}, [] if setting.annotation == "bool" else ["values"]
-        )
-    return Guess({"kind": "output", "values": values})
+def guess_reading(name: str, setting: Setting) -> Guess:
+    """What a result, or the part of it with this name, means."""
+    words, unit = _without_unit(words_of(name))
+    noun, stem = noun_of(words), "_".join(words)
+    about = {*words, *setting.words}
+    is_reply = about & HOUSEKEEPING and (words[:1] == ("is",) or REPLIES & set(setting.owner))
+    if noun == "none" or INPUTS & set(setting.owner) or is_reply:
+        return Guess()
+    if _are_truth(setting) or words[:1] in (("is",), ("has",), ("can",)):
+        return Guess({"kind": "flag"})
+    if noun == "label" or setting.annotation == "str" or setting.annotation.startswith("Literal"):
+        return _label(setting)
+    if GRIPPER & about:
+        return measured({"kind": "distance"}, "length", unit, name, setting) if noun else Guess()
+    motion = _by_name("", stem)
+    if motion is not None:
+        kind, axis, _ = motion
+        is_joint = axis is not None and axis.startswith("j")
+        read = "position" if kind == "translation" else "angle" if is_joint else "orientation"
+        dimension = "length" if kind == "translation" else "angle"
+        return measured({"kind": read, **({"axis": axis} if axis else {})}, dimension, unit, name, setting)
+    noun = noun if noun in KINDS else noun_of(setting.words) if noun in ("", "generic") else noun
+    if noun in KINDS and KINDS[noun][1]:
+        _, kind, dimension = KINDS[noun]
+        return measured({"kind": kind}, dimension, unit, name, setting)
+    return Guess()
 
 
 def _label(setting: Setting) -> Guess:
     literal = re.fullmatch(r"Literal\[(.*)\]", setting.annotation)
-    values = _distinct(re.findall(r"'([^']*)'", literal[1])) if literal else _distinct(setting.constants)
+    values = re.findall(r"'([^']*)'", literal[1]) if literal else _distinct(setting.values)
+    texts = [value for value in values if isinstance(value, str)]
+    if len(values) > _MOST_LABELS or any(len(text) > _LONGEST_LABEL for text in texts):
+        return Guess()
     if len(values) >= 2:
-        return Guess({"kind": "label", "values": values}, [] if literal else ["values"])
-    return Guess({"kind": "label"}, ["values"])
+        return Guess({"kind": "label", "values": list(values)})
+    return Guess({"kind": "label", "values": [*values, "…"]}, ["which values can it have?"])
 
 
-def split_unit(name: str) -> tuple[str, str | None]:
-    stem, _, last = name.rpartition("_")
-    if stem and last in _UNIT_WORDS:
-        return stem, _UNIT_WORDS[last]
-    return name, _UNIT_WORDS.get(name) if name in (
-        "seconds",
-        "milliseconds",
-        "degrees",
-        "radians",
-        "deg",
-    ) else None
+def guess_elements(
+    name: str, length: int, setting: Setting, *, written: bool, limits: list[list[float]] | None = None
+) -> dict[str, Guess]:
+    """What the elements mean, by the index or slice; nothing if neither the name nor the callable's tells.
+
+    ``setting.values`` are the sequences that were seen.
+    """
+    words = words_of(name)
+    noun = noun_of(words)
+    if written and (name.lower() in _ACTIONS or noun == "action"):
+        return {f"[{index}]": _action(index, limits) for index in range(min(length, _MOST_JOINTS))}
+    verb = noun_of(setting.words)
+    if noun in ("none", "acceleration", "force", "torque", "time") or verb == "speed" or noun == "speed":
+        return _speeds(length, setting) if "speed" in (verb, noun) else {}
+    for about, told in ((words, noun), (setting.words, verb)):
+        joints = told == "joints" or {"movej", "servoj", "getj", "j"} & set(about)
+        if joints and 1 <= length <= _MOST_JOINTS and not setting.is_of_gripper:
+            axis = "j1" if length == 1 else f"j1..j{length}"
+            return {f"[0:{length}]": _element("rotation", "angle", axis, name, setting, written)}
+        if told == "turned" and length == 3:
+            return {
+                "[0:3]": Guess({"kind": "euler", "order": "…", "unit": "rad"}, ["which order, which unit?"])
+            }
+        if told == "place" and length in (2, 3, 6, 7):
+            return _pose(name, length, setting, written)
+    return {}
+
+
+def _element(kind: str, read: str, axis: str, name: str, setting: Setting, written: bool) -> Guess:
+    if written:
+        told = replace(setting, words=(*setting.words, "to")) if _mode(setting) is None else setting
+        return _moved(kind, axis, None, None, name, told)
+    dimension = "length" if kind == "translation" else "angle"
+    return measured({"kind": read, "axis": axis}, dimension, None, name, setting)
+
+
+def _pose(name: str, length: int, setting: Setting, written: bool) -> dict[str, Guess]:
+    count = min(length, 3)
+    first_part = replace(setting, values=[value[:count] for value in setting.values])
+    found = {f"[0:{count}]": _element("translation", "position", "xyz"[:count], name, first_part, written)}
+    if length == 6:
+        rest = {"kind": "rotation_vector", "unit": "rad"}
+        found["[3:6]"] = Guess(
+            rest, ["a rotation vector, or Euler angles (kind, order)? the unit: rad, deg?"]
+        )
+    if length == 7:
+        found["[3:7]"] = Guess({"kind": "quaternion", "order": "…"}, ["the order: wxyz, xyzw?"])
+    return found
+
+
+def _speeds(length: int, setting: Setting) -> dict[str, Guess]:
+    table = {"kind": "speed", "unit": "…"}
+    return {f"[0:{length}]": Guess(table, ["the unit, and the axis?"])} if length <= _MOST_JOINTS else {}
+
+
+def _action(index: int, limits: list[list[float]] | None) -> Guess:
+    """An element of a policy's action or of a simulator's controls: a number on a scale of its own."""
+    if limits is not None and limits[index][0] < limits[index][1]:
+        return Guess({"kind": "output", "range": limits[index]})
+    return Guess({"kind": "output", "range": ["…", "…"]}, ["its least and greatest value?"])
+
+
+def _without_unit(words: tuple[str, ...]) -> tuple[tuple[str, ...], str | None]:
+    """A name's words without a unit at its end, and the unit."""
+    found = [unit for dimension in UNITS for unit in units_in(words[-1], dimension)] if words else []
+    if not found or words[-1] in ("t", "g"):
+        return words, None
+    return (words[:-1] or words), found[0]
+
+
+def _are_truth(setting: Setting) -> bool:
+    seen = list(setting.values)
+    return setting.annotation == "bool" or (bool(seen) and all(isinstance(one, bool) for one in seen))
 
 
 def _distinct(values: Sequence[Any]) -> list[Any]:
     kinds = {type(value) for value in values}
-    same = values if len(kinds) <= 1 or kinds == {int, float} else []
-    return list(dict.fromkeys(same))
-
-
-def _are_numbers(values: Sequence[Any]) -> bool:
-    return all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
-
-
-_JOINTED = re.compile(r"(?:^|_)(?:movej|servoj|getj|joints?|jnts?|q|qpos|angles?|actual_q|target_q)(?:_|$)")
-_POSES = re.compile(
-    r"(?:^|_)(?:move[lpc]?|servo[lp]|getl|[ts]?pose[s]?|tcp|xyz|pos|position[s]?|target|goal|location|locate|where"
-    r"|point|waypoint|translation|translate|offset|goto|coords?)(?:_|$)"
-)
-_TURNED = re.compile(r"(?:^|_)(?:orientation|rotation|rotvec|rpy|euler|orn)(?:_|$)")
-_NO_PLACES = re.compile(r"speed|veloc|acc|force|torque|wrench|gain|weight|colou?r|rgb|limit|radius|size|vel")
-_ACTIONS = frozenset({"action", "actions", "act", "a", "u"})
-_MOST_JOINTS = 12
-_AXES_OF = {2: "xy", 3: "xyz"}
-
-
-def guess_elements(name: str, length: int, setting: Setting, *, written: bool) -> dict[str, Guess]:
-    """What the elements mean, by the index or slice; nothing if neither the name nor the callable's tells.
-
-    ``setting.constants`` are the sequences that were seen.
-    """
-    name, words = name.lower(), f"{setting.words}_{name.lower()}"
-    if _NO_PLACES.search(name) or re.search(r"speed[jl]", setting.words):
-        return {}
-    if written and name in _ACTIONS and "step" in words:
-        return {f"[{index}]": _action(index, setting.constants) for index in range(min(length, 12))}
-    for about in (name, words):
-        if _JOINTED.search(about) and length <= _MOST_JOINTS:
-            return _joints(length, setting, written)
-        if _TURNED.search(about) and length == 3:
-            return {"[0:3]": _turn("xyz", _flat(setting), written)}
-        if _POSES.search(about) and length in (2, 3, 6, 7):
-            return _pose(length, setting, written)
-    return {}
-
-
-def _joints(length: int, setting: Setting, written: bool) -> dict[str, Guess]:
-    axis = "j1" if length == 1 else f"j1..j{length}"
-    flat = _flat(setting)
-    if written:
-        return {f"[0:{length}]": moved("rotation", axis, None, None, flat)}
-    return {f"[0:{length}]": measured({"kind": "angle", "axis": axis}, "angle", None, flat)}
-
-
-def _pose(length: int, setting: Setting, written: bool) -> dict[str, Guess]:
-    place = min(length, 3)
-    axis, flat = _AXES_OF[place], _flat(setting, slice(0, place))
-    if written:
-        found = {f"[0:{place}]": moved("translation", axis, None, None, flat)}
-    else:
-        table = {"kind": "position", "axis": axis}
-        found = {f"[0:{place}]": measured(table, "length", None, flat)}
-    if length == 6:
-        found["[3:6]"] = _turn("xyz", _flat(setting, slice(3, 6)), written)
-    return found
-
-
-def _turn(axis: str, setting: Setting, written: bool) -> Guess:
-    if written:
-        return moved("rotation", axis, None, None, setting)
-    return measured({"kind": "orientation", "axis": axis}, "angle", None, setting)
-
-
-def _action(index: int, seen: Sequence[Any]) -> Guess:
-    """An element of a policy's action: a number on a scale of the simulator's own."""
-    numbers = [values[index] for values in seen if len(values) > index]
-    most = max([1.0, *(abs(number) for number in numbers)])
-    return Guess({"kind": "output", "range": [-most, most]}, ["range"])
-
-
-def _flat(setting: Setting, part: slice = slice(None)) -> Setting:
-    numbers = [number for values in setting.constants for number in values[part]]
-    return Setting(setting.words, setting.doc, setting.annotation, numbers)
+    return list(dict.fromkeys(values if len(kinds) <= 1 or kinds == {int, float} else []))

@@ -4,23 +4,85 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from mutabot.border.watch import Call
 from mutabot.errors import ConfigurationError, UsageError
-from mutabot.init.commands import commands_of, tells_commands
-from mutabot.init.vocabulary_text import vocabulary_text
-from mutabot.model import ANY
+from mutabot.model import ANY, Vocabulary
 from mutabot.vocabulary import load
+from mutabot.vocabulary.load import shipped
 
-from .compared import Unreached, compared_with, unreached
-from .known import Known, known_vocabularies
-from .layout import look
-from .named.entries import Entry, entries, unused
-from .observed import LIMIT, Observed, SeenCall, observe
-from .operations import proposals
+from .commands import commands_of, tells_commands
+from .layout import Layout, Unreached, compared_with, imported_modules, look, unreached
+from .messages import Entry, entries, unused
+from .observe import LIMIT, Observed, observe
+from .operations import Proposal, proposals
+from .text import questions_in, value_text, vocabulary_text
 
 CONFIGURATION, VOCABULARY = "mutabot.toml", "robot.toml"
+#: vocabularies of environments that are reached through the wrappers of another one
+_BEHIND = {"metaworld": "gymnasium"}
+
+
+@dataclass(frozen=True)
+class Known:
+    """A shipped vocabulary that describes calls of the program.
+
+    Attributes:
+        name: as the configuration names it.
+        vocabulary: what it says.
+        overridden: names of methods that it describes with all that override them.
+        packages: where these may come from.
+        seen: how many of the callables that were seen it describes.
+    """
+
+    name: str
+    vocabulary: Vocabulary
+    overridden: frozenset[str]
+    packages: frozenset[str]
+    seen: int = 0
+
+    def describes(self, call: Call) -> bool:
+        """Whether it has this callable, as an operation or as its clock; wrappers and subclasses included."""
+        clock = self.vocabulary.clock
+        if call.name in self.overridden and call.package in self.packages:
+            return True
+        targets = [*(one.target for one in self.vocabulary.operations), *([clock.tick] if clock else [])]
+        return call.target in targets
+
+    def reads(self, call: Call) -> bool:
+        """Whether it has this callable as a reading."""
+        return any(one.target == call.target and not one.command for one in self.vocabulary.operations)
+
+
+def known_vocabularies(layout: Layout, calls: Sequence[Call]) -> list[Known]:
+    """The shipped vocabularies with calls that were seen; without any calls, those that the text imports."""
+    files = (*layout.program, *layout.tests)
+    imported = {name.partition(".")[0] for path in files for name in imported_modules(path)}
+    every: dict[str, Known] = {}
+    for name in shipped():
+        vocabulary = load([name], layout.root)
+        packages = frozenset(one.module.partition(".")[0] for one in vocabulary.operations)
+        overridden = frozenset(
+            one.target.rpartition(".")[2] for one in vocabulary.operations if one.overrides
+        )
+        every[name] = Known(name, vocabulary, overridden, packages)
+    for name, wrapper in _BEHIND.items():
+        if name in imported:
+            own, other = every[name], every.pop(wrapper)
+            both = {
+                "overridden": own.overridden | other.overridden,
+                "packages": own.packages | other.packages,
+            }
+            every[name] = replace(own, **both)
+    found = []
+    for known in every.values():
+        seen = sum(known.describes(call) for call in calls)
+        if seen or (not calls and known.packages & imported):
+            found.append(replace(known, seen=seen))
+    return found
 
 
 class _Look:
@@ -28,10 +90,9 @@ class _Look:
 
     Attributes:
         layout: where what lies.
-        seen: the watched run of the tests.
+        observed: the watched run of the tests.
         known: shipped vocabularies that fit it.
         named: proposed operations that have a name on a middleware.
-        stood_in: names of methods that only what stands in for the robot has.
         found: proposed operations that no shipped vocabulary has.
         others: calls of which nothing shows what they mean.
         oracle: files on the tests' side that read from the robot.
@@ -41,26 +102,24 @@ class _Look:
     def __init__(self, root: Path, given: Sequence[Path], limit: float, tell: Callable[[str], None]) -> None:
         self.layout = look(root, given)
         tell("running the tests once, to see what the program calls")
-        self.seen: Observed = observe(self.layout, limit)
+        self.observed: Observed = observe(self.layout, limit)
         self.program = [self.layout.relative(path) for path in self.layout.program]
-        calls = without_doubles([call for call in self.seen.calls if call.sites])
-        self.stood_in = [call.name for call in calls if call.target.startswith(ANY)]
-        self.known: list[Known] = known_vocabularies(self.layout, calls)
+        self.calls = without_doubles([call for call in self.observed.seen.calls if call.sites])
+        self.known: list[Known] = known_vocabularies(self.layout, self.calls)
+        self.named: list[Entry] = entries(self.observed.seen.uses)
         groups = compared_with(self.layout)
-        self.named: list[Entry] = entries(self.seen.names)
-        mine, rest = _by_side([call for call in calls if not call.facts["leads_to_names"]])
-        ours, own = (
-            [call for call in mine if not call.facts["own"]],
-            [call for call in mine if call.facts["own"]],
-        )
-        self.found, self.others = proposals(self._new(ours), groups)
-        if not self.found and not self.known and not self.named and own:  # program and robot share a file
-            self.found, self.others = proposals([*ours, *own], groups)
-        self._add_readings(rest, groups)
-        if not self.found and not self.known and not self.named:
-            self._fall_back()
+        mine, rest = _by_side([call for call in self.calls if not call.leads_to_names])
+        self.found, self.others = proposals(self._new([call for call in mine if not call.own]), groups)
+        if not (self.found or self.known or self.named):  # program and robot share a file
+            self.found, self.others = proposals(mine, groups)
+        self._add_readings(proposals(self._new(rest), groups)[0])
+        if not (self.found or self.known or self.named):  # what is called at all can be skipped and repeated
+            for one in self.others:
+                one.is_plain = not one.call.problem and not one.call.is_property
+            self.found = [one for one in self.others if one.is_plain]
+            self.others = [one for one in self.others if not one.is_plain]
         self.unreached: list[Unreached] = [
-            *unused(self.seen.names),
+            *unused(self.observed.seen.uses),
             *unreached(self.layout, self._reached()),
         ]
 
@@ -75,37 +134,49 @@ class _Look:
         """Whether there is anything to say that no shipped vocabulary says."""
         return bool(self.found or self.named or self.others or self.unreached or not self.known)
 
-    def _new(self, calls: Sequence[SeenCall]) -> list[SeenCall]:
-        """Calls to be described here: those of shipped vocabularies only where nodes tell more."""
-        shipped = [call for call in calls if any(one.describes(call) for one in self.known)]
-        return [call for call in calls if call not in shipped or _says_more(call)]
+    def text(self) -> str:
+        """The vocabulary's text; what would not load, by a wrong guess, is a comment."""
+        text = self._text()
+        if not (self.found or self.named) or _loads(text):
+            return text
+        for proposal in self.found:
+            proposal.current = proposal.opposite = None
+        kept = [one for one in self.found if _loads(vocabulary_text([one], [], self.program))]
+        self.others = [*(one for one in self.found if one not in kept), *self.others]
+        self.found = kept
+        for entry in self.named:
+            entry.is_taken = _loads(vocabulary_text([], [], self.program, named=[entry]))
+        return self._text()
 
-    def _add_readings(self, rest: Sequence[SeenCall], groups: Sequence[Sequence[object]]) -> None:
+    def _text(self) -> str:
+        return vocabulary_text(self.found, self.others, self.program, self.unreached, self.named)
+
+    def _new(self, calls: Sequence[Call]) -> list[Call]:
+        """Calls to be described here: those of shipped vocabularies only where nodes tell more."""
+        return [
+            call for call in calls if _says_more(call) or not any(one.describes(call) for one in self.known)
+        ]
+
+    def _add_readings(self, rest: Sequence[Proposal]) -> None:
         """Readings that only the tests take, and the files where they take any."""
-        new = [one for one in proposals(self._new(rest), groups)[0] if one.is_reading and one.call.sites]
         known = {proposal.target: proposal for proposal in self.found}
-        known.update((proposal.target, proposal) for proposal in new)
+        known.update((one.target, one) for one in rest if one.is_reading and one.call.sites)
         self.found = list(known.values())
         targets = {proposal.target for proposal in self.found if proposal.is_reading}
         files = [
-            file
-            for call in self.seen.calls
-            for file, _, _ in call.sites
+            where.rpartition(":")[0]
+            for call in self.observed.seen.calls
             if call.target in targets or any(one.reads(call) for one in self.known)
+            for where in call.sites
         ]
         files += [file for entry in self.named if entry.of_tests for file in entry.files]
         self.oracle = [file for file in dict.fromkeys(files) if file not in self.program]
 
-    def _fall_back(self) -> None:
-        """Nothing looks like a robot's: what is called at all can be skipped and repeated."""
-        for proposal in self.others:
-            proposal.is_plain = not proposal.call.facts["problem"] and not proposal.call.facts["is_property"]
-        self.found = [one for one in self.others if one.is_plain]
-        self.others = [one for one in self.others if not one.is_plain]
-
     def _reached(self) -> list[tuple[str, int, str]]:
-        made = [(file, line, call.name) for call in self.seen.calls for file, line, _ in call.sites]
-        return [*made, *self.seen.reached]
+        places = [
+            (where.rpartition(":"), call.name) for call in self.observed.seen.calls for where in call.sites
+        ]
+        return [*((file, int(line), name) for (file, _, line), name in places), *self.observed.seen.reached]
 
 
 def propose(
@@ -126,26 +197,34 @@ def propose(
     root = root.resolve()
     _refuse_existing(root)
     found = _Look(root, program, limit, tell)
-    text = _loadable(found)
+    text = found.text()
     if found.needs_vocabulary:
         _write(root / VOCABULARY, text)
     _write(root / CONFIGURATION, _configuration(found))
-    return _told(found)
+    return _told(found, questions_in(text) if found.needs_vocabulary else 0)
 
 
-def without_doubles(calls: Sequence[SeenCall]) -> list[SeenCall]:
+def without_doubles(calls: Sequence[Call]) -> list[Call]:
     """Without methods of whatever has them where the robot's own was seen: a mock of it is one."""
-    owned = {call.name for call in calls if not call.target.startswith(ANY) and call.facts["owner"]}
+    owned = {
+        call.name
+        for call in calls
+        if not call.target.startswith(ANY) and "." in call.target.partition(":")[2]
+    }
     return [call for call in calls if not (call.target.startswith(ANY) and call.name in owned)]
 
 
-def _says_more(call: SeenCall) -> bool:
-    return tells_commands(call) and any(guess.table for _, guess in commands_of(call))
+def _says_more(call: Call) -> bool:
+    """Whether the program tells more of a callable than a shipped vocabulary can."""
+    limited = any(part.limits for values in call.arguments.values() for part in values.parts.values())
+    return (call.name == "step" and limited) or (
+        tells_commands(call) and any(guess.table for _, guess in commands_of(call))
+    )
 
 
-def _by_side(calls: Sequence[SeenCall]) -> tuple[list[SeenCall], list[SeenCall]]:
+def _by_side(calls: Sequence[Call]) -> tuple[list[Call], list[Call]]:
     """What the program calls, and what only the tests do."""
-    mine = [call for call in calls if not call.facts["of_tests"]]
+    mine = [call for call in calls if not call.of_tests]
     targets = {call.target for call in mine}
     return mine, [call for call in calls if call.target not in targets]
 
@@ -172,25 +251,6 @@ def _refuse_existing(root: Path) -> None:
         raise UsageError(f"{root / 'pyproject.toml'} has [tool.mutabot] already; there is nothing to propose")
 
 
-def _loadable(found: _Look) -> str:
-    """The vocabulary's text; what would not load, by a wrong guess, is a comment."""
-    text = _text(found)
-    if not (found.found or found.named) or _loads(text):
-        return text
-    for proposal in found.found:
-        proposal.current = proposal.opposite = None
-    kept = [proposal for proposal in found.found if _loads(vocabulary_text([proposal], [], found.program))]
-    dropped = [proposal for proposal in found.found if proposal not in kept]
-    found.found, found.others = kept, [*dropped, *found.others]
-    for entry in found.named:
-        entry.is_taken = _loads(vocabulary_text([], [], found.program, named=[entry]))
-    return _text(found)
-
-
-def _text(found: _Look) -> str:
-    return vocabulary_text(found.found, found.others, found.program, found.unreached, found.named)
-
-
 def _loads(text: str) -> bool:
     with TemporaryDirectory() as folder:
         (Path(folder) / VOCABULARY).write_text(text, encoding="utf-8")
@@ -202,80 +262,73 @@ def _loads(text: str) -> bool:
 
 
 def _configuration(found: _Look) -> str:
-    lines = [
-        f"program = {_listed(found.program)}  # where the robot program's calls stand",
-        *(
-            [f"oracle = {_listed(found.oracle)}  # readings for the tests' own checks"]
-            if found.oracle
-            else []
-        ),
-        f"tests = {_listed(found.layout.arguments or ['tests'])}",
-        *([f"pytest_args = {_listed(found.seen.extra)}"] if found.seen.extra else []),
-        f"vocabulary = {_listed(found.vocabulary)}",
-        "rounds = 1",
-        "seed = 1",
-    ]
-    return "\n".join(lines) + "\n"
+    listed = {"program": found.program, "oracle": found.oracle, "tests": found.layout.arguments or ["tests"],
+              "pytest_args": found.observed.extra, "vocabulary": found.vocabulary}  # fmt: skip
+    notes = {
+        "program": "  # makes the robot's calls",
+        "oracle": "  # reads from the robot for the tests' checks",
+    }
+    lines = [f"{key} = {value_text(names)}{notes.get(key, '')}" for key, names in listed.items() if names]
+    return "\n".join([*lines, "rounds = 1", "seed = 1"]) + "\n"
 
 
-def _listed(names: Sequence[str]) -> str:
-    return "[" + ", ".join(f'"{name}"' for name in names) + "]"
-
-
-def _told(found: _Look) -> list[str]:
-    how = " (guessed; name the files if that is wrong: mutabot init FILE…)" if found.layout.guessed else ""
-    counts = ", ".join(f"{count} {outcome}" for outcome, count in found.seen.outcomes.items())
+def _told(found: _Look, questions: int) -> list[str]:
+    observed, seen = found.observed, found.observed.seen
+    how = " (guessed; to choose other files: mutabot init FILE…)" if found.layout.guessed else ""
+    counts = ", ".join(f"{count} {outcome}" for outcome, count in seen.outcomes.items())
     lines = [f"program: {', '.join(found.program)}{how}"]
-    if found.seen.trouble:
-        lines.append(f"the tests could not be watched: {found.seen.trouble}")
+    if observed.trouble:
+        lines.append(f"the tests could not be watched: {observed.trouble}")
     if counts:
         lines.append(f"tests: {counts}; {_counted(found)}")
-    lines += [f"  {problem}" for problem in found.seen.problems[:3] if not found.seen.trouble]
+    lines += [f"  {problem}" for problem in seen.problems[:3] if not observed.trouble]
     hint = ""
     if (found.layout.root / "pyproject.toml").exists():
         hint = "; its lines may as well stand in pyproject.toml, under [tool.mutabot]"
     lines.append(f"wrote {CONFIGURATION}{hint}")
-    lines += [
-        f"vocabulary {one.name}: comes with mutabot, describes {one.seen} of the calls" for one in found.known
-    ]
+    for one in found.known:
+        lines.append(f"vocabulary {one.name}: comes with mutabot, describes {_number(one.seen, 'call')}")
     if found.needs_vocabulary:
-        lines.append(_about_vocabulary(found))
-    taken = [one.call.name for one in found.found if one.call.name in found.stood_in]
-    if taken:
-        text = "count for whatever object has them (method = …)"
-        lines.append(f"the tests hand in mocks or fakes: {', '.join(taken)} {text}")
-    return [*lines, _next(found)]
+        lines.append(_about_vocabulary(found, questions))
+    stood = [one.call for one in found.found if one.call.stands_in]
+    meant = [call.target for call in stood if not call.target.startswith(ANY)]
+    free = [call.name for call in stood if call.target.startswith(ANY)]
+    if meant:
+        lines.append(f"seen on mocks or fakes, proposed as what they stand for: {', '.join(meant)}")
+    if free:
+        lines.append(f"seen on mocks or fakes, proposed for any object that has them: {', '.join(free)}")
+    return [*lines, _next(found, questions)]
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def _counted(found: _Look) -> str:
-    mine, rest = _by_side([call for call in found.seen.calls if call.sites])
-    calls = sum(call.count for call in mine)
+    mine, rest = _by_side([call for call in found.observed.seen.calls if call.sites])
+    times = _number(sum(call.count for call in mine), "time")
     names = {(entry.key, entry.name) for entry in found.named if not entry.of_tests}
-    return (
-        f"the program calls {len(mine)} callables, {calls} times"
-        + (f", the tests {len(rest)} more" if rest else "")
-        + (f", and uses {len(names)} names of ROS" if names else "")
-    )
+    more = f", the tests {len(rest)} more" if rest else ""
+    more += f", and uses {_number(len(names), 'name')} of ROS" if names else ""
+    return f"the program calls {_number(len(mine), 'callable')}, {times}{more}"
 
 
-def _about_vocabulary(found: _Look) -> str:
+def _about_vocabulary(found: _Look, questions: int) -> str:
     commented = len(found.others) + len(found.unreached)
-    more = "1 more call stands" if commented == 1 else f"{commented} more calls stand"
-    also = f"; {more} there as comments" if commented else ""
+    also = f"; {_number(commented, 'more call')} as comments" if commented else ""
     count = sum(entry.is_taken for entry in found.named) + len(found.found)
     if count:
-        noun = "operation" if count == 1 else "operations"
-        return f"wrote {VOCABULARY} with {count} {noun}, guessed from names and values{also}"
+        asked = f" and {_number(questions, 'question')}" if questions else ""
+        return f"wrote {VOCABULARY} with {_number(count, 'operation')}{asked}{also}"
     if found.known:
         return f"wrote {VOCABULARY}, which is not used yet{also}"
     return f"wrote {VOCABULARY} without an operation: no call was seen{also}"
 
 
-def _next(found: _Look) -> str:
-    if found.found or found.named:
-        return "next: correct the lines marked `guess`, then `mutabot check`, `mutabot list`, `mutabot run`"
-    if found.known:
-        return "next: `mutabot check`, `mutabot list`, `mutabot run`"
+def _next(found: _Look, questions: int) -> str:
+    if found.found or found.known or found.named:
+        answer = f"answer the questions in {VOCABULARY}, then " if questions else ""
+        return f"next: {answer}`mutabot check`, `mutabot list`, `mutabot run`"
     names = " ".join(found.layout.arguments) or "tests"
     return (
         f"next: make `python -m pytest {names}` run tests that call the program, remove {CONFIGURATION} and "

@@ -86,7 +86,7 @@ def test_a_check_is_suggested_where_there_is_one(tmp_path: Path) -> None:
     found = Suggestions((check,))
     reports.write(tmp_path / "report", journal, stored, lambda made: replace(made, suggestions=found))
     assert "box.x \\x3c 0.5" in (tmp_path / "report" / "data" / "mutants" / "2.js").read_text()
-    assert '"suggest":null' in (tmp_path / "report" / "data" / "mutants" / "1.js").read_text()
+    assert '"suggestion":null' in (tmp_path / "report" / "data" / "mutants" / "1.js").read_text()
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ from types import FrameType
 from typing import Any
 
 from mutabot import extensions
+from mutabot.border.codec import to_data
 from mutabot.border.processes import FOLDER
 from mutabot.inside.processes.environment import carry, write_wake
 from mutabot.inside.text.scripts import hook_script
@@ -71,7 +72,7 @@ def join(folder: str) -> None:
     def write() -> None:
         name = os.path.join(folder, f"{os.getpid()}{_SEEN}")
         with open(f"{name}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
-            json.dump(watch.data(), file, default=str)
+            json.dump(to_data(watch.data()), file, default=str)
         os.replace(f"{name}.new", name)
 
     def leave_at_once(status: int) -> None:
@@ -87,9 +88,9 @@ def join(folder: str) -> None:
         signal.signal(signal.SIGTERM, end)  # else nothing would be written
 
 
-def seen_elsewhere(folder: str) -> list[dict[str, list[Any]]]:
-    """What processes saw, each as ``Watch.data`` gives it."""
-    found: list[dict[str, list[Any]]] = []
+def seen_elsewhere(folder: str) -> list[dict[str, Any]]:
+    """What processes saw, each as the data of a ``Seen``."""
+    found: list[dict[str, Any]] = []
     for name in sorted(os.listdir(folder)):
         if name.endswith(_SEEN):
             with open(os.path.join(folder, name), encoding="utf-8", errors="surrogateescape") as file:

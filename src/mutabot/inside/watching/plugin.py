@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from mutabot import extensions
+from mutabot.border.codec import to_data
 from mutabot.border.watch import WATCH_VARIABLE
 from mutabot.errors import MutabotError
 from mutabot.inside.targets.middleware import prepare
@@ -57,9 +58,10 @@ class _Plugin:
     def _write(self) -> None:
         outcomes = list(self._outcomes.values())
         counts = {one: outcomes.count(one) for one in dict.fromkeys(outcomes)}
-        every = [self._watch.data(), *seen_elsewhere(self._folder)]
-        seen = {key: [one for data in every for one in data[key]] for key in every[0]}
-        found = {**seen, "outcomes": counts, "problems": self._problems[:20]}
+        found = {**to_data(self._watch.data()), "outcomes": counts, "problems": self._problems[:20]}
+        for other in seen_elsewhere(self._folder):
+            for key in ("calls", "uses", "reached"):
+                found[key] += other[key]
         with open(f"{self._output}.new", "w", encoding="utf-8", errors="surrogateescape") as file:
             json.dump(found, file, default=str)
         os.replace(f"{self._output}.new", self._output)

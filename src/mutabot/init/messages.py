@@ -1,0 +1,405 @@
+"""Proposed entries for what was done under names of a middleware, by the types of the messages.
+
+Units and axes are those of REP 103. Where no convention is known of a type, the names of its fields tell.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from mutabot.border.watch import Part, Use, Values
+from mutabot.model.named import Form
+
+from .guess import Guess, Setting, Table, guess_argument, guess_elements, guess_reading
+from .layout import Unreached
+from .words import GRIPPER, VERBS, words_of
+
+Meant = dict[str, Guess]
+
+#: which key names it, which tables speak of what is written and of what is read
+_KEYS: Mapping[Form, tuple[str, str, str]] = {
+    Form.PUBLISH: ("topic", "fields", ""),
+    Form.RECEIVE: ("topic", "", "fields"),
+    Form.CALL: ("service", "request", "response"),
+    Form.GOAL: ("action", "goal", ""),
+    Form.FEEDBACK: ("action", "", "feedback"),
+    Form.RESULT: ("action", "", "result"),
+    Form.PARAMETER: ("parameter", "", "value"),
+    Form.TICK: ("timer", "", ""),
+    Form.SLEEP: ("rate", "", ""),
+    Form.TRANSFORM: ("tf", "", "fields"),
+}
+_DIRECTIONS = {Form.PUBLISH: "publish", Form.RECEIVE: "receive"}
+#: how the types of the parts of services and actions of ROS 1 end
+_ENDINGS = {
+    Form.CALL: ("Request", "Response"),
+    Form.GOAL: ("Goal",),
+    Form.FEEDBACK: ("Feedback",),
+    Form.RESULT: ("Result",),
+}
+#: what the tests alone read is worth a word if they wait for it: it is what they judge by. What goes wrong in
+#: a callback of theirs, the client library may keep to itself
+_READINGS = frozenset({Form.RECEIVE, Form.TRANSFORM})
+
+
+#: what is set up before anything passes, and what passes then
+_BEFORE = {
+    Form.ADVERTISE: (Form.PUBLISH,),
+    Form.SUBSCRIBE: (Form.RECEIVE,),
+    Form.CLIENT: (Form.CALL, Form.GOAL),
+    Form.TIMER: (Form.TICK,),
+    Form.RATE: (Form.SLEEP,),
+}
+#: what the middleware sets up for itself, and for an action
+_OWN = frozenset({"/tf", "/tf_static", "/clock", "/rosout", "/parameter_events", "/statistics"})
+_OF_ACTIONS = ("/goal", "/cancel", "/status", "/feedback", "/result")
+
+
+#: what the middleware itself does with names
+_OF_MIDDLEWARE = frozenset(
+    {"/use_sim_time", "use_sim_time", "start_type_description_service", "/rosout_disable_topics_generation"}
+)
+_BEGINNINGS = (
+    "/actionlib_client_", "/run_id", "/tcp_keepalive", "/enable_statistics", "/statistics_", "qos_overrides.",
+)  # fmt: skip
+
+
+@dataclass
+class Described:
+    """A part with the table it belongs to, and what it means; without a guess nothing tells."""
+
+    table: str
+    path: str
+    part: Part
+    guess: Guess | None
+
+
+@dataclass
+class Entry:
+    """One entry.
+
+    Attributes:
+        key, name: what it is called by.
+        direction: of a topic; empty for anything else.
+        type: as far as it is known.
+        uses: what was seen.
+        parts: what passes there.
+        is_taken: whether a vocabulary takes it; a wrong guess may be why not.
+    """
+
+    key: str
+    name: str
+    direction: str = ""
+    type: str = ""
+    uses: list[Use] = field(default_factory=list)
+    parts: list[Described] = field(default_factory=list)
+    is_taken: bool = True
+
+    @property
+    def files(self) -> list[str]:
+        """Where it stands."""
+        return list(dict.fromkeys(where.rpartition(":")[0] for use in self.uses for where in use.sites))
+
+    @property
+    def of_tests(self) -> bool:
+        """Whether the tests alone do it."""
+        return all(use.of_tests for use in self.uses)
+
+    @property
+    def has_meaning(self) -> bool:
+        """Whether anything is told of what passes."""
+        return any(part.guess is not None for part in self.parts)
+
+
+def entries(found: Sequence[Use]) -> list[Entry]:
+    """An entry for each name that the program uses, and for the readings of the tests that mean something."""
+    made: dict[tuple[str, str, str], Entry] = {}
+    for use in found:
+        is_own = use.name in _OF_MIDDLEWARE or use.name.startswith(_BEGINNINGS)
+        if is_own or (use.of_tests and (use.form not in _READINGS or use.is_called_back)):
+            continue
+        if use.form not in _KEYS:
+            continue
+        key, _, _ = _KEYS[use.form]
+        direction = _DIRECTIONS.get(use.form, "")
+        entry = made.setdefault((key, use.name, direction), Entry(key, use.name, direction))
+        if entry.uses and use.of_tests and not entry.of_tests:
+            continue  # what the program reads is told of the program alone
+        if entry.uses and entry.of_tests and not use.of_tests:
+            entry.uses, entry.parts = [], []
+        entry.uses.append(use)
+        entry.type = entry.type or _type(use)
+        known = {(part.table, part.path) for part in entry.parts}
+        entry.parts += [part for part in _described(use) if (part.table, part.path) not in known]
+    return [entry for entry in made.values() if not entry.of_tests or entry.has_meaning]
+
+
+def unused(found: Sequence[Use]) -> list[Unreached]:
+    """What the program sets up, and the tests let nothing pass there."""
+    passed = {(use.form, use.name) for use in found if not use.of_tests}
+    actions = {use.name for use in found if use.form in (Form.GOAL, Form.CLIENT)}
+    left = []
+    for use in found:
+        then = _BEFORE.get(use.form, ())
+        is_action = any(use.name == f"{name}{end}" for name in actions for end in _OF_ACTIONS)
+        if not then or use.of_tests or use.name in _OWN or is_action:
+            continue
+        if not any((form, use.name) in passed for form in then):
+            file, _, line = next(iter(use.sites)).rpartition(":")
+            left.append(Unreached(file, int(line), f"{then[0]} {use.name}"))
+    return left
+
+
+def _type(use: Use) -> str:
+    """The type of a message, service or action; ROS 2 calls the parts ``SetBool_Request``."""
+    kind = use.written.type or use.read.type
+    package, slash, name = kind.partition("/")
+    if use.form is Form.TRANSFORM or not slash:
+        return ""
+    ending = next((one for one in _ENDINGS.get(use.form, ()) if name.endswith(one)), "")
+    return f"{package}/{name.removesuffix(ending).partition('_')[0]}"
+
+
+def _described(use: Use) -> Iterator[Described]:
+    _, written, read = _KEYS[use.form]
+    for table, values in ((written, use.written), (read, use.read)):
+        if not table:
+            continue
+        place = Place.of(use, values, is_written=table == written)
+        for part in values.parts.values():
+            meant = meaning(part, place) if values.always(part) else {}
+            for path, guess in meant.items():
+                yield Described(table, path, part, guess if guess.table else None)
+            if not meant and not is_nothing(part, place):
+                yield Described(table, part.path, part, None)
+
+
+_HEADER = "std_msgs/Header"
+_POINTS = frozenset({"geometry_msgs/Point", "geometry_msgs/Point32"})
+_TRANSLATION = ("geometry_msgs/Transform", "translation")
+#: holders of speeds
+_SPEEDS = "geometry_msgs/Twist"
+#: types whose fields are as conventions say, or unknown; their names alone tell nothing
+_STANDARD = re.compile(r"(?:geometry|sensor|nav|diagnostic|actionlib|action|visualization|shape)_msgs/.*")
+_JOINTS = {
+    ("sensor_msgs/JointState", "position"),
+    ("trajectory_msgs/JointTrajectoryPoint", "positions"),
+}
+_MOST_JOINTS = 12
+_BYTES = ("uint8[", "char[", "byte[", "octet[", "sequence<uint8", "sequence<octet")
+_BY = frozenset({"by", "relative", "rel", "offset", "shift", "jog", "delta", "step", "increment"})
+_GETTERS = frozenset({"get", "read", "query", "is", "has", "where", "locate", "detect", "measure", "lookup"})
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where parts pass.
+
+    Attributes:
+        form: what is done.
+        words: the words of its name, in lower case.
+        is_written: whether the program sends them.
+        frame: the frame that all messages speak of; empty if there are several or none.
+    """
+
+    form: Form
+    words: tuple[str, ...]
+    is_written: bool
+    frame: str = ""
+
+    @classmethod
+    def of(cls, use: Use, values: Values, *, is_written: bool) -> Place:
+        """The place of what passes in a use."""
+        parts = values.parts.values()
+        frames = {value for part in parts if _is_header(part, "frame_id") for value in part.values}
+        frame = next(iter(frames)) if len(frames) == 1 else ""
+        return cls(use.form, words_of(use.name), is_written, frame)
+
+    @property
+    def is_by(self) -> bool:
+        """Whether its name says that what is sent is relative."""
+        return bool(_BY & set(self.words))
+
+    @property
+    def tells_nothing(self) -> bool:
+        """Whether it is the answer to a command, which says how that went."""
+        return self.form is Form.CALL and not self.is_written and not _GETTERS & set(self.words)
+
+
+def meaning(part: Part, place: Place) -> Meant:
+    """What a part means, by path; an empty guess for a path of which nothing tells, nothing for the whole."""
+    if place.tells_nothing:
+        return {}
+    for rule in _RULES:
+        found = rule(part, place)
+        if found is not None:
+            return found
+    if part.within and _STANDARD.fullmatch(part.within[-1][0]):
+        return {}
+    return by_name(part, place.words, is_written=place.is_written)
+
+
+def is_nothing(part: Part, place: Place) -> bool:
+    """Whether a part is not worth asking about: what the middleware itself writes, and words for people."""
+    if part.within and part.within[-1][0] in (_HEADER, "std_msgs/MultiArrayLayout"):
+        return True
+    if any(isinstance(value, str) for value in part.values):
+        return not place.is_written and bool(part.within) and part.within[-1] != ("std_msgs/String", "data")
+    if part.type in ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration"):
+        return True
+    return part.type.startswith(_BYTES) or (not part.values and not part.length)
+
+
+def _header(part: Part, place: Place) -> Meant | None:
+    if not part.within or part.within[-1][0] != _HEADER:
+        return None
+    name = part.within[-1][1]
+    is_set = name in ("frame_id", "stamp") and any(part.values)
+    return {part.path: Guess({"kind": name})} if is_set else {}
+
+
+def _is_header(part: Part, name: str) -> bool:
+    return bool(part.within) and part.within[-1] == (_HEADER, name)
+
+
+def _quaternion(part: Part, place: Place) -> Meant | None:
+    return {part.path: Guess({"kind": "quaternion"})} if part.type == "geometry_msgs/Quaternion" else None
+
+
+def _coordinate(part: Part, place: Place) -> Meant | None:
+    """A coordinate of a point, of a transform's translation, or of a plane's pose."""
+    holder, name = part.within[-1] if part.within else ("", "")
+    if holder == "geometry_msgs/Pose2D":
+        return {part.path: _placed("rotation" if name == "theta" else "translation", name, place)}
+    is_translation = holder == "geometry_msgs/Vector3" and part.within[-2:-1] == (_TRANSLATION,)
+    if holder in _POINTS or is_translation:
+        return {part.path: _placed("translation", name, place)}
+    return None
+
+
+def _placed(kind: str, name: str, place: Place) -> Guess:
+    """Where something is, or is to be."""
+    unit, axis = ("rad", "z") if kind == "rotation" else ("m", name)
+    if not place.is_written:
+        read = "orientation" if kind == "rotation" else "position"
+        return Guess(_framed({"kind": read, "axis": axis, "unit": unit}, place))
+    table = _framed({"kind": kind, "axis": axis, "unit": unit}, place)
+    return Guess({**table, "mode": "by" if place.is_by else "to"})
+
+
+def _speed(part: Part, place: Place) -> Meant | None:
+    """A part of a ``Twist``: a speed, unless the name says that a relative move is sent in it."""
+    if len(part.within) < 2 or part.within[-2][0] != _SPEEDS:
+        return None
+    turns, axis = part.within[-2][1] == "angular", part.within[-1][1]
+    if place.is_written and place.is_by:
+        kind, unit = ("rotation", "rad") if turns else ("translation", "m")
+        table = _framed({"kind": kind, "axis": axis, "unit": unit}, place)
+        return {part.path: Guess({**table, "mode": "by"})}
+    unit = "rad/s" if turns else "m/s"
+    return {part.path: Guess(_framed({"kind": "speed", "axis": axis, "unit": unit}, place))}
+
+
+def _framed(table: Table, place: Place) -> Table:
+    return {**table, "frame": place.frame} if place.frame else table
+
+
+def _joints(part: Part, place: Place) -> Meant | None:
+    if not part.within or part.within[-1] not in _JOINTS or not part.length:
+        return None
+    if part.length > _MOST_JOINTS:
+        return {}
+    axis = "j1" if part.length == 1 else f"j1..j{part.length}"
+    path = f"{part.path}[0]" if part.length == 1 else f"{part.path}[0:{part.length}]"
+    if place.is_written:
+        return {path: Guess({"kind": "rotation", "axis": axis, "unit": "rad", "mode": "to"})}
+    return {path: Guess({"kind": "angle", "axis": axis, "unit": "rad"})}
+
+
+def _finger(part: Part, place: Place) -> Meant | None:
+    if not part.within or part.within[-1] != ("control_msgs/GripperCommand", "position"):
+        return None
+    if not place.is_written:
+        return {part.path: Guess({"kind": "distance", "unit": "m"})}
+    table: Table = {"kind": "opening", "unit": "m", "range": ["…", "…"]}
+    return {part.path: Guess(table, ["how far is it fully closed, and fully open?"])}
+
+
+def _range(part: Part, place: Place) -> Meant | None:
+    is_range = bool(part.within) and part.within[-1] == ("sensor_msgs/Range", "range")
+    return (
+        {part.path: Guess({"kind": "distance", "unit": "m"})} if is_range and not place.is_written else None
+    )
+
+
+_RULES: tuple[Callable[[Part, Place], Meant | None], ...] = (
+    _header, _quaternion, _coordinate, _speed, _joints, _finger, _range,
+)  # fmt: skip
+
+
+#: names of fields that say nothing: the name of the topic or service does
+_EMPTY = frozenset({"", "data", "value"})
+_POSE_LENGTH = 6
+#: values that are settings, and no scale
+_LEAST_VALUES, _MOST_VALUES = 2, 5
+#: no joint turns further, rad
+_FULL_TURN = 6.5
+
+
+def by_name(part: Part, words: Sequence[str], *, is_written: bool) -> Meant:
+    """What a part means, by path; an empty guess for a path of which nothing tells."""
+    own = part.within[-1][1] if part.within else ""
+    values = [value for value in part.values if value is not None]
+    if not values or part.length == 0:
+        return {}
+    if part.length is not None:
+        return _elements(part, own, words, is_written=is_written)
+    if all(isinstance(value, bool) for value in values):
+        kind = "flag" if not is_written else "opening" if _is_of_gripper(words) else "output"
+        return {part.path: Guess({"kind": kind, **({"values": [False, True]} if is_written else {})})}
+    if all(isinstance(value, str) for value in values):
+        is_label = not part.path and not is_written and _LEAST_VALUES <= len(values) <= _MOST_VALUES
+        return {"": Guess({"kind": "label", "values": values})} if is_label else {}
+    guess = _number(part, own, words, is_written=is_written)
+    return {part.path: guess} if guess.table else {}
+
+
+def _is_of_gripper(words: Sequence[str]) -> bool:
+    return any(one in word for word in words for one in GRIPPER)
+
+
+def _number(part: Part, own: str, words: Sequence[str], *, is_written: bool) -> Guess:
+    is_empty = own in _EMPTY
+    if is_empty and is_written and any(VERBS.get(word) == "duration" for word in words):
+        return Guess({"kind": "duration", "unit": "s"})
+    name = "_".join(words[-1:]) if is_empty else own
+    setting = Setting(tuple(words), values=part.values)
+    guess = guess_argument(name, setting) if is_written else guess_reading(name, setting)
+    if guess.table and guess.table.get("kind") not in ("label", "flag"):
+        return _by_convention(guess, part.values)
+    is_whole = bool(part.within) and all(isinstance(value, int) for value in part.values)
+    if is_empty and is_whole and _LEAST_VALUES <= len(part.values) <= _MOST_VALUES:
+        return Guess({"kind": "output" if is_written else "label", "values": list(part.values)})
+    return Guess()
+
+
+def _elements(part: Part, own: str, words: Sequence[str], *, is_written: bool) -> Meant:
+    assert part.length is not None
+    is_joints = any(re.fullmatch(r"joints?|(?:move|servo)j", word) for word in words)
+    is_rate = re.search(r"vel|speed|acc|effort|torque", own) is not None
+    setting = Setting(tuple(words), values=part.values)
+    found = guess_elements(
+        "joints" if is_joints and not is_rate else own, part.length, setting, written=is_written
+    )
+    numbers = [number for values in part.values for number in values]
+    return {f"{part.path}{step}": _by_convention(guess, numbers) for step, guess in found.items()}
+
+
+def _by_convention(guess: Guess, values: Sequence[object]) -> Guess:
+    """Angles of ROS are in radians, if nothing says otherwise and they are no larger than a turn."""
+    largest = max((abs(value) for value in values if isinstance(value, int | float)), default=0.0)
+    if guess.table.get("unit") == "rad" and guess.questions and largest <= _FULL_TURN:
+        guess.questions = [one for one in guess.questions if not one.startswith("the unit")]
+    return guess

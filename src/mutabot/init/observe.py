@@ -1,0 +1,163 @@
+"""One plain run of the tests, watched: the calls that the program really makes."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import re
+import signal
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from mutabot.border.codec import from_data
+from mutabot.border.watch import WATCH_VARIABLE, Call, Seen, Use, Values
+from mutabot.campaign.workers.processes import command, kill_group
+from mutabot.extensions import libraries, told_to_processes
+
+from .layout import Layout
+
+#: seconds that the tests may take; what was seen by then counts
+LIMIT = 180.0
+#: what anonymous nodes of ROS 1 have behind their names: another number in each run
+_ANONYMOUS = re.compile(r"_\d+_\d{10,}(?=/|$)")
+_MISSING = re.compile(r"No module named '([\w.]+)'")
+
+
+@dataclass
+class Observed:
+    """What the run showed.
+
+    Attributes:
+        seen: what all processes saw together.
+        trouble: why the run tells less than it could; empty if it went well.
+        extra: pytest arguments that it needed.
+    """
+
+    seen: Seen = field(default_factory=Seen)
+    trouble: str = ""
+    extra: list[str] = field(default_factory=list)
+
+
+def observe(layout: Layout, limit: float = LIMIT) -> Observed:
+    """Run the tests once and watch the program; once more with the import paths that were missing."""
+    found = _run(layout, [], limit)
+    seen = found.seen
+    if seen.outcomes or not any(_is_own(layout, text) for text in [*seen.problems, found.trouble]):
+        return found
+    paths = " ".join(_relative(layout.root, home) for home in layout.homes)
+    again = _run(layout, ["-o", f"pythonpath={paths}"], limit)
+    return again if again.seen.outcomes else found
+
+
+def _run(layout: Layout, extra: list[str], limit: float) -> Observed:
+    with TemporaryDirectory(ignore_cleanup_errors=True) as name:  # nodes may still write to their logs
+        folder = Path(name)
+        order, output, log = folder / "watch.json", folder / "seen.json", folder / "log.txt"
+        order.write_text(json.dumps(_order(layout, output)), encoding="utf-8")
+        own = ["-p", "mutabot.inside.watching.plugin", "--assert=plain"]
+        words = [*command([*layout.arguments, *extra], folder), *own]
+        overdue = _wait(words, layout.root, order, log, limit)
+        said = log.read_text(encoding="utf-8", errors="replace")
+        seen = _read(output)
+        found = Observed(seen, extra=extra)
+        if overdue:
+            found.trouble = f"the tests took longer than {limit:.0f} s: only what was seen by then is known"
+        elif not seen.outcomes:
+            found.trouble = "; ".join(seen.problems[:3]) or _said(said)
+        return found
+
+
+def _order(layout: Layout, output: Path) -> dict[str, Any]:
+    names = {kind: {os.path.realpath(path): layout.relative(path) for path in getattr(layout, kind)}
+             for kind in ("program", "tests")}  # fmt: skip
+    brought = {"extensions": told_to_processes(), "libraries": list(libraries())}
+    return {**names, **brought, "root": str(layout.root), "output": str(output)}
+
+
+def _wait(words: Sequence[str], root: Path, order: Path, log: Path, limit: float) -> bool:
+    """Run pytest; whether it was ended because it took too long."""
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1", WATCH_VARIABLE: str(order)}
+    with (
+        log.open("wb") as file,
+        subprocess.Popen(
+            words, cwd=root, env=environment, stdin=subprocess.DEVNULL, stdout=file,
+            stderr=subprocess.STDOUT, start_new_session=True,
+        ) as process,
+    ):  # fmt: skip
+        try:
+            process.wait(limit)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGINT)  # as a person would: pytest ends in an orderly way
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(5.0)
+            return True
+        finally:
+            kill_group(process.pid)
+            process.wait()
+    return False
+
+
+def _read(output: Path) -> Seen:
+    try:
+        return merged(from_data(Seen, json.loads(output.read_text(encoding="utf-8"))))
+    except (OSError, ValueError, TypeError, KeyError):
+        return Seen()
+
+
+def merged(seen: Seen) -> Seen:
+    """One call for each callable and side, one use for each form, name and side, whichever process saw it."""
+    calls: dict[tuple[str, bool], Call] = {}
+    for call in seen.calls:  # of what several processes saw of a callable, the first one's values
+        first = calls.setdefault((call.target, call.of_tests), call)
+        if first is not call:
+            first.leads_to_names |= call.leads_to_names
+            first.sites = _added(first.sites, call.sites)
+    uses: dict[tuple[Any, ...], Use] = {}
+    for use in seen.uses:
+        use.name = _ANONYMOUS.sub("_*", use.name)
+        known = uses.setdefault((use.form, use.name, use.of_tests, use.is_called_back), use)
+        if known is not use:
+            known.sites = _added(known.sites, use.sites)
+            _merge(known.written, use.written)
+            _merge(known.read, use.read)
+    return replace(seen, calls=list(calls.values()), uses=list(uses.values()))
+
+
+def _added(some: Mapping[str, int], others: Mapping[str, int]) -> dict[str, int]:
+    return {where: some.get(where, 0) + others.get(where, 0) for where in {**some, **others}}
+
+
+def _merge(some: Values, others: Values) -> None:
+    some.times += others.times
+    some.type = some.type or others.type
+    for path, part in others.parts.items():
+        known = some.parts.setdefault(path, part)
+        if known is not part:
+            known.count += part.count
+            known.values += [value for value in part.values if value not in known.values]
+
+
+def _is_own(layout: Layout, text: str) -> bool:
+    """Whether a module that is missing is one of the project's."""
+    return any(
+        (home / top).is_dir() or (home / f"{top}.py").is_file()
+        for missing in _MISSING.findall(text)
+        for top in [missing.partition(".")[0]]
+        for home in layout.homes
+    )
+
+
+def _relative(root: Path, path: Path) -> str:
+    return path.relative_to(root).as_posix()
+
+
+def _said(log: str) -> str:
+    """What pytest said last that tells something."""
+    lines = [line.strip() for line in log.splitlines() if line.strip()]
+    telling = [line for line in lines if re.search(r"error|Error|no tests|No module", line)]
+    return (telling or lines or ["pytest said nothing"])[-1][:300]
