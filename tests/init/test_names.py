@@ -206,7 +206,11 @@ def test_what_is_guessed_and_what_nothing_tells_stands_there() -> None:
         'mode = "to" }  # seen: 0.5',
         'fields."pose.orientation" = { kind = "quaternion" }',
     ]
-    assert texts["/odd"].splitlines()[-1] == "# nothing tells what this means: fields.speed (float32; 3)"
+    assert (
+        texts["/odd"]
+        .splitlines()[-1]
+        .startswith('# fields.speed = { kind = "speed", unit = "m/s" }  # question: ')
+    )
     assert texts["/gripper/close"].splitlines()[-1].startswith('# refused = { path = "success"')
     assert texts["/go"].splitlines()[2] == 'type = "vendor_msgs/Go"'
     assert texts["/go"].splitlines()[-1].endswith("goal.target (float64; 0.25), result.code (int8; 1)")

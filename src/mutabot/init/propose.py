@@ -72,11 +72,8 @@ def known_vocabularies(layout: Layout, calls: Sequence[Call]) -> list[Known]:
     for name, wrapper in _BEHIND.items():
         if name in imported:
             own, other = every[name], every.pop(wrapper)
-            both = {
-                "overridden": own.overridden | other.overridden,
-                "packages": own.packages | other.packages,
-            }
-            every[name] = replace(own, **both)
+            names, packages = own.overridden | other.overridden, own.packages | other.packages
+            every[name] = replace(own, overridden=names, packages=packages)
     found = []
     for known in every.values():
         seen = sum(known.describes(call) for call in calls)
